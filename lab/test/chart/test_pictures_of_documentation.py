@@ -46,7 +46,7 @@ def test_the_errors_of_the_models_are_those_of_the_code(
     assert set(figures) == set(models)
     for point in points_of(kind, models):
         drawn = figures[point.model]
-        assert (point.error, point.roughness) == pytest.approx(drawn, rel=0.02), CURE
+        assert (point.error, point.roughness) == pytest.approx(drawn, rel=0.01), CURE
 
 
 @pytest.mark.long
