@@ -26,6 +26,8 @@ const CROWD = 50;
 /** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
  * has all of its cards and of one that is a picture [px]. */
 const MOST = { segments: 40000, cards: 64000, all: 200000, near: 700, far: 90 };
+/** What a card costs over what a segment does: that one is placed for each frame, which a graphics unit does for a card. */
+const CARD = 0.35;
 /** Of a crowd, whose kinds take memory. */
 const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
@@ -150,7 +152,7 @@ export class Scene {
     const levels = this._kinds.map(({ placer, highest }) => levelsOf(placer, highest, most));
     const radii = this._kinds.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
     const tops = trees.map(({ kind, place }) => place[2] + place[4] * this._kinds[kind].high[2]);
-    this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))));
+    this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))), this.isSlow ? 1 : CARD);
     this._budget = most.all;
     const corners = trees.flatMap(({ kind, place }) => Array.from({ length: 8 }, (_, corner) => {
       const { low, high } = this._kinds[kind];

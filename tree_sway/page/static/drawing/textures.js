@@ -5,13 +5,16 @@
 import { outlineOf, seeded } from "./looks.js";
 
 /** Leaves along a picture: a leaf alone, sprays of more and more. */
-const ALONG = [1, 3, 5, 8, 12, 18, 24];
+const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
 const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Share of a picture beside a candle. */
 const LEAF_SHARE = 0.75;
+/** Leaves along a picture from which it is one of a clump rather than of a shoot; and how many times they would
+ * cover it. */
+const [CLUMP, CLUMP_FILLED] = [12, 0.9];
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
@@ -42,9 +45,10 @@ export function leafPicture(look, along, isAutumn, size = along > 1 || look.form
   const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
   if (share < 1 && !isAutumn) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 26);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 14);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
+  else if (along >= CLUMP) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
@@ -219,14 +223,29 @@ class Brush {
     }
   }
 
+  /** What is seen of a clump of shoots from afar: small leaves in layers with gaps between them, with no
+   * outline that would read as one large leaf. @param {number} leaf length of one */
+  clump(leaf) {
+    const { half, random } = this;
+    const unit = this.unit * leaf;
+    const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
+    for (let i = 0; i < count; i++) {
+      const [turn, far] = [2 * Math.PI * random(), Math.sqrt(random())];
+      const [along, across] = [far * Math.cos(turn), far * Math.sin(turn)];
+      const [x, y] = [0.5 + (0.5 - unit) * along, (half - unit) * across];
+      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
+      this.at(x, y, 2 * Math.PI * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
+    }
+  }
+
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
-    const apart = Math.max(0.09, 0.7 * shoot);
-    const long = (isFrond ? 0.4 : 0.42) * apart;
-    const wide = Math.max(0.1 * long, 0.0045);
+    const apart = Math.max(0.12, 0.95 * shoot);
+    const long = (isFrond ? 0.4 : 0.31) * apart;
+    const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
@@ -269,9 +288,10 @@ class Brush {
         const turn = heading + 2.9 * ((i + random()) / count - 0.5);
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
-        const reach = Math.min(long * (0.55 + 0.45 * random()), 0.99 - fromX, room);
+        // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
+        const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.018, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.022, color));
       }
     }
   }
