@@ -61,7 +61,7 @@ from tree_sway.core.vector import Vector
 STRONG = 20.0, 25.0
 """
 Winds [m/s] between which the step goes over to that of the table: in storms twigs stream along the
-wind, and loads found branch by branch rattle.
+wind, and this step was not tried there.
 """
 
 LONGEST_STEP, MOST_TURN = 0.04, 1.0
@@ -256,9 +256,9 @@ class LimpStep(WindBasisBank):
         most = float(self.record[0]['most_energy'])
         load = per_speed_squared, per_speed_squared * speed
         is_possible: bool = self._run(
-            _step_from_middle, law, pose, motion, self._segments, first, count, ahead, *wind, *load,
-            most,
-        )
+            _step_from_middle, law, pose, motion, self._segments, first, count, ahead, *wind,
+            *load, most,
+        )  # fmt: skip
         if is_possible:
             self.middles.fill(pose.turned, pose.placed, 1)
             self._allowed = self._run(_bound_energy, pose, motion, self._allowed)

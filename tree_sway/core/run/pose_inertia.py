@@ -34,7 +34,7 @@ from tree_sway.core.kernel import part
 from tree_sway.core.run.dense import copy, dot, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 
-LEADING = 60
+LEADING = 120
 """Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
 
 OLDEST, MOST_STEPS = 0.3, 8
@@ -117,7 +117,7 @@ def inertia_at_rest(
     q = min(LEADING, m)
     at_rest = _columns_at_rest(middles, shapes)
     # The model's coordinates have unit mass, that of its points to some percent.
-    factor = np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T)
+    factor = np.asarray(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T), dtype=np.float64)
     unit = np.linalg.inv(factor)
     directions, columns = shapes.T.copy(), at_rest.copy()
     directions[:q] = unit @ directions[:q]
