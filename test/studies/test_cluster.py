@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
+import multiprocessing
 import os
 from pathlib import Path
 import re
@@ -191,6 +192,24 @@ def test_results_come_as_they_are_done(apart: Apart) -> None:
     with cluster.cluster(1, apart.address) as (distributed, client):
         work = [(f'piece {k}', (k,)) for k in range(5)]
         assert sorted(run_all(distributed, client, abs, work)) == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.skipif(not hasattr(signal, 'pthread_sigmask'), reason='delays Ctrl-C by a mask')
+def test_ctrl_c_in_a_study_ends_its_own_workers_alone() -> None:
+    """A program that calls the library may have processes of its own, also younger ones."""
+    own: set[int | None] = set()
+    with pytest.raises(KeyboardInterrupt), cluster.cluster(1):
+        until(multiprocessing.active_children)
+        own = {each.pid for each in multiprocessing.active_children()}
+        context = multiprocessing.get_context('spawn')
+        other = context.Process(target=time.sleep, args=(DEADLINE,))
+        other.start()
+        raise KeyboardInterrupt
+    until(lambda: not own & {each.pid for each in multiprocessing.active_children()})
+    is_alive = other.is_alive()
+    other.kill()
+    other.join()
+    assert is_alive
 
 
 STUDY = """
