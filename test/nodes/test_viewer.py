@@ -14,8 +14,8 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
-import tree_sway.page.server as server_module  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
+import tree_sway.page.server as server_module  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.placing import Placer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
