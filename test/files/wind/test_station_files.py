@@ -153,6 +153,10 @@ CSV = {
     + rows(lambda t, u: f'2,{t:%m/%d/%Y},{t:%H%M},61,{u / MILE:.4f}, ,270, ', 60),
     'ISD as R reads it': 'USAFID,WBAN,year,month,day,hour,min,wind.dir,wind.dir.qc,wind.sp\n'
     + rows(lambda t, u: f'1,2,{t.year},{t.month},{t.day},{t.hour},0,270,5,{u:.3f}', 60),
+    'Cumulus, realtime.txt': rows(
+        lambda t, u: f'{t:%d/%m/%y %H:%M:%S} 8.4 84 5.8 {3.6 * u:.2f} {4 * u:.1f} 270 0.0 1.0 999.7'
+        f' W 3 km/h C hPa mm {"1 " * 23}{7.2 * u:.2f} 10.3 10.5'
+    ),
     'a hash before the header': '# Time, Temp (C), Wind Speed (m/s), Wind Dir (deg)\n'
     + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S}, 20.1, {u:.3f}, 270', 5),
 }  # fmt: skip
@@ -312,6 +316,27 @@ def test_the_old_text_of_weatherlink(tmp_path: Path) -> None:
     record = read_wind(path, speed_unit='mph', turbulence=False)
     np.testing.assert_allclose(record.velocity[:, 0], SPEEDS, atol=0.01)
     assert record.duration == 1800.0 * (N - 1)
+
+
+@pytest.mark.parametrize('separator', [',', ';'])
+def test_the_log_of_cumulus(separator: str, tmp_path: Path) -> None:
+    def row(time: datetime, speed: float) -> str:
+        wind = [f'{speed / MILE:.4f}', f'{2 * speed / MILE:.3f}', '270']
+        cells = ['8.4', '84', '5.8', *wind, *['0.0'] * 15]
+        if separator == ';':
+            cells = [cell.replace('.', ',') for cell in cells]
+        return separator.join([f'{time:%d/%m/%y}', f'{time:%H:%M}', *cells])
+
+    path = tmp_path / 'Mar24log.txt'
+    path.write_text(f'{rows(row, 10)}\n01/03/24 broken\n')
+    with pytest.raises(FormatError, match='a file of Cumulus does not say the unit of the speed'):
+        read_wind(path)
+    record = read_wind(path, speed_unit='mph', turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], SPEEDS, atol=0.01)
+    np.testing.assert_allclose(record.velocity[:, 1:], 0.0, atol=1e-9)
+    assert record.time.tolist() == [600.0 * k for k in range(N)]
+    assert record.epoch == seconds(BEGIN)
+    assert record.refused == 1
 
 
 @pytest.mark.parametrize('encoding', ['cp1252', 'utf-16', 'utf-8-sig'])
