@@ -154,8 +154,8 @@ CSV = {
     'ISD as R reads it': 'USAFID,WBAN,year,month,day,hour,min,wind.dir,wind.dir.qc,wind.sp\n'
     + rows(lambda t, u: f'1,2,{t.year},{t.month},{t.day},{t.hour},0,270,5,{u:.3f}', 60),
     'Cumulus, realtime.txt': rows(
-        lambda t, u: f'{t:%d/%m/%y %H:%M:%S} 8.4 84 5.8 {3.6 * u:.2f} {4 * u:.1f} 270 0.0 1.0 999.7'
-        f' W 3 km/h C hPa mm {"1 " * 23}{7.2 * u:.2f} 10.3 10.5'
+        lambda t, u: f'{t:%d/%m/%y %H:%M:%S} 8.4 84 5.8 {3.6 * u:.2f} {4 * u:.1f} 270 0.0 1.0 '
+        f'999.7 W 3 km/h C hPa mm {"1 " * 23}{7.2 * u:.2f} 10.3 10.5'
     ),
     'a hash before the header': '# Time, Temp (C), Wind Speed (m/s), Wind Dir (deg)\n'
     + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S}, 20.1, {u:.3f}, 270', 5),
