@@ -160,9 +160,9 @@ READ = {
         [('broadleaf', 9.0, 0.31), ('eucalyptus', 21.0, 0.91)],
     ),
     'Bologna': (
-        'Geo Point;Specie arborea;Genere;Classe di altezza;Altezza (m);Diametro fusto (cm)\n'
-        '44.4938,11.3387;Celtis australis;Celtis;da 6 a 12 m;9;45\n'
-        '44.4939,11.3388;Tilia cordata;Tilia;da 12 a 16 m;14;38\n',
+        'Geo Point;Specie arborea;Genere;Altezza (m);Diametro fusto (cm)\n'
+        '44.4938,11.3387;Celtis australis;Celtis;9;45\n'
+        '44.4939,11.3388;Tilia cordata;Tilia;14;38\n',
         [('hackberry', 9.0, 0.45), ('lime', 14.0, 0.38)],
     ),
     'Leipzig, Rechtswert and Hochwert by their letters': (
@@ -210,7 +210,7 @@ READ = {
     'Lyon, decimal commas': (
         'essencefrancais;circonference_cm;hauteurtotale_m;hauteurfut_m;genre;espece;lon;lat\n'
         "Platane à feuilles d'érable;187;17;4;Platanus;acerifolia;4,8501;45,7501\n"
-        'Micocoulier de Provence;93;11;3;Celtis;australis;4,8502;45,7502\n',
+        'Micocoulier;93;11;3;Celtis;australis;4,8502;45,7502\n',
         [('plane', 17.0, 0.595), ('hackberry', 11.0, 0.296)],
     ),
     'a plot in metres with few digits stays one': (
