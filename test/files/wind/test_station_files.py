@@ -190,7 +190,7 @@ CSV = {
         f'{u:.2f},270,{2 * u:.2f}',
         60,
     ),
-    'AEMET, points in words': 'Estación;Fecha y hora oficial;Temperatura (ºC);'
+    'AEMET, points in words': 'Estación;Fecha y hora;Temperatura (ºC);'
     'Velocidad del viento (km/h);Dirección del viento;Racha (km/h)\n'
     + rows(lambda t, u: f'Madrid;{t:%d/%m/%Y %H:%M};8;{3.6 * u:.2f};Oeste;{7.2 * u:.1f}', 60),
     'INMET, Brazil': 'REGIAO:;SE\nESTACAO:;SAO PAULO - MIRANTE\nLATITUDE:;-23,49\n'

@@ -88,9 +88,9 @@ def _with_units_below(table: TextTable) -> TextTable:
 
 
 def _unit_below(cell: str) -> str:
-    """Return the unit of a speed behind a name; any other cell as it is."""
+    """Return the unit in brackets behind a name; a cell without one as it is."""
     _, unit = name_and_unit(cell, 'speed')
-    return unit if unit_known('speed', unit) else cell
+    return unit or cell
 
 
 PLAIN = Layout('table', _is_table, _read)
