@@ -88,9 +88,11 @@ def _with_units_below(table: TextTable) -> TextTable:
 
 
 def _unit_below(cell: str) -> str:
-    """Return the unit in brackets behind a name; a cell without one as it is."""
-    _, unit = name_and_unit(cell, 'speed')
-    return unit or cell
+    """Return a wind's unit in brackets behind a name; a cell without brackets as it is."""
+    name, unit = name_and_unit(cell, 'speed')
+    if name == cell:
+        return cell
+    return unit if unit_known('speed', unit) or unit_known('angle', unit) else ''
 
 
 PLAIN = Layout('table', _is_table, _read)
