@@ -131,7 +131,7 @@ def test_kernels_that_nobody_reads_are_removed(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     old = time.time() - UNUSED - 60.0
-    for name in ('old.kernel', 'used.kernel', 'left.part', 'other.txt'):
+    for name in ('old.kernel', 'used.kernel', 'left.part', 'left.claim', 'other.txt'):
         write_own(place / name, b'')
         os.utime(place / name, (old, old))
     read_own(place / 'used.kernel')

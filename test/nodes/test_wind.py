@@ -303,7 +303,7 @@ def test_each_report_has_the_same_statuses(compose, observer, tree_file):
     observer.until(lambda: len(names('wind')) > 1 and len(names('solver')) > 1, 'reports')
     for node in ('wind', 'solver'):
         nodes[node].guard.note(ValueError('seen'))
-    nodes['solver']._refuse('push', 'no such segment')
+    nodes['solver'].refusals.note('push', 'no such segment')
     n, m = len(names('wind')), len(names('solver'))
     observer.until(lambda: len(names('wind')) > n and len(names('solver')) > m, 'further reports')
     assert {*map(tuple, names('wind'))} == {('wind: wind', 'wind: frame', 'wind: callbacks')}

@@ -31,11 +31,20 @@ from tree_sway.page.wind_source import SimulatedWind
 from tree_sway.stream.controls import ControlPanel
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
-HEIGHTS = {
-    'oak': 18, 'birch': 16, 'spruce': 22, 'fir': 22, 'pine': 20, 'lime': 14, 'beech': 20,
-    'horse_chestnut': 15, 'willow': 12, 'walnut': 8,
-}  # fmt: skip
-SQUARE = 1000, 1000
+GROWN = {
+    'oak': '--height 18 --diameter 0.9 --seed 3',
+    'birch': '--height 16',
+    'spruce': '--height 20 --diameter 0.55 --seed 1',
+    'fir': '--height 20 --diameter 0.6 --seed 3',
+    'pine': '--height 18 --diameter 0.5 --seed 1',
+    'lime': '--height 18 --diameter 0.6 --seed 1',
+    'beech': '--height 20 --diameter 0.7 --seed 5',
+    'horse_chestnut': '--height 16 --diameter 0.7 --seed 1',
+    'willow': '--height 12 --diameter 0.6 --seed 1',
+    'walnut': '--height 8',
+}
+"""Individuals by their options of `tree-sway grow`: most have stood in the open all their life."""
+SQUARE = 1200, 1200
 """Size of the picture of one tree [px]."""
 LARGE, SMALLER = 960, 0.75
 """Width from which a picture is saved smaller than it was taken [px], and by how much."""
@@ -44,9 +53,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
-_CLOSE, _ASIDE = (
-    f'treeSway.scene.camera.{so};' for so in ('zoom(0.94)', 'azimuth += 2.2')
-)  # fmt: skip
+_CLOSE = 'treeSway.scene.camera.zoom(0.9);'
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -92,7 +99,7 @@ VIEWS = (
     View('pine', 'pine', script=_CLOSE, size=SQUARE),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('lime', 'lime', script=_CLOSE, size=SQUARE),
-    View('beech', 'beech', script=_CLOSE + _ASIDE, size=SQUARE),
+    View('beech', 'beech', script=_CLOSE, size=SQUARE),
     View('horse_chestnut', 'horse_chestnut', script=_CLOSE, size=SQUARE),
     View('willow', 'willow', script=_CLOSE, size=SQUARE),
     View('willow_sways', 'willow', is_film=True),
@@ -129,9 +136,9 @@ def main() -> None:
                 elif tree == 'avenue':
                     tree = f'{grown}/avenue.csv'
                     Path(tree).write_text(AVENUE, encoding='utf-8')
-                elif tree in HEIGHTS:
+                elif tree in GROWN:
                     tree = f'{grown}/{tree}.yaml'
-                    words = ['--species', view.tree, '--height', str(HEIGHTS[view.tree])]
+                    words = ['--species', view.tree, *GROWN[view.tree].split()]
                     if not Path(tree).exists():
                         cli.main(['grow', *words, '-o', tree])
                 take(view, tree, given.folder / f'{view.name}.jpg')

@@ -252,6 +252,24 @@ def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
     assert process.returncode == (130 if number == signal.SIGINT else -number)
 
 
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
+@pytest.mark.usefixtures('ctrl_c')
+def test_ctrl_c_does_not_wait_for_workers_that_start(tmp_path):
+    study, slow = tmp_path / 'study.yaml', tmp_path / 'slow.py'
+    study.write_text('trees: [benjamina]\nwinds: [{speed: 4}]\nseconds: 60\n')
+    slow.write_text('import time\ntime.sleep(60.0)\n')
+    words = ['study', str(study), '-o', str(tmp_path / 'o.csv'), '--workers', '2']
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', *words]
+    environment = {**os.environ, 'DASK_DISTRIBUTED__WORKER__PRELOAD': f'["{slow}"]'}
+    with subprocess.Popen(command, start_new_session=True, env=environment) as process:
+        workers = until(lambda: workers_of(process.pid), 60.0)
+        began = time.monotonic()
+        os.killpg(process.pid, signal.SIGINT)
+        assert process.wait(40.0) == 130
+        assert time.monotonic() - began < 20.0
+        until(lambda: not any(Path('/proc', str(each)).exists() for each in workers), 10.0)
+
+
 def until(found, seconds):
     """Return what is found as soon as there is something."""
     end = time.monotonic() + seconds
@@ -303,7 +321,8 @@ def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, ca
 def test_no_page_of_the_cluster_answers_other_users() -> None:
     psutil = pytest.importorskip('psutil', reason='needs psutil')
     answered = {}
-    with cluster._processes_here(1):
+    with cluster._processes_here(1) as (_, client):
+        client.wait_for_workers(1, timeout=60.0)
         me = psutil.Process()
         sockets = (each for one in [me, *me.children(recursive=True)] for each in
                    one.net_connections(kind='tcp'))  # fmt: skip

@@ -26,7 +26,7 @@ UNUSED = 30 * 86_400.0
 """Time without a read after which a kernel is removed [s]."""
 
 _PART_LEFT = 3600.0
-"""Age after which an unfinished file is removed [s]."""
+"""Age after which an unfinished file or a claim is removed [s]."""
 
 _BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
@@ -54,8 +54,8 @@ def kernel_folder() -> Path | None:
                 probe.write(b'\0' * 4096)
         except OSError:
             continue
-        # Kernels that are no longer read, and unfinished files.
-        for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT)):
+        # Kernels that are no longer read, and what processes left that were killed.
+        for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT), ('claim', _PART_LEFT)):
             for path in place.glob(f'*.{suffix}'):
                 with suppress(OSError):
                     if time.time() - path.lstat().st_mtime > age:

@@ -23,6 +23,12 @@ WHY_PLAIN = why_no_compiler()
 
 _LOOSE = {'contract', 'reassoc', 'nsz'}
 
+LOOP_OPTIONS = {
+    'fastmath': _LOOSE, 'forceinline': True, 'error_model': 'numpy', 'nogil': True,
+    'no_cfunc_wrapper': True, '_nrt': False,
+}  # fmt: skip
+"""How functions are compiled that are parts of kernels."""
+
 _COMPILER = threading.Lock()
 """Held while the collector is off. numba itself compiles for one thread at a time."""
 
@@ -59,8 +65,7 @@ def part(function: _F) -> _F:
     if not WHY_PLAIN:
         from numba.extending import register_jitable
 
-        options = {'error_model': 'numpy', 'nogil': True, 'no_cfunc_wrapper': True, '_nrt': False}
-        register_jitable(fastmath=_LOOSE, forceinline=True, **options)(function)
+        register_jitable(**LOOP_OPTIONS)(function)
     return function
 
 

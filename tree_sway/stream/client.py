@@ -277,7 +277,8 @@ class StreamClient:
             message = await socket.receive()
             if message.type in _ENDS:
                 raise TransportError(f'the server closed the line ({socket.close_code})')
-            if message.type is aiohttp.WSMsgType.ERROR:
+            is_broken = message.type is aiohttp.WSMsgType.ERROR
+            if is_broken and not isinstance(message.data, aiohttp.WebSocketError):
                 raise TransportError(f'the line broke ({message.data})')
             try:
                 self._take(message)

@@ -15,8 +15,8 @@ from contextlib import contextmanager, ExitStack, suppress
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from multiprocessing import resource_tracker
-import os
+from multiprocessing import active_children, resource_tracker
+from multiprocessing.process import BaseProcess
 import signal
 import sys
 import threading
@@ -36,6 +36,8 @@ _PATIENCE = 15.0
 """Longest wait for a scheduler and for its first worker [s]."""
 _REPEAT = 2.0
 """Time after which Ctrl-C that had no effect is repeated [s]."""
+_KILL_PERIOD = 0.05
+"""Interval at which workers that have just started are looked for, to end them [s]."""
 _SCHEMES = ('tcp://', 'tls://')
 _LIBRARIES = ('numpy', 'scipy', 'numba')
 
@@ -211,8 +213,9 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
     """
     Dask and a client of separate processes, which end at once with the study.
 
-    Only this process handles Ctrl-C, and not before dask is loaded and the cluster up, half of
-    which it would leave open. Its log is silent until the last of its threads has ended.
+    Only this process handles Ctrl-C, and not before the scheduler is up, half of which it would
+    leave open; workers, which take seconds, start after that. The log is silent until the last
+    thread has ended.
     """
     within('--workers', workers, 1, 1024)
     settings: dict[str, Any] = {
@@ -222,25 +225,36 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
         'distributed.worker.http.routes': [],
     }
     page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
+    dask, distributed = import_module('dask'), import_module('distributed')
+    import_module('cryptography')  # keys that exclude other users of this machine
+    before = active_children()
     with delayed_interrupt() as delayed:
-        dask, distributed = import_module('dask'), import_module('distributed')
-        import_module('cryptography')  # keys that exclude other users of this machine
         with (
             dask.config.set(settings),
             distributed.utils.silence_logging_cmgr('CRITICAL'),
             distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',
+                n_workers=0, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',
                 scheduler_kwargs={'allowed_failures': ATTEMPTS - 1, **page}, security=True,
             ) as local,
             distributed.Client(local) as client,
         ):  # fmt: skip
             try:
                 delayed.close()
+                local.scale(workers)
                 yield distributed, client
             except BaseException:  # Ctrl-C: running cases are computed in the next run
-                for worker in local.workers.values():
-                    os.kill(worker.pid, signal.SIGKILL)
+                is_closed = threading.Event()
+                delayed.callback(is_closed.set)
+                threading.Thread(target=_kill_workers, args=(before, is_closed)).start()
                 raise
+
+
+def _kill_workers(others: Sequence[BaseProcess], is_closed: threading.Event) -> None:
+    """Kill the children that are not among others, also those that start until it is closed."""
+    while not is_closed.wait(_KILL_PERIOD):
+        for worker in active_children():
+            if worker not in others:
+                worker.kill()
 
 
 def delayed_interrupt() -> ExitStack:

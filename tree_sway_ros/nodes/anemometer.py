@@ -21,7 +21,9 @@ class AnemometerNode(TreeSwayNode):
 
     def configure(self) -> None:
         """Make the wind."""
-        self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
+        self._writer = WindWriter(
+            **self.values.subset('output_type', 'direction_convention', 'frame_id')
+        )
         self._model = self._make_model()
         self._faults = self._make_faults()
         self._ticks = self._faulty_since = 0
@@ -57,7 +59,7 @@ class AnemometerNode(TreeSwayNode):
 
     def _make_model(self) -> AnemometerModel:
         names = ('mean_speed', 'bearing_to', 'height', 'intensity', 'rate', 'seed')
-        return AnemometerModel(**self.values(*names))
+        return AnemometerModel(**self.values.subset(*names))
 
     def _tick(self, tick: Tick) -> None:
         self._ticks += tick.periods

@@ -27,7 +27,9 @@ class PlayerNode(TreeSwayNode):
             raise ParameterError('no file to play', cure='give -p file:=wind.csv')
         options: dict[str, Any] = {**reader_options(self.values['reader_options'].split())}
         self._record = read_wind(self.values['file'], **options)
-        self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
+        self._writer = WindWriter(
+            **self.values.subset('output_type', 'direction_convention', 'frame_id')
+        )
         has_clock = self.values['publish_clock']
         self._wind = self.publisher(WIND, self._writer.message_class, is_replay=has_clock)
         for note in self._record.notes:
@@ -50,7 +52,7 @@ class PlayerNode(TreeSwayNode):
             self._rows.time, self._publish,
             may_start=lambda: self._wind.get_subscription_count() > 0, on_end=self._end,
             on_error=self.fail, start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
-            **self.values('rate', 'loop'),
+            **self.values.subset('rate', 'loop'),
         )  # fmt: skip
         self.report_with(self._record.source, self._report)
 

@@ -33,7 +33,9 @@ class SensorNode(TreeSwayNode):
 
     def configure(self) -> None:
         """Prepare the link."""
-        self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
+        self._writer = WindWriter(
+            **self.values.subset('output_type', 'direction_convention', 'frame_id')
+        )
         self._publisher = self.publisher(WIND, self._writer.message_class)
         self._recent = RecentCounts()
         opened = open_source(self.values['address'])
@@ -45,7 +47,7 @@ class SensorNode(TreeSwayNode):
             taken=self.guard.wrapped(self._publish),
             silence=self.values['silence'] if is_of_lines else None,
         )
-        self.on_change(self.values())
+        self.on_change(self.values.subset())
         self.create_timer(_GUSTS_EVERY, self._blow, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.report_with(self.values['address'], self._report)
 

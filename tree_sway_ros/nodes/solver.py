@@ -20,6 +20,7 @@ from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.tuning import LIVE
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import shard_of
 from tree_sway.core.scene.wind_at import wind_at
@@ -43,7 +44,8 @@ from tree_sway_ros.process.topics import (
     WIND_FILTERED,
     WIND_THERE,
 )
-from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.reports.diagnostics import Status
+from tree_sway_ros.reports.refusals import Refusals
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
@@ -55,29 +57,40 @@ _LEAF_CLUSTERS = 1000
 _FARTHEST_CAMERA = 1e6
 """Distance along each axis [m]."""
 
-_STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
-"""Largest force [N], and time [s] after which a push ends if it is not repeated."""
+_STRONGEST_PUSH = 1e5
+"""Largest force of a push [N]."""
+_PUSH_LASTS = 0.5
+"""Time [s] after which a push ends if it is not repeated."""
 
 _PATIENCE = 0.5
 """Time [s] of the machine for which a replay waits for a sample."""
 
-_LOOK = 0.05
+_NO_WAIT = -1
+"""In place of the newest sample of a wait in vain, before any such wait: no stamp is negative."""
+
+_STOP_CHECK = 0.05
 """Interval [s] of checks whether the node is ended while it waits."""
 
 
 class SolverNode(TreeSwayNode):
-    """Subscribes `wind/filtered`; publishes poses, markers and state; tells the wind at places."""
+    """
+    Subscribes to `wind/filtered`; publishes poses, markers and state.
+
+    It answers questions for the wind at a place, and takes pushes, pulls and motion sensors.
+    """
 
     def configure(self) -> None:
         """Open the tree, reduce it and prepare its kernels."""
-        began, log = time.monotonic(), self.get_logger().info
+        began = time.monotonic()
+        log = self.get_logger().info
         log(f"opening tree '{self.values['tree']}'")
         source = self._open()
         log(
             f'reducing {source.tree.n_segments} segments and preparing the kernels (where no '
             'cache has them they are compiled, up to a minute)'
         )
-        self._make(source)
+        self._make_run(source)
+        self._make_interfaces(source)
         for warning in source.warnings:
             self.get_logger().warning(warning)
         for note in source.notes:
@@ -88,11 +101,12 @@ class SolverNode(TreeSwayNode):
         )
 
     def activate(self) -> None:
-        """Begin to sway from rest."""
+        """Start the steps and the stream."""
         self._state.start()
         self.run_worker(self.pacer)
 
-    def _open(self) -> Any:
+    def _open(self) -> Scene:
+        """Open the trees that this node sways, where they stand."""
         named = self.values['species']
         source = open_scene(
             self.values['tree'], wood=lambda found: species_named(named) if named else found
@@ -101,28 +115,32 @@ class SolverNode(TreeSwayNode):
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
         return shard_of(moved, self.values['shard.index'], self.values['shard.count'])
 
-    def _make(self, source: Any) -> None:
-        settings = Settings(
-            **self.values('model', 'gravity'),
+    def _settings(self) -> Settings:
+        """Return the settings of the model by the parameters."""
+        return Settings(
+            **self.values.subset('model', 'gravity'),
             volume_stiffness=self.values['volume_rule.stiffness'],
             volume_damping=self.values['volume_rule.damping'],
             in_leaf=LEAVES[self.values['leaves']],
             damping_ratio=self.values['damping_ratio'] or None,
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
+
+    def _make_run(self, source: Scene) -> None:
+        """Make the simulator and what steps it, and compile its kernels."""
+        self._camera: tuple[float, float, float] | None = None
+        self._tuned: dict[str, float] = {}
+        self._arrived = threading.Event()
+        self._missed: int | None = _NO_WAIT
         places = places_of(self.values['imu'])
+        settings = self._settings()
         self.simulator: Simulator = (
             source.observed(settings, places, self.values['rate'])
             if places
-            else source.simulator(settings, **self.values('tolerance'))
+            else source.simulator(settings, **self.values.subset('tolerance'))
         )
         if self.values['stiffness_factor'] != 1.0:
-            self.simulator.tune(**self.values('stiffness_factor'))
-        self._camera: Any = None
-        self._tuned: dict[str, float] = {}
-        self._refused = dict.fromkeys(('camera', 'push', 'pull', 'wind_at', 'change'), (0, ''))
-        self._arrived = threading.Event()
-        self._missed: int | None = -1
+            self.simulator.tune(**self.values.subset('stiffness_factor'))
         self.pacer = self.pacer_of(self._tick)
         self._run = Run(
             self.simulator,
@@ -135,8 +153,12 @@ class SolverNode(TreeSwayNode):
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
         self.simulator.reset()  # on the requested model
+
+    def _make_interfaces(self, source: Scene) -> None:
+        """Make publishers, subscriptions, services and the report."""
+        self.refusals = Refusals(('camera', 'push', 'pull', 'wind_at', 'change'))
         self._sway_report = SwayReport()
-        leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
+        leaves = source.leaves(LEAVES[self.values['leaves']], _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
@@ -170,22 +192,22 @@ class SolverNode(TreeSwayNode):
         at = message.pose.position
         camera = (at.x, at.y, at.z)
         if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # false for NaN
-            self._refuse('camera', 'not finite or too far away')
+            self.refusals.note('camera', 'not finite or too far away')
             return
         self._camera = camera
-        self.on_change({})
+        self._request_demand()
 
     def _answer(self, message: Any) -> None:
         """Publish the wind at the place of a question, with its stamp."""
         frame_id, known = message.header.frame_id, self.values['frame_id']
         if frame_id not in ('', known):
-            self._refuse('wind_at', f"'{frame_id}' is not the frame of the poses, '{known}'")
+            self.refusals.note('wind_at', f"'{frame_id}' is not the frame of the poses, '{known}'")
             return
         at = message.point
         try:
             wind = wind_at(self.simulator, (at.x, at.y, at.z))
         except ParameterError as error:
-            self._refuse('wind_at', str(error))
+            self.refusals.note('wind_at', str(error))
             return
         answer = Vector3Stamped(header=message.header)
         answer.header.frame_id = known
@@ -193,19 +215,21 @@ class SolverNode(TreeSwayNode):
         self._wind_there.publish(answer)
 
     def _take_push(self, message: Any) -> None:
-        frames, frame_id = self.stream.tree_frames, message.header.frame_id
-        force, segment = message.wrench.force, frames.row(message.header.frame_id)
+        frames = self.stream.tree_frames
+        frame_id = message.header.frame_id
+        segment = frames.row(frame_id)
+        force = message.wrench.force
         components = (force.x, force.y, force.z)
         if segment is None:
             why = f"'{frame_id}' is the frame of no segment: one is '{frames.example}'"
-            self._refuse('push', why)
+            self.refusals.note('push', why)
         elif not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
-            self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
+            self.refusals.note('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
             frames.show(segment)
             self._run.request(
                 lambda: self._push(segment, components),
-                lambda why: self._refuse('push', why),
+                lambda why: self.refusals.note('push', why),
             )
 
     def _push(self, segment: int, components: tuple[float, float, float]) -> None:
@@ -215,20 +239,18 @@ class SolverNode(TreeSwayNode):
 
     def _take_pull(self, message: Any) -> None:
         try:
-            why = self._hands.pull(json.loads(message.data), lambda why: self._refuse('pull', why))
+            why = self._hands.pull(
+                json.loads(message.data), lambda why: self.refusals.note('pull', why)
+            )
         except (ValueError, RecursionError) as error:
             why = f'not JSON ({error})'
         if why is not None:
-            self._refuse('pull', why)
+            self.refusals.note('pull', why)
 
     def _pull(
         self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
     ) -> None:
         self._run.pull(segment, to, stiffness, refused)
-
-    def _refuse(self, what: str, why: str) -> None:
-        """Count refused pushes, for the report."""
-        self._refused[what] = self._refused[what][0] + 1, why
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a change that is impossible while the trees sway."""
@@ -251,16 +273,21 @@ class SolverNode(TreeSwayNode):
         if changes and self.is_active:
             self._tuned |= changes
             self._run.request(
-                lambda: self.simulator.tune(**changes), lambda why: self._refuse('change', why)
+                lambda: self.simulator.tune(**changes),
+                lambda why: self.refusals.note('change', why),
             )
+        self._request_demand()
+
+    def _request_demand(self) -> None:
+        """Ask for the demand of the model ``auto`` to be set before the next step."""
         if self.values['model'] == 'auto':
-            self._run.request(self._set_demand, lambda why: self._refuse('change', why))
+            self._run.request(self._set_demand, lambda why: self.refusals.note('change', why))
 
     def _set_demand(self) -> None:
         set_demand(
             self.simulator.simulators,
             camera=self._camera,
-            **self.values('tolerance', 'tolerance_angle', 'budget'),
+            **self.values.subset('tolerance', 'tolerance_angle', 'budget'),
         )
 
     def note_failure(self, error: Exception) -> None:
@@ -281,8 +308,8 @@ class SolverNode(TreeSwayNode):
 
     def _await_wind(self, to: int) -> None:
         """Wait for a sample that acts before a time in [ns], once for each that does not come."""
-        delay, newest = self.values['wind_delay'], self._run.newest
-        if newest == self._missed:
+        delay = self.values['wind_delay']
+        if self._run.newest == self._missed:
             return
         end = time.monotonic() + _PATIENCE
         while not self.pacer.is_stopping:
@@ -293,7 +320,7 @@ class SolverNode(TreeSwayNode):
             if left <= 0.0:
                 self._missed = self._run.newest
                 return
-            self._arrived.wait(min(left, _LOOK))
+            self._arrived.wait(min(left, _STOP_CHECK))
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish due messages."""
@@ -322,7 +349,5 @@ class SolverNode(TreeSwayNode):
         statuses = self._sway_report.statuses(
             self._run, self.pacer, self.stream.frames, replay, wind, poses
         )
-        for what, (count, why) in self._refused.items():
-            level, text = (WARN, f'{count} refused: {why}') if count else (OK, 'none refused')
-            statuses.append(Status(what, level, text, {'refused': count}))
+        statuses += self.refusals.statuses()
         return statuses if self._imu is None else [*statuses, *self._imu.statuses()]

@@ -54,8 +54,8 @@ class ViewerNode(TreeSwayNode):
     def configure(self) -> None:
         """Subscribe to the description, and prepare the controls."""
         self._settings = PageSettings(
-            **self.values('address', 'port', 'token_file', 'certificate', 'private_key'),
-            **self.values('max_clients'),
+            **self.values.subset('address', 'port', 'token_file', 'certificate', 'private_key'),
+            **self.values.subset('max_clients'),
             origins=tuple(self.values['origins'].split()),
         )
         require_token(self._settings.address, read_token(self._settings.token_file))

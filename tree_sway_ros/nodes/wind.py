@@ -43,8 +43,8 @@ class WindNode(TreeSwayNode):
     def configure(self) -> None:
         """Subscribe and publish; samples are dropped while inactive."""
         self._report = WindReport()
-        self._convention = WindConvention(**self.values(*_CONVENTION))
-        self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
+        self._convention = WindConvention(**self.values.subset(*_CONVENTION))
+        self._intake = WindIntake(self._convention, WindGate(**self.values.subset(*_GATE)))
         self._convention.force_plane_quaternion(np.array([1.0, 0.0, 0.0]))  # loads what it needs
         self._attitude: Any = None
         self._frames: Any = None
@@ -67,7 +67,7 @@ class WindNode(TreeSwayNode):
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Apply a new convention from the next sample on."""
-        self._convention = WindConvention(**self.values(*_CONVENTION))
+        self._convention = WindConvention(**self.values.subset(*_CONVENTION))
         self._intake.convention = self._convention
 
     def _receive(self, message: Any, info: Mapping[str, Any]) -> None:

@@ -90,7 +90,7 @@ class ParameterValues:
         """Value of a parameter in its own type: a float is a float even if ROS was given 40."""
         return self._values[name]
 
-    def __call__(self, *names: str) -> dict[str, Value]:
+    def subset(self, *names: str) -> dict[str, Value]:
         """Values of some parameters, as keyword arguments."""
         return {name: self._values[name] for name in names}
 

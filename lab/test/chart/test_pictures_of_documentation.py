@@ -31,15 +31,20 @@ def test_a_picture_is_of_the_figures_beside_it(name: str) -> None:
 
 
 @pytest.mark.long
-def test_the_errors_of_the_models_are_those_of_the_code() -> None:
-    models = ('20', 'full', 'branch')
+@pytest.mark.parametrize(
+    ('kind', 'models'),
+    [(KINDS[0], ('20', 'full', 'branch')), *((each, ('60',)) for each in KINDS)],
+)
+def test_the_errors_of_the_models_are_those_of_the_code(
+    kind: str, models: tuple[str, ...]
+) -> None:
     figures = {
-        r['model']: (float(r['error']), float(r['roughness']))
-        for r in rows('fidelity')
-        if r['tree'] == KINDS[0] and r['model'] in models
+        row['model']: (float(row['error']), float(row['roughness']))
+        for row in rows('fidelity')
+        if row['tree'] == kind and row['model'] in models
     }
     assert set(figures) == set(models)
-    for point in points_of(KINDS[0], models):
+    for point in points_of(kind, models):
         drawn = figures[point.model]
         assert (point.error, point.roughness) == pytest.approx(drawn, rel=0.01), CURE
 

@@ -12,7 +12,7 @@ from tree_sway_lab.commands import COMMANDS
 from tree_sway_lab.kinds.kinds import HANGING, kind_called, KINDS
 from tree_sway_lab.tip_error import roughness
 from tree_sway_lab.validation import truth
-from tree_sway_lab.validation.trial import judged_simulator, tried
+from tree_sway_lab.validation.trial import has_mujoco, judged_simulator, MUJOCO, tried
 from tree_sway_lab.validation.truth import Fineness, QUICK, true_frequencies, true_tips
 from tree_sway_lab.validation.winds import FRAME, STEP_FRAME, wind_called
 
@@ -95,4 +95,13 @@ def test_the_command_prints_trials(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(['lab', *example]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith('| tree | wind | model | error | roughness |')
-    assert [line.split(' | ')[2] for line in lines[2:]] == ['default', 'full']
+    beside = ['MuJoCo'] if has_mujoco() else []
+    assert [line.split(' | ')[2] for line in lines[2:]] == [*beside, 'default', 'full']
+
+
+def test_mujoco_is_tried_in_the_same_wind() -> None:
+    pytest.importorskip('mujoco')
+    trial = tried('limbs8', '9', MUJOCO, QUICK)
+    print(f'error {trial.error:.3f}, {trial.cost:.0f} us a frame')
+    assert trial.error < 0.2
+    assert trial.cost > 0.0

@@ -88,8 +88,9 @@ def three_motions() -> Motions:
     """
     Sway the three trees.
 
-    The sensor is an accelerometer with a gyroscope at 0.6 of the stem, mounted at random. The tree
-    that follows it is shown as a page plays it out: smoothed, some steps late.
+    The sensor is an accelerometer with a gyroscope at 0.6 of the stem, whose axes are those of its
+    segment; that is not told. The tree that follows it is shown as a page plays it out: smoothed,
+    and moved back by as many steps as that state is late.
     """
     tree, species = tree_called(TREE)
     name = sensor_places(tree, 1)[0]

@@ -3,8 +3,8 @@
 """
 ``tree-sway lab docs``: what the code knows is put into the pages.
 
-These are the tables of topics, parameters and species, the drawing of the rooms, and the examples
-as notebooks.
+These are the tables of topics, parameters and species, the drawings of the rooms and of measured
+against computed, and the examples as notebooks.
 
 A table is between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
 them is replaced.
@@ -29,6 +29,7 @@ from tree_sway.parameters.parameter import Table, Value
 from tree_sway_lab.chart.fidelity import MODELS
 from tree_sway_lab.commands import COMMANDS as LAB_COMMANDS
 from tree_sway_lab.pages.notebooks import notebook, with_outputs
+from tree_sway_lab.pages.published_drawing import published_drawing
 from tree_sway_lab.pages.rooms import rooms_drawing
 from tree_sway_ros.commands.table import COMMANDS as ROS_COMMANDS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
@@ -45,12 +46,13 @@ EXAMPLES = ('critical_wind_speed', 'response_spectra', 'sheltered_and_open')
 
 DRAWINGS: dict[str, Callable[[], str]] = {
     'doc/pictures/rooms.svg': rooms_drawing,
+    'doc/pictures/published.svg': published_drawing,
     **{
         f'examples/{name}.ipynb': partial(notebook, Path('examples', f'{name}.py'))
         for name in EXAMPLES
     },
 }
-"""Files made whole: a drawing of the source, and the notebooks of the examples."""
+"""Files made whole: drawings of the source and of figures, the notebooks of the examples."""
 
 _TABLE = re.compile(r'(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)', re.DOTALL)
 

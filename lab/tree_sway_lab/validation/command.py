@@ -12,7 +12,7 @@ from tree_sway.commands.progress import bar
 from tree_sway.errors import ParameterError
 from tree_sway_lab.validation.report import SECTIONS, write_validation
 from tree_sway_lab.validation.sections.kinds import JUDGED, MODELS, trial_table, WINDS
-from tree_sway_lab.validation.trial import tried
+from tree_sway_lab.validation.trial import has_mujoco, MUJOCO, tried
 from tree_sway_lab.validation.truth import FINE, QUICK
 
 _DATA = Path('../shared/data')
@@ -41,7 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     trials = parser.add_argument_group('single trials, printed and not written')
     trials.add_argument('--kind', nargs='+', metavar='KIND', help='kinds of trees: willow, palm')
     trials.add_argument('--wind', nargs='+', metavar='WIND', help='9 for 9 m/s, step, up')
-    trials.add_argument('--model', nargs='+', metavar='MODEL', help='default, 60, full')
+    trials.add_argument(
+        '--model',
+        nargs='+',
+        metavar='MODEL',
+        help=f'default, 60, full, {MUJOCO} (one joint a segment, one step a frame); default, full '
+        f'and {MUJOCO} if it is installed, if left out',
+    )
     trials.add_argument(
         '--quick', action='store_true', help=f'a coarser truth: {QUICK} where it is {FINE}'
     )
@@ -50,9 +56,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the page and name what misses its limit, or print trials."""
     if arguments.kind or arguments.wind or arguments.model:
-        cases = list(
-            product(arguments.kind or JUDGED, arguments.wind or WINDS, arguments.model or MODELS)
-        )
+        models = arguments.model or (*MODELS, *(name for name in [MUJOCO] if has_mujoco()))
+        cases = list(product(arguments.kind or JUDGED, arguments.wind or WINDS, models))
         fineness = QUICK if arguments.quick else FINE
         print(trial_table([tried(*case, fineness) for case in bar(cases, 'trials')]), end='')
         return 0

@@ -10,8 +10,8 @@ The three are given together: a model can be near the truth and shake, or be smo
 from __future__ import annotations
 
 from functools import lru_cache
+import importlib.util
 import math
-import time
 from typing import NamedTuple
 
 import numpy as np
@@ -19,14 +19,27 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
+from tree_sway_lab.bench.frame_time import frame_times
+from tree_sway_lab.compare.engines import MODULES, run_engines
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.model_names import simulator_called
 from tree_sway_lab.tip_error import record_tips, roughness, tip_error
-from tree_sway_lab.validation.truth import FINE, Fineness, SETTINGS, true_tips, WOOD
+from tree_sway_lab.validation.truth import (
+    DAMPING_RATIO,
+    FINE,
+    Fineness,
+    GRAVITY,
+    SETTINGS,
+    true_tips,
+    WOOD,
+)
 from tree_sway_lab.validation.winds import FRAME, STEP_FRAME, wind_called
 
 SECONDS = 6.0
 """Of turbulence."""
+
+MUJOCO = 'MuJoCo'
+"""Name of the engine in place of a model: one joint a segment, one step a frame."""
 
 
 class Trial(NamedTuple):
@@ -47,7 +60,8 @@ class Trial(NamedTuple):
     stride, true_stride
         Largest move of a tip in any frame in [m].
     cost
-        Time to step and to place a frame in [us], the median.
+        CPU time to step and to place a frame in [us], which one frame in ten stays below; of
+        MuJoCo without the wind's force, which is no part of it.
 
     """
 
@@ -74,16 +88,16 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
     wind
         A wind, as of `wind_called`.
     model
-        A model, as of `simulator_called`.
+        A model, as of `simulator_called`, or `MUJOCO`.
     fineness
         Of the truth.
 
     """
     tree, blowing = kind_called(kind), wind_called(wind, SECONDS)
     truth = true_tips(tree, blowing, fineness)
-    simulator = _simulator(kind, model)
-    simulator.reset()
-    tips = record_tips(simulator, tree, blowing[: len(truth)], FRAME)
+    run = _run_of_mujoco if model == MUJOCO else _run_of_ours
+    tips, cost = run(kind, model, blowing)
+    tips = tips[: len(truth)]
     strides, true_strides = _strides(tips), _strides(truth)
     jumps = math.nan, math.nan
     if wind == 'step' and len(strides) >= STEP_FRAME:
@@ -97,8 +111,29 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
         *jumps,
         float(strides.max()),
         float(true_strides.max()),
-        frame_cost(simulator, tree, blowing),
+        cost,
     )
+
+
+def has_mujoco() -> bool:
+    """Whether MuJoCo is installed."""
+    return importlib.util.find_spec(MODULES[MUJOCO]) is not None
+
+
+def _run_of_ours(kind: str, model: str, wind: Floats) -> tuple[Floats, float]:
+    """Tips (t, b, 3) in [m] and cost [us] of a model in a wind."""
+    tree, simulator = kind_called(kind), _simulator(kind, model)
+    simulator.reset()
+    return record_tips(simulator, tree, wind, FRAME), frame_cost(simulator, tree, wind)
+
+
+def _run_of_mujoco(kind: str, _: str, wind: Floats) -> tuple[Floats, float]:
+    """Tips (t, b, 3) in [m] and cost [us] of MuJoCo with a joint a segment and a step a frame."""
+    runs = run_engines(
+        kind_called(kind), WOOD, DAMPING_RATIO, wind, gravity=GRAVITY, match_beam=False,
+        names=(MUJOCO,),
+    )  # fmt: skip
+    return runs[MUJOCO].tips, 1e6 * runs[MUJOCO].cost
 
 
 @lru_cache(maxsize=4)
@@ -112,15 +147,8 @@ def judged_simulator(model: str, tree: Tree) -> SwaySimulator:
 
 
 def frame_cost(simulator: SwaySimulator, tree: Tree, wind: Floats) -> float:
-    """Time to step and to place a frame in [us], the median of 200."""
-    poses = np.empty((tree.n_segments, 7))
-    spent = []
-    for blowing in wind[:200]:
-        begun = time.perf_counter()
-        simulator.step(blowing, FRAME)
-        simulator.place(poses)
-        spent.append(time.perf_counter() - begun)
-    return 1e6 * float(np.median(spent))
+    """CPU time to step and to place a frame in [us], which one frame in ten stays below."""
+    return 1e-3 * sum(frame_times({'ours': simulator}, tree, wind, FRAME)['ours'])
 
 
 def _strides(tips: Floats) -> Floats:

@@ -9,6 +9,8 @@ import sys
 
 import numpy as np
 import pytest
+from tree_sway_lab.kinds.kinds import kind_called
+from tree_sway_lab.validation.trial import judged_simulator
 
 from tree_sway.core.scene.make import make_simulator
 
@@ -50,6 +52,18 @@ def test_no_step_asks_for_memory(fork, model, allocations):
     sway(simulator, out, 2)
     arrays, blocks = allocations(), sys.getallocatedblocks()
     for wind in WINDS * 5:
+        simulator.step(wind, DT)
+    assert allocations() == arrays
+    assert sys.getallocatedblocks() - blocks < 50
+
+
+def test_no_step_of_a_limp_tree_asks_for_memory(allocations):
+    simulator = judged_simulator('24', kind_called('whips'))
+    assert simulator.models[0].is_limp
+    out = np.zeros((simulator.tree.n_segments, 7))
+    sway(simulator, out, 2)
+    arrays, blocks = allocations(), sys.getallocatedblocks()
+    for wind in WINDS:
         simulator.step(wind, DT)
     assert allocations() == arrays
     assert sys.getallocatedblocks() - blocks < 50

@@ -215,13 +215,13 @@ def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
             assert np.linalg.norm(missing) < 0.05 * np.linalg.norm(load / root)
 
 
-def test_the_base_moment_is_that_of_all_coordinates():
+def test_the_wind_moment_is_that_of_all_coordinates():
     one, other = (make_simulator(crooked(1), model=m) for m in (60, 'full'))
     for wind in gusty(6.0, seconds=3.0):
         one.step(wind, DT), other.step(wind, DT)
     before = one.place()
-    assert one.base_moment == pytest.approx(
-        other.base_moment, abs=0.03 * np.abs(other.base_moment).max()
+    assert one.wind_moment == pytest.approx(
+        other.wind_moment, abs=0.03 * np.abs(other.wind_moment).max()
     )
     assert (one.place() == before).all()
 

@@ -70,8 +70,8 @@ def test_moments_are_those_of_each_tree_alone(fork, stand):
     alone = make_simulator(fork(), model=12)
     for simulator in (stand, alone):
         swayed(simulator)
-    assert stand.base_moment.shape == (3, 3)
-    assert stand.base_moment[0] == pytest.approx(alone.base_moment, rel=1e-6)
+    assert stand.wind_moment.shape == (3, 3)
+    assert stand.wind_moment[0] == pytest.approx(alone.wind_moment, rel=1e-6)
 
 
 def test_the_load_of_a_push_is_the_force_where_the_tree_stands(stand):

@@ -54,7 +54,7 @@ def test_defaults_and_overrides(declare):
     assert values['rate'] == 40.0
     assert type(values['rate']) is float
     assert values['normal'] == (0.0, 1.0, 0.0)
-    assert values('delay', 'kind') == {'delay': 0.1, 'kind': 'to'}
+    assert values.subset('delay', 'kind') == {'delay': 0.1, 'kind': 'to'}
     assert node.get_parameter('every').value == 1
 
 

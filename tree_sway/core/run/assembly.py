@@ -32,6 +32,11 @@ LOADED = (
 )  # fmt: skip
 """Fields of a branch's record that are arrays of the model."""
 
+_NO_INERTIA = (
+    'twigs hang or whip, but the segments have no inertia to solve with at their pose: the table '
+    'of a stiffer tree moves them; check diameters and lengths'
+)
+
 
 def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
     """Lay a model out for stepping and placing; with ``plain`` nothing is compiled."""
@@ -47,8 +52,9 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
         assert isinstance(oscillators, LimpStep)
         try:
             oscillators.begin(model, bank)
-        except np.linalg.LinAlgError:  # of absurd sizes: its points have no inertia to solve with
-            return replace(bank, oscillators=_on_table(model, branches, plain, is_limp=False))
+        except np.linalg.LinAlgError:
+            on_table = _on_table(model, branches, plain, is_limp=False)
+            return replace(bank, oscillators=on_table, doubt=_NO_INERTIA)
     return bank
 
 

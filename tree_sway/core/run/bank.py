@@ -87,6 +87,8 @@ class Bank:
     blocks: Records
     mass: float
     plain: bool = bool(WHY_PLAIN)
+    doubt: str = ''
+    """What makes its motion doubtful, a sentence."""
 
     @property
     def n_shown(self) -> int:
@@ -94,7 +96,7 @@ class Bank:
         oscillators: Any = self.oscillators
         return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
 
-    def base_moment(self) -> Floats:
+    def wind_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
         coupling, force = self.branches['coupling'], self.oscillators.forces()
         return np.asarray(np.einsum('bij,bj->i', coupling, force))

@@ -85,15 +85,20 @@ class BranchOscillators(Branchwise):
     shapes = np.zeros((0, 0))
 
     def __init__(
-        self, branches: Records, inertia: Floats, damping: Floats, stiffness: Floats,
+        self,
+        branches: Records,
+        inertia: Floats,
+        damping: Floats,
+        stiffness: Floats,
         weight: Floats,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Make room for the coefficients and the state."""
-        n = len(branches)
         self.branches = branches
-        self.inertia, self.damping, self.stiffness = inertia, damping, stiffness
-        self.work = np.zeros(n, dtype=WORK)
-        self.state = np.zeros((2, 2 * n))
+        self.inertia = inertia
+        self.damping = damping
+        self.stiffness = stiffness
+        self.work = np.zeros(len(branches), dtype=WORK)
+        self.state = np.zeros((2, 2 * len(branches)))
         self.x, self.v = self.state
         self.tunable = Tunable(stiffness, damping, inertia, weight)
         """Arrays that change with stiffness, damping and gravity."""
@@ -102,17 +107,20 @@ class BranchOscillators(Branchwise):
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
-        n = len(self.branches)
-        whole, half, guard = np.zeros((n, 8)), np.zeros((n, 8)), np.zeros((n, 3))
+        count = len(self.branches)
+        whole, half = np.zeros((2, count, 8))
+        guard = np.zeros((count, 3))
         fill_propagator(self.inertia, self.damping, self.stiffness, dt, whole)
         fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, half)
         fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, guard)
+        # A constant load is the same at the begin and at the end of the half step.
         constant = half[:, [0, 1, 2, 4, 5, 6]]
         constant[:, [2, 5]] += half[:, [3, 7]]
-        block, slot = np.divmod(np.arange(n), WIDTH)
         damping_square = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
-        for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
-            self.loads[name][block, :, slot] = rows
+        block, slot = np.divmod(np.arange(count), WIDTH)
+        self.loads['whole'][block, :, slot] = whole
+        self.loads['half'][block, :, slot] = constant
+        self.loads['guard'][block, :, slot] = guard
         self.loads['compliance'][block, slot] = damping_square * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -157,12 +165,12 @@ def _advance(
     branches: Branches, work: Works, banks: Banks, state: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    x, v = state[0], state[1]
-    n = len(branches)
-    for b in range(n):
-        group, j = banks[b // WIDTH], b % WIDTH
-        for k in range(2):
-            group.now_x[k, j], group.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+    angles, rates = state[0], state[1]
+    for branch in range(len(branches)):
+        bank, slot = banks[branch // WIDTH], branch % WIDTH
+        for axis in range(2):
+            bank.now_x[axis, slot] = angles[2 * branch + axis]
+            bank.now_v[axis, slot] = rates[2 * branch + axis]
     # The load P at the middle of the step, then the step.
     for block in range(len(banks)):
         _to_middle(banks[block])
@@ -172,13 +180,14 @@ def _advance(
     clamped, is_finite = 0, True
     for block in range(len(banks)):
         clamped += _step(banks[block])
-    for b in range(n):
-        group, j = banks[b // WIDTH], b % WIDTH
-        for k in range(3):
-            work[b].force[k] = group.force[k, j]
-        for k in range(2):
-            angle, rate = group.now_x[k, j], group.now_v[k, j]
-            x[2 * b + k], v[2 * b + k] = angle, rate
+    for branch in range(len(branches)):
+        bank, slot = banks[branch // WIDTH], branch % WIDTH
+        for axis in range(3):
+            work[branch].force[axis] = bank.force[axis, slot]
+        for axis in range(2):
+            angle, rate = bank.now_x[axis, slot], bank.now_v[axis, slot]
+            angles[2 * branch + axis] = angle
+            rates[2 * branch + axis] = rate
             if not (math.isfinite(angle) and math.isfinite(rate)):
                 is_finite = False
     return clamped if is_finite else NOT_FINITE
@@ -187,28 +196,38 @@ def _advance(
 @part
 def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches at the middle of the step, under the last step's load."""
-    x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
-    middle_x, middle_v = bank.x, bank.v
-    for j in range(WIDTH):
-        mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
-        middle_x[0, j], middle_x[1, j], _ = within_guard(
-            h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx,
-            h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my,
+    load, half, middle_rate = bank.load, bank.half, bank.v
+    for slot in range(WIDTH):
+        angle_x, angle_y = bank.now_x[0, slot], bank.now_x[1, slot]
+        rate_x, rate_y = bank.now_v[0, slot], bank.now_v[1, slot]
+        moment_x, moment_y = true_force(
+            angle_x, angle_y, load[0, slot], load[1, slot], load[2, slot]
         )
-        middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
-        middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
+        by_angle, by_rate, by_moment = half[0, slot], half[1, slot], half[2, slot]
+        middle_x, middle_y, _square = within_guard(
+            by_angle * angle_x + by_rate * rate_x + by_moment * moment_x,
+            by_angle * angle_y + by_rate * rate_y + by_moment * moment_y,
+        )
+        bank.x[0, slot] = middle_x
+        bank.x[1, slot] = middle_y
+        by_angle, by_rate, by_moment = half[3, slot], half[4, slot], half[5, slot]
+        middle_rate[0, slot] = by_angle * angle_x + by_rate * rate_x + by_moment * moment_x
+        middle_rate[1, slot] = by_angle * angle_y + by_rate * rate_y + by_moment * moment_y
 
 
 @part
 def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were clamped."""
-    x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
+    angle, rate, load = bank.now_x, bank.now_v, bank.load
+    whole, guard = bank.whole, bank.guard
     clamped = 0
-    for j in range(WIDTH):
-        x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
-            x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
-            c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
-            g[0, j], g[1, j], g[2, j],
+    for slot in range(WIDTH):
+        angle[0, slot], angle[1, slot], rate[0, slot], rate[1, slot], is_over = step_branch(
+            angle[0, slot], angle[1, slot], rate[0, slot], rate[1, slot],
+            load[0, slot], load[1, slot], load[2, slot],
+            whole[0, slot], whole[1, slot], whole[2, slot], whole[3, slot],
+            whole[4, slot], whole[5, slot], whole[6, slot], whole[7, slot],
+            guard[0, slot], guard[1, slot], guard[2, slot],
         )  # fmt: skip
-        clamped += over
+        clamped += is_over
     return clamped

@@ -26,12 +26,13 @@ antisymmetric ``G = s r' - r s'``, ``r = M v / (v' M v)``, so that ``G v = s``, 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.kernel import part
+from tree_sway.core.run.dense import add_times, dot, multiply, solve_positive, take_block
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
 FASTEST = 2.5
@@ -40,12 +41,46 @@ Largest angle [rad] by which a coordinate swings in a step with more inertia tha
 infinite at half a turn.
 """
 
-(_solve,) = get_lapack_funcs(('posv',), dtype=np.float64)
 
-
-class CoupledStep:
+class CoupledStep(NamedTuple):
     """
-    Coefficients of a step.
+    Coefficients of a step, and scratch memory.
+
+    A coordinate moves by its coefficients c of a step, (6, m), to ``c0 q + c1 v + c2 f``, at a
+    rate of ``c3 q + c4 v + c5 f``. Of the m coordinates c are coupled.
+    """
+
+    length: float
+    """Length of the step, h, in [s]."""
+    half: Floats
+    """Coefficients of half a step, (6, m)."""
+    whole: Floats
+    """Coefficients of the step, (6, m)."""
+    coupled: Ints
+    """Numbers of the coupled coordinates, (c,)."""
+    stretch: Floats
+    """T of these, (c,)."""
+    per_force: Floats
+    """Acceleration u of these by a force, (c,)."""
+    own: Floats
+    """k of these, (c,)."""
+    damping: Floats
+    """D of these for a drag of 1, (c, c)."""
+    own_damping: Floats
+    """Diagonal of D for a drag of 1, of all coordinates, (m,)."""
+    matrix: Floats
+    """Of the equation above, (c, c)."""
+    rights: Floats
+    """Right-hand sides of this equation, then its solutions, (3, c)."""
+    products: Floats
+    """Scratch memory, (6, c)."""
+
+
+def coupled_step(
+    modal: ModalCoordinates, half: Floats, damping: Floats, leading: int, length: float
+) -> CoupledStep:
+    """
+    Find the coefficients of a step.
 
     Parameters
     ----------
@@ -53,80 +88,139 @@ class CoupledStep:
         Coordinates, with the propagators of this step.
     half
         Coefficients of half a step, as in `table_model.fill_time_step`, (6, m).
+    damping
+        Damping of the coordinates by the air for a drag of 1, (m, m).
     leading
         Number of coordinates that may be coupled.
     length
         Length of the step, h, in [s].
 
     """
-
-    def __init__(self, modal: ModalCoordinates, half: Floats, leading: int, length: float) -> None:
-        self.length = length
-        self._half, self._whole = half.copy(), modal.whole.T[[0, 1, 2, 4, 5, 6]]
-        self._whole[[2, 5]] += modal.whole.T[[3, 7]]
-        angle = np.sqrt(modal.stiffness[:leading]) * length
-        coupled = np.flatnonzero(angle < FASTEST)
-        is_all = len(coupled) == leading
-        self._rows: Any = slice(0, leading) if is_all else coupled
-        self._block: Any = (self._rows, self._rows) if is_all else np.ix_(coupled, coupled)
-        half_angle = np.maximum(0.5 * angle[self._rows], 1e-12)
-        self._stretch = np.tan(half_angle) / half_angle
-        self._per_force = self._whole[5][self._rows] / length
-        """Acceleration of the coupled coordinates by a force."""
-        self._own = self._stretch / self._per_force
-
-    def middle(self, eta: Floats, rate: Floats, force: Floats) -> tuple[Floats, Floats]:
-        """Return coordinates and rates at the middle of the step under a force, all (m,)."""
-        return _moved(self._half, eta, rate, force)
-
-    def end(self, eta: Floats, rate: Floats, force: Floats) -> tuple[Floats, Floats]:
-        """Return coordinates and rates at the end of the step under a force, all (m,)."""
-        return _moved(self._whole, eta, rate, force)
-
-    def force(
-        self, wanted: Floats, eta: Floats, rate: Floats, last: Floats, change: Floats,
-        drag: Floats, across: tuple[Floats, Floats],
-    ) -> Floats:  # fmt: skip
-        """
-        Find the constant force of the step, (m,).
-
-        Parameters
-        ----------
-        wanted
-            Force F at the middle of the step, (m,).
-        eta, rate, last
-            Coordinates and rates before the step, and the force of the last one, (m,).
-        change
-            Inertia of the leading coordinates beyond their own, M - 1, (q, q).
-        drag
-            Damping B by the air [1/s], (m, m).
-        across
-            Force s at right angles to the motion, and r, (q,) both.
-
-        """
-        whole, rows = self._whole, self._rows
-        own_drag = 0.5 * np.diagonal(drag) * whole[5]
-        found = (wanted + own_drag * last) / (1.0 + own_drag)
-        inertia, damping = change[self._block], (0.5 * self.length) * drag[self._block]
-        free = (whole[3] * eta + (whole[4] - 1.0) * rate)[rows] / self.length
-        right = self._stretch * wanted[rows] - inertia @ free
-        right += damping @ (self._per_force * last[rows])
-        steered = rate[rows] + 0.5 * self.length * free
-        turning, along = (each[rows] for each in across)
-        right += turning * (along @ steered) - along * (turning @ steered)
-        matrix = inertia + damping
-        matrix.flat[:: len(matrix) + 1] += self._own
-        _, solved, failed = _solve(matrix, np.stack([right, turning, along], 1), lower=1)
-        if not failed:
-            # Woodbury's formula for the matrix less h G / 2, of rank two.
-            h, sides = 0.5 * self.length, np.stack([along, turning])
-            by_turning, by_along = solved[:, 1], solved[:, 2]
-            columns = np.stack([-h * by_turning, h * by_along], 1)
-            share = np.linalg.solve(np.eye(2) + sides @ columns, sides @ solved[:, 0])
-            found[rows] = (solved[:, 0] - columns @ share) / self._per_force
-        return np.asarray(found)
+    whole = modal.whole.T[[0, 1, 2, 4, 5, 6]]
+    whole[[2, 5]] += modal.whole.T[[3, 7]]
+    angle = np.sqrt(modal.stiffness[:leading]) * length
+    coupled = np.flatnonzero(angle < FASTEST)
+    half_angle = np.maximum(0.5 * angle[coupled], 1e-12)
+    stretch = np.tan(half_angle) / half_angle
+    per_force = whole[5][coupled] / length
+    count = len(coupled)
+    return CoupledStep(
+        length,
+        half=np.ascontiguousarray(half),
+        whole=np.ascontiguousarray(whole),
+        coupled=coupled,
+        stretch=stretch,
+        per_force=per_force,
+        own=stretch / per_force,
+        damping=0.5 * length * damping[np.ix_(coupled, coupled)],
+        own_damping=0.5 * np.diagonal(damping) * whole[5],
+        matrix=np.zeros((count, count)),
+        rights=np.zeros((3, count)),
+        products=np.zeros((6, count)),
+    )
 
 
-def _moved(c: Floats, eta: Floats, rate: Floats, force: Floats) -> tuple[Floats, Floats]:
-    place = c[0] * eta + c[1] * rate + c[2] * force
-    return place, c[3] * eta + c[4] * rate + c[5] * force
+@part
+def move(
+    coefficients: Floats, eta: Floats, rate: Floats, force: Floats, moved: Floats, faster: Floats
+) -> None:
+    """Write coordinates and rates after a step or half of it under a force, all (m,)."""
+    c = coefficients
+    for i in range(len(eta)):
+        q, v, f = eta[i], rate[i], force[i]
+        moved[i] = c[0, i] * q + c[1, i] * v + c[2, i] * f
+        faster[i] = c[3, i] * q + c[4, i] * v + c[5, i] * f
+
+
+@part
+def find_force(
+    law: CoupledStep, wanted: Floats, eta: Floats, rate: Floats, last: Floats, change: Floats,
+    drag: float, across: Floats, momentum: Floats, found: Floats,
+) -> None:  # fmt: skip
+    """
+    Find the constant force of the step.
+
+    Parameters
+    ----------
+    law
+        Coefficients of the step.
+    wanted
+        Force F at the middle of the step, (m,).
+    eta, rate, last
+        Coordinates and rates before the step, and the force of the last one, (m,).
+    change
+        Inertia of the leading coordinates beyond their own, M - 1, (q, q).
+    drag
+        Drag of the air on the coordinates, a factor of their damping.
+    across, momentum
+        Force s at right angles to the motion, and r, (q,) both.
+    found
+        The force, (m,), written.
+
+    """
+    for i in range(len(found)):
+        own_drag = drag * law.own_damping[i]
+        found[i] = (wanted[i] + own_drag * last[i]) / (1.0 + own_drag)
+
+    free, last_pull, turning, along = _sides(law, wanted, eta, rate, last, across, momentum)
+    take_block(change, law.coupled, law.matrix)
+    inertial, dragged = law.products[2], law.products[3]
+    multiply(law.matrix, free, inertial)
+    multiply(law.damping, last_pull, dragged)
+    add_times(law.matrix, drag, law.damping)
+    right = law.rights[0]
+    for k in range(len(right)):
+        right[k] += drag * dragged[k] - inertial[k]
+        law.matrix[k, k] += law.own[k]
+    if solve_positive(law.matrix, law.rights):
+        _turn_with_motion(law, turning, along)
+        for k in range(len(right)):
+            found[law.coupled[k]] = right[k] / law.per_force[k]
+
+
+@part
+def _sides(
+    law: CoupledStep, wanted: Floats, eta: Floats, rate: Floats, last: Floats, across: Floats,
+    momentum: Floats,
+) -> tuple[Floats, Floats, Floats, Floats]:  # fmt: skip
+    """
+    Write the right-hand sides without inertia and drag.
+
+    Returns the accelerations without force, those by the last force, s and r, each (c,).
+    """
+    half, whole = 0.5 * law.length, law.whole
+    free, last_pull = law.products[0], law.products[1]
+    turning, along = law.products[4], law.products[5]
+    right, by_turning, by_along = law.rights[0], law.rights[1], law.rights[2]
+    turning_rate, along_rate = 0.0, 0.0
+    for k in range(len(right)):
+        i = law.coupled[k]
+        free[k] = (whole[3, i] * eta[i] + (whole[4, i] - 1.0) * rate[i]) / law.length
+        last_pull[k] = law.per_force[k] * last[i]
+        turning[k] = by_turning[k] = across[i]
+        along[k] = by_along[k] = momentum[i]
+        steered = rate[i] + half * free[k]
+        turning_rate += turning[k] * steered
+        along_rate += along[k] * steered
+    for k in range(len(right)):
+        forced = law.stretch[k] * wanted[law.coupled[k]]
+        right[k] = forced + turning[k] * along_rate - along[k] * turning_rate
+    return free, last_pull, turning, along
+
+
+@part
+def _turn_with_motion(law: CoupledStep, turning: Floats, along: Floats) -> None:
+    """Add ``h G / 2``, of rank two, to the solved equation by Woodbury's formula."""
+    half = 0.5 * law.length
+    solved, by_turning, by_along = law.rights[0], law.rights[1], law.rights[2]
+    # The matrix of two that is left, and its right-hand sides.
+    one_one = 1.0 - half * dot(along, by_turning)
+    one_two = half * dot(along, by_along)
+    two_one = -half * dot(turning, by_turning)
+    two_two = 1.0 + half * dot(turning, by_along)
+    one, two = dot(along, solved), dot(turning, solved)
+    determinant = one_one * two_two - one_two * two_one
+    share_along = (two_two * one - one_two * two) / determinant
+    share_turning = (one_one * two - two_one * one) / determinant
+    for k in range(len(solved)):
+        solved[k] += half * (by_turning[k] * share_along - by_along[k] * share_turning)

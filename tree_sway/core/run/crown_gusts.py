@@ -37,21 +37,19 @@ class CrownGusts:
         self._delay, self._share = model.limb_delay, model.limb_share
         self.wind = CrownWind(float(model.limb_spread[0]), model.settings.crown_coherence)
         self._oscillators = oscillators
-        self._add_gusts: Callable[..., None] = add_gusts
         if oscillators.loads is None:
-            moments = model.limb_harmonics
-            arrays: tuple[NDArray[Any], ...] = (
-                oscillators.record, oscillators.time_step, oscillators.instance, moments,
-                self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
-            )  # fmt: skip
-            if plain:
-                table, time_step, instance = (views_of(records) for records in arrays[:3])
-                apart = self.wind.record['apart'][0]
-                self._add_gusts = partial(
-                    add_gusts_in_numpy, table, time_step, instance, moments, apart
-                )
-            else:
-                self._add_gusts = partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
+            self._add_gusts = self._bound(model.limb_harmonics, plain=plain)
+
+    def _bound(self, moments: Floats, *, plain: bool) -> Callable[..., None]:
+        """Return `add_gusts`, or its numpy form, with the arrays of the model."""
+        oscillators, apart = self._oscillators, self.wind.record['apart'][0]
+        records = oscillators.record, oscillators.time_step, oscillators.instance
+        if plain:
+            table, time_step, instance = (views_of(each) for each in records)
+            return partial(add_gusts_in_numpy, table, time_step, instance, moments, apart)
+        scratch = np.zeros((3, max(moments[0].shape)))
+        arrays: tuple[NDArray[Any], ...] = *records, moments, apart, scratch
+        return partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
 
     def advance(self, x: float, y: float, z: float, per_speed_squared: float, dt: float) -> int:
         """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
@@ -59,9 +57,10 @@ class CrownGusts:
         if oscillators.loads is not None:
             into_slots(apart[self._delay], oscillators.loads['gust'])
             return int(oscillators.advance(x, y, z, per_speed_squared))
-        ax, ay, az = (self._share @ apart).tolist()
-        outcome = int(oscillators.advance(x + ax, y + ay, z + az, per_speed_squared))
-        self._add_gusts(x, y, z, ax, ay, az, per_speed_squared)
+        mean = (self._share @ apart).tolist()
+        in_mean = x + mean[0], y + mean[1], z + mean[2]
+        outcome = int(oscillators.advance(*in_mean, per_speed_squared))
+        self._add_gusts(x, y, z, *mean, per_speed_squared)
         return outcome
 
 
@@ -92,29 +91,30 @@ def add_gusts(
     """
     table, whole, half = tables[0], time_steps[0].whole, time_steps[0].half
     instance, mean, own, force = instances[0], room[0], room[1], room[2]
+    n_harmonics, n_modes = moments.shape[1], moments.shape[2]
     _load(table, x + ax, y + ay, z + az, per_speed_squared, mean)
     force[:] = 0.0
     for delay in range(len(moments)):
         more = apart[delay]
         _load(table, x + more[0], y + more[1], z + more[2], per_speed_squared, own)
-        for k in range(moments.shape[1]):
-            change = own[k] - mean[k]
-            for i in range(moments.shape[2]):
-                force[i] += change * moments[delay, k, i]
+        for number in range(n_harmonics):
+            change = own[number] - mean[number]
+            for mode in range(n_modes):
+                force[mode] += change * moments[delay, number, mode]
     bent, upright = 0.0, 1e-300
-    for i in range(moments.shape[2]):
+    for mode in range(n_modes):
         at_rest = 0.0
-        for k in range(moments.shape[1]):
-            at_rest += mean[k] * table.harmonics[k, i]
-        bent += at_rest * instance.wanted[i] / table.stiffness[i]
-        upright += at_rest * at_rest / table.stiffness[i]
+        for number in range(n_harmonics):
+            at_rest += mean[number] * table.harmonics[number, mode]
+        bent += at_rest * instance.wanted[mode] / table.stiffness[mode]
+        upright += at_rest * at_rest / table.stiffness[mode]
     share = min(max(bent / upright, 0.0), 1.0)
-    for i in range(moments.shape[2]):
+    for mode in range(n_modes):
         # As in `step_instance`.
-        added = share * force[i] / (1.0 - instance.diagonal[i] * half[5, i])
-        instance.eta[i] += (whole[2, i] + whole[3, i]) * added
-        instance.rate[i] += (whole[6, i] + whole[7, i]) * added
-        instance.force[i] += added
+        added = share * force[mode] / (1.0 - instance.diagonal[mode] * half[5, mode])
+        instance.eta[mode] += (whole[2, mode] + whole[3, mode]) * added
+        instance.rate[mode] += (whole[6, mode] + whole[7, mode]) * added
+        instance.force[mode] += added
 
 
 def add_gusts_in_numpy(
@@ -122,7 +122,7 @@ def add_gusts_in_numpy(
     x: float, y: float, z: float, ax: float, ay: float, az: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """Add to a step what the winds of the limbs do beside their mean, as `add_gusts`."""
-    m = moments.shape[2]
+    shown = slice(moments.shape[2])
     most_pressure = float(table['most_pressure'])
 
     def load(wx: float, wy: float, wz: float) -> Floats:
@@ -132,19 +132,20 @@ def add_gusts_in_numpy(
         return dynamic_pressure * harmonics(wx / speed, wy / speed, wz / speed)
 
     mean = load(x + ax, y + ay, z + az)
-    force = np.zeros(m)
+    force = np.zeros(moments.shape[2])
     for (more_x, more_y, more_z), by_harmonics in zip(apart.tolist(), moments, strict=True):
         force += (load(x + more_x, y + more_y, z + more_z) - mean) @ by_harmonics
-    at_rest = mean @ table['harmonics'][:, :m] / table['stiffness'][:m]
-    bent = float(at_rest @ instance['wanted'][:m])
-    upright = 1e-300 + float(at_rest @ (at_rest * table['stiffness'][:m]))
-    whole, half = time_step['whole'][:, :m], time_step['half'][:, :m]
+    stiffness = table['stiffness'][shown]
+    at_rest = mean @ table['harmonics'][:, shown] / stiffness
+    bent = float(at_rest @ instance['wanted'][shown])
+    upright = 1e-300 + float(at_rest @ (at_rest * stiffness))
+    whole, half = time_step['whole'][:, shown], time_step['half'][:, shown]
     # As in `step_instance`.
     added = min(max(bent / upright, 0.0), 1.0) * force
-    added /= 1.0 - instance['diagonal'][:m] * half[5]
-    instance['eta'][:m] += (whole[2] + whole[3]) * added
-    instance['rate'][:m] += (whole[6] + whole[7]) * added
-    instance['force'][:m] += added
+    added /= 1.0 - instance['diagonal'][shown] * half[5]
+    instance['eta'][shown] += (whole[2] + whole[3]) * added
+    instance['rate'][shown] += (whole[6] + whole[7]) * added
+    instance['force'][shown] += added
 
 
 @part
@@ -153,5 +154,5 @@ def _load(table: Table, x: float, y: float, z: float, per_speed: float, out: Flo
     speed = max(math.sqrt(x * x + y * y + z * z), 1e-12)
     pressure = min(per_speed * speed * speed, table.most_pressure)
     fill_harmonics(x / speed, y / speed, z / speed, out)
-    for k in range(len(out)):
-        out[k] *= pressure
+    for number in range(len(out)):
+        out[number] *= pressure

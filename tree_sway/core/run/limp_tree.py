@@ -18,20 +18,37 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.coupled_step import CoupledStep
+from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
+from tree_sway.core.run.dense import copy, largest, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.run.numpy_table import NumpyTableBank
-from tree_sway.core.run.pose_inertia import PoseInertia
-from tree_sway.core.run.table_model import STATE_FIELDS, WindBasisBank
+from tree_sway.core.run.pose_inertia import (
+    centrifugal_force,
+    COLUMNS,
+    columns_due,
+    HERE,
+    inertia_at_rest,
+    PoseInertia,
+    renew_columns,
+    return_to_rest,
+    turn_along,
+    turn_for_columns,
+    twice_kinetic_energy,
+    weight_potential,
+)
+from tree_sway.core.run.table_model import WindBasisBank
 from tree_sway.core.setup.tree_motion import centre_motion
+from tree_sway.core.vector import Vector
 
 STRONG = 20.0, 25.0
 """
@@ -52,6 +69,61 @@ rises and falls by the error of a step.
 """
 
 
+class LimpMotion(NamedTuple):
+    """
+    Shapes of a limp tree, its state, and memory that the parts of a step share.
+
+    Arrays are of coordinates, (m,), where no other shape is given; N is the number of key
+    rotations.
+    """
+
+    stiffness: Floats
+    by_key: Floats
+    """Shapes, (N, m)."""
+    by_coordinate: Floats
+    """Shapes, (m, N)."""
+    eta: Floats
+    """Coordinates, of the state."""
+    rate: Floats
+    """Their rates, of the state."""
+    force: Floats
+    """Force of the last step, of the state."""
+    last_eta: Floats
+    """Coordinates as the last step left them."""
+    last_rate: Floats
+    """Rates as the last step left them."""
+    middle: Floats
+    """Coordinates and rates at the middle of the step, (2, m)."""
+    rotations: Floats
+    """Key rotations there and their rates, then those at the end of the step, (2, N)."""
+    moments: Floats
+    """Moments of the wind there on the key rotations, at 1 kg/m^3, (N,)."""
+    by_wind: Floats
+    """Force of the wind."""
+    wanted: Floats
+    """Force of wind and weight, of the instance."""
+    across: Floats
+    """Centrifugal force on the leading coordinates, (q,)."""
+    momentum: Floats
+    """Momentum of the leading coordinates over twice the kinetic energy, (q,)."""
+    new: Floats
+    """Coordinates and rates after the step, (2, m)."""
+    new_force: Floats
+    """Force of the step."""
+
+
+def motion_of(model: SwayModel, leading: int) -> LimpMotion:
+    """Make room for the motion of a limp tree with a number of leading coordinates."""
+    n_rotations, m = model.shapes.shape
+    room = {name: np.zeros(m) for name in LimpMotion._fields}
+    room |= {name: np.zeros((2, m)) for name in ('middle', 'new')}
+    room['rotations'], room['moments'] = np.zeros((2, n_rotations)), np.zeros(n_rotations)
+    room |= {name: np.zeros(leading) for name in ('across', 'momentum')}
+    room['by_key'] = np.ascontiguousarray(model.shapes)
+    room['by_coordinate'] = np.ascontiguousarray(model.shapes.T)
+    return LimpMotion(**room)
+
+
 class LimpStep(WindBasisBank):
     """What a limp tree does in place of the step of a table; a base of a bank."""
 
@@ -59,21 +131,22 @@ class LimpStep(WindBasisBank):
         """Prepare the law of a model, by a bank that places it."""
         mass = model.segment_mass
         down = np.multiply.outer(np.sqrt(mass), [0.0, 0.0, -model.settings.gravity]).ravel()
-        self._middles = Middles(bank, mass, model.tree.length)
-        self.pose = PoseInertia(self._middles, model.shapes, down, model.weight_slopes)
-        self._here, self._room = np.zeros((2, len(down)))
-        self._by_key = np.ascontiguousarray(model.shapes)
-        self._by_coordinate = np.ascontiguousarray(model.shapes.T)
+        self.middles = Middles(bank, mass, model.tree.length)
+        self.pose = inertia_at_rest(self.middles, model.shapes, down, model.weight_slopes)
+        self.limp_motion = motion_of(model, len(self.pose.change))
         moved = centre_motion(self.branches, model.shapes).reshape(-1, model.n_coordinates)
         drag = np.repeat(2.0 * self.branches['area'] * self.branches['speed'], 3)
         self._drag = moved.T @ (drag[:, None] * moved)
         """Damping of the coordinates by still air, per drag and speed, (m, m)."""
         self._law: CoupledStep | None = None
-        self._stiffness, self._last = np.zeros(0), (np.zeros(0), np.zeros(0))
+        self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
         self._begin_anew()
 
     def _begin_anew(self) -> None:
-        self._pause, self._is_fresh = 0.0, True
+        self._pause, self._next_column = 0.0, 0
+        self.limp_motion.last_eta[:] = 0.0
+        self.limp_motion.last_rate[:] = 0.0
+        return_to_rest(self.pose)
         self._forget()
 
     def _forget(self) -> None:
@@ -83,11 +156,18 @@ class LimpStep(WindBasisBank):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         super().set_step(dt)
-        if not np.array_equal(self.modal.stiffness, self._stiffness):
-            self._stiffness = self.modal.stiffness.copy()
+        if not np.array_equal(self.modal.stiffness, self.limp_motion.stiffness):
+            self.limp_motion.stiffness[:] = self.modal.stiffness
             self._forget()
-        half = self.time_step[0]['half'][:, : len(self._stiffness)]
-        self._law = CoupledStep(self.modal, half, len(self.pose.change), dt)
+        m = len(self.modal.stiffness)
+        half = self.time_step[0]['half'][:, :m]
+        self._law = coupled_step(self.modal, half, self._drag, len(self.pose.change), dt)
+        eta, rate, force = self.swing
+        # Gusts that reach the limbs one after another are added by the force of the step.
+        wanted = self.instance['wanted'][0, :m]
+        self.limp_motion = self.limp_motion._replace(
+            eta=eta, rate=rate, force=force, wanted=wanted
+        )
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `WindBasisBank.advance`."""
@@ -102,7 +182,6 @@ class LimpStep(WindBasisBank):
     def reset(self) -> None:
         """Return to rest."""
         super().reset()
-        self.pose.reset()
         self._wind_moments.reset()
         self._begin_anew()
 
@@ -119,31 +198,32 @@ class LimpStep(WindBasisBank):
 
     def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Step; returns 1 where the table's step was clamped to its limit."""
-        instance, law = self.instance[0], self._law
-        share = self._share_of_table(math.sqrt(wx * wx + wy * wy + wz * wz))
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        share, law = self._share_of_table(speed), self._law
         if share == 1.0 or law is None:
-            self._is_fresh = False
+            self._forget()
             return int(self._step(wx, wy, wz, per_speed_squared))
-        state = [instance[name][: len(self._stiffness)] for name in STATE_FIELDS[:3]]
-        if not all(map(np.array_equal, state[:2], self._last)):
-            self._is_fresh = False
-        if not self._is_fresh:
-            self._forget()
-        at_pose = self._step_at_pose(law, np.array([wx, wy, wz]), per_speed_squared)
-        if at_pose is None:
+        if not self._step_at_pose(law, (wx, wy, wz), speed, per_speed_squared):
             self._pause, share = PAUSE, 1.0
-        outside = 0
-        if share > 0.0:
-            outside = int(self._step(wx, wy, wz, per_speed_squared))
             self._forget()
+            return int(self._step(wx, wy, wz, per_speed_squared))
+        instance, outside = self.instance[0], 0
+        if share > 0.0:
+            self._forget()
+            outside = int(self._step(wx, wy, wz, per_speed_squared))
         else:
             instance['wind'], instance['pressure'] = (wx, wy, wz), per_speed_squared
             instance['outside'], instance['diagonal'] = 0, 0.0
-        if at_pose is not None:
-            for now, own in zip(state, at_pose, strict=True):
-                now[:] = own + share * (now - own)
-        self._last = state[0].copy(), state[1].copy()
+        self._take(share)
         return outside
+
+    def _take(self, share: float) -> None:
+        """Take the step at the pose, but for the share of a step by the table."""
+        motion = self.limp_motion
+        state, new = (motion.eta, motion.rate, motion.force), (*motion.new, motion.new_force)
+        for now, own in zip(state, new, strict=True):
+            now[:] = own if share == 0.0 else own + share * (now - own)
+        motion.last_eta[:], motion.last_rate[:] = motion.eta, motion.rate
 
     def _share_of_table(self, speed: float) -> float:
         """Weight of the table's step in a wind [m/s], 0 to 1."""
@@ -154,67 +234,39 @@ class LimpStep(WindBasisBank):
         return min(max(by_wind, self._pause / PAUSE, 0.0), 1.0)
 
     def _step_at_pose(
-        self, law: CoupledStep, wind: Floats, per_speed_squared: float
-    ) -> tuple[Floats, Floats, Floats] | None:
+        self, law: CoupledStep, wind: Vector, speed: float, per_speed_squared: float
+    ) -> bool:
         """
         Find coordinates, rates and force after a step with the inertia and the loads of the pose.
 
-        None where the step gives more energy than any wind does, or turns a branch too far.
+        Returns False where the step gives more energy than any wind does, or turns a branch too
+        far.
         """
-        instance, m, pose = self.instance[0], len(self._stiffness), self.pose
-        eta, force = instance['eta'][:m], instance['force'][:m]
-        rate = instance['rate'][:m].copy()
-        before = self._energy(eta, rate)
-        middle, middle_rate = law.middle(eta, rate, force)
-        rotations, rotation_rates = self._by_key @ middle, self._by_key @ middle_rate
-        here = self._middles.fill(rotations, self._here)
-        turned = law.length * _largest(rotation_rates)
-        pose.renew(middle, rotations, here, rate, turned if self._is_fresh else math.inf)
-        self._is_fresh = True
-
-        moments = self._wind_moments(rotations, rotation_rates, wind)
-        by_wind = per_speed_squared * (self._by_coordinate @ moments)
-        wanted = instance['wanted'][:m]
-        wanted[:] = by_wind
-        wanted[: len(pose.change)] += pose.weight
-        across = pose.centrifugal(rotations, here, middle_rate, rotation_rates)
-        drag = per_speed_squared * math.sqrt(float(wind @ wind)) * self._drag
-        found = law.force(wanted, eta, rate, force, pose.change, drag, across)
-        moved, faster = law.end(eta, rate, found)
-
-        bent = self._by_key @ moved
-        most = max(before, float(self.record[0]['most_energy']))
-        is_possible = (
-            self._energy(moved, faster) <= most
-            and law.length * _largest(self._by_key @ faster) <= MOST_TURN
-            and _largest(bent) <= FARTHEST
+        pose, motion, first = self.pose, self.limp_motion, self._next_column
+        count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
+        if is_disturbed:
+            self._forget()
+        self._next_column = (first + count) % len(pose.change)
+        self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
+        rotations, rates = motion.rotations
+        self._wind_moments.fill(rotations, rates, wind, motion.moments)
+        most = float(self.record[0]['most_energy'])
+        load = per_speed_squared, per_speed_squared * speed
+        is_possible: bool = self._run(
+            _step_from_middle, law, pose, motion, first, count, ahead, *load, most
         )
-        if not is_possible:
-            return None
-        self._bound(moved, faster, bent, float(by_wind @ (moved - eta)))
-        return moved, faster, found
+        if is_possible:
+            self.middles.fill(pose.turned, pose.placed, 1)
+            self._allowed = self._run(_bound_energy, pose, motion, self._allowed)
+        return is_possible
 
-    def _bound(self, eta: Floats, rate: Floats, rotations: Floats, work: float) -> None:
-        """
-        Scale the rates after a step so that it gains no more energy than the work of the wind [J].
-
-        Coordinates and rates are (m,), key rotations (N,). What the tree has lost before it may
-        gain again, up to `SLACK`.
-        """
-        here = self._middles.fill(rotations, self._room)
-        moving = 0.5 * self._energy(eta, rate)
-        energy = moving + self.pose.potential(eta, here)
-        allowed = self._allowed + work
-        if energy > allowed:
-            kinetic = 0.5 * self.pose.twice_kinetic_energy(rate)
-            left = max(kinetic - (energy - allowed), 0.0)
-            rate *= math.sqrt(left / kinetic) if kinetic > 0.0 else 0.0
-            energy += left - kinetic
-        self._allowed = min(allowed, energy + SLACK * moving)
-
-    def _energy(self, eta: Floats, rate: Floats) -> float:
-        """Twice the strain and kinetic energy [J]."""
-        return float(self.modal.stiffness @ (eta * eta)) + self.pose.twice_kinetic_energy(rate)
+    def _run(self, kernel: Any, *arguments: Any) -> Any:
+        """Run a kernel, as plain Python on a tree in numpy."""
+        entry = self._entries.get(kernel)
+        if entry is None:
+            entry = kernel.py_func if self.is_plain else entry_of(kernel, *arguments)
+            self._entries[kernel] = entry
+        return entry(*arguments)
 
 
 class LimpBank(LimpStep, WindBasisBank):
@@ -225,5 +277,100 @@ class NumpyLimpBank(LimpStep, NumpyTableBank):
     """A limp tree in numpy."""
 
 
-def _largest(values: Floats) -> float:
-    return float(np.abs(values).max(initial=0.0))
+@part
+def _strain_energy(motion: LimpMotion, eta: Floats) -> float:
+    """Return twice the energy of strain [J] at coordinates (m,)."""
+    energy = 0.0
+    for i in range(len(eta)):
+        energy += motion.stiffness[i] * eta[i] * eta[i]
+    return energy
+
+
+@fused
+def _turn_to_middle(
+    law: CoupledStep, pose: PoseInertia, motion: LimpMotion, first: int
+) -> tuple[int, float, bool]:
+    """
+    Go to the middle of the step, and turn the tree there as `pose_inertia` needs it placed.
+
+    Returns
+    -------
+    tuple
+        How many columns to renew, from a first one on, the time [s] to the place ahead, and
+        whether something else has changed the state since the last step.
+
+    """
+    apart, rotations, is_disturbed, turned = motion.new[0], motion.rotations, False, 0.0
+    for i in range(len(apart)):
+        apart[i] = motion.eta[i] - motion.last_eta[i]
+        if apart[i] != 0.0 or motion.rate[i] != motion.last_rate[i]:
+            is_disturbed = True
+    if is_disturbed:
+        multiply(motion.by_key, apart, rotations[0])
+        turned = largest(rotations[0])
+    move(law.half, motion.eta, motion.rate, motion.force, motion.middle[0], motion.middle[1])
+    multiply_rows(motion.middle, motion.by_key, rotations)
+    copy(rotations[0], pose.turned[HERE])
+    fastest = largest(rotations[1])
+    count = columns_due(pose, turned + law.length * fastest)
+    ahead = turn_along(pose, rotations[1], fastest)
+    turn_for_columns(pose, first, count)
+    return count, ahead, is_disturbed
+
+
+@fused
+def _step_from_middle(
+    law: CoupledStep, pose: PoseInertia, motion: LimpMotion, first: int, count: int, ahead: float,
+    per_speed_squared: float, drag: float, most_energy: float,
+) -> bool:  # fmt: skip
+    """
+    Step under the load of the middle, where the tree is placed and the wind's moments are known.
+
+    Returns whether the step gives no more energy than any wind [J], and turns no branch too far.
+    """
+    eta, rate, new_eta, new_rate = motion.eta, motion.rate, motion.new[0], motion.new[1]
+    strain = _strain_energy(motion, eta)
+    copy(rate, new_rate)
+    kinetic = renew_columns(pose, first, count, motion.middle[0], new_rate)
+
+    wanted, by_wind = motion.wanted, motion.by_wind
+    multiply(motion.by_coordinate, motion.moments, by_wind)
+    by_wind *= per_speed_squared
+    copy(by_wind, wanted)
+    leading = wanted[: len(pose.weight)]
+    leading += pose.weight
+    centrifugal_force(pose, motion.middle[1], ahead, motion.across, motion.momentum)
+    find_force(
+        law, wanted, eta, new_rate, motion.force, pose.change, drag, motion.across,
+        motion.momentum, motion.new_force,
+    )  # fmt: skip
+    move(law.whole, eta, new_rate, motion.new_force, new_eta, new_rate)
+
+    energy = _strain_energy(motion, new_eta) + twice_kinetic_energy(pose, new_rate, pose.momentum)
+    multiply_rows(motion.new, motion.by_key, motion.rotations)
+    copy(motion.rotations[0], pose.turned[HERE])
+    has_turned = law.length * largest(motion.rotations[1])
+    is_bounded = energy <= max(strain + kinetic, most_energy)
+    return is_bounded and has_turned <= MOST_TURN and largest(motion.rotations[0]) <= FARTHEST
+
+
+@fused
+def _bound_energy(pose: PoseInertia, motion: LimpMotion, allowed: float) -> float:
+    """
+    Scale the rates after a step so that it gains no more energy than the work of the wind [J].
+
+    The tree is placed where the step ends. Returns how much energy it may have before the work of
+    the next step: what it has, or has lost before, up to `SLACK`.
+    """
+    eta, rate = motion.new[0], motion.new[1]
+    kinetic = 0.5 * twice_kinetic_energy(pose, rate, pose.momentum)
+    moving = kinetic + 0.5 * _strain_energy(motion, eta)
+    energy = moving + weight_potential(pose, eta)
+    for i in range(len(eta)):
+        allowed += motion.by_wind[i] * (eta[i] - motion.eta[i])
+    if energy > allowed:
+        left = max(kinetic - (energy - allowed), 0.0)
+        if kinetic > 0.0:
+            rate *= math.sqrt(left / kinetic)
+        energy += left - kinetic
+    return min(allowed, energy + SLACK * moving)

@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.model.records import Blocks, Instances, Segments
 from tree_sway.core.run.bank import Bank
+from tree_sway.core.run.placing import GIVEN, place, room_for
 from tree_sway.core.tree.segment_frame import ends_of_poses
 
 
@@ -30,30 +32,57 @@ class Middles:
 
     def __init__(self, bank: Bank, mass: Floats, length: Floats) -> None:
         self._bank = bank
-        self._root, self._half = np.sqrt(mass), 0.5 * length
-        self._origin, self._poses = np.zeros(3), np.zeros((len(mass), 7))
+        self._root_mass, self._half_length = np.sqrt(mass), 0.5 * length
+        self._poses = np.zeros((len(mass), 7))
 
-    def fill(self, rotations: Floats, out: Floats) -> Floats:
-        """Write the middles at key rotations (N,) one after another, (3 n,), and return them."""
-        self._bank.place(rotations, self._origin, self._poses)
-        if self._bank.plain:
-            middle = ends_of_poses(self._poses, self._half)[1]
-            np.multiply(self._root[:, None], middle, out=out.reshape(-1, 3))
-        else:
-            self._compiled(out)
-        return out
+    def at(self, rotations: Floats) -> Floats:
+        """Return the middles at key rotations (N,), one after another, (3 n,)."""
+        out = np.zeros((1, 3 * len(self._root_mass)))
+        self.fill(np.ascontiguousarray(rotations)[None], out, 1)
+        return out[0]
 
     @cached_property
-    def _compiled(self) -> Any:
-        arrays = self._poses, self._half, self._root
-        return partial(entry_of(_write_middles, *arrays, np.zeros(3)), *arrays)
+    def fill(self) -> Callable[[Floats, Floats, int], None]:
+        """
+        Write the middles at the first of some key rotations, as a function.
+
+        Its arguments are key rotations (k, N), the middles to write, (k, 3 n), and how many poses
+        are asked for.
+        """
+        if self._bank.plain:
+            return self._fill_by_numpy
+        bank = self._bank
+        n_coordinates = int(bank.branches['n_coordinates'].sum())
+        arrays = (
+            *GIVEN, bank.segments, bank.blocks, bank.bases, room_for(n_coordinates),
+            self._root_mass, self._half_length, self._poses, np.zeros(3),
+        )  # fmt: skip
+        given = np.zeros((1, 1)), np.zeros((1, 1)), 1
+        return partial(entry_of(_fill, *arrays, *given), *arrays)
+
+    def _fill_by_numpy(self, rotations: Floats, out: Floats, count: int) -> None:
+        for pose, middles in zip(rotations[:count], out, strict=False):
+            self._bank.place(pose, np.zeros(3), self._poses)
+            at = ends_of_poses(self._poses, self._half_length)[1]
+            np.multiply(self._root_mass[:, None], at, out=middles.reshape(-1, 3))
 
 
 @fused
-def _write_middles(poses: Floats, half: Floats, root: Floats, out: Floats) -> None:
-    for i in range(len(half)):
-        x, y, z, w = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
-        c, s = root[i], 2.0 * half[i]
-        out[3 * i] = c * (poses[i, 0] + half[i] - s * (y * y + z * z))
-        out[3 * i + 1] = c * (poses[i, 1] + s * (x * y + w * z))
-        out[3 * i + 2] = c * (poses[i, 2] + s * (x * z - w * y))
+def _fill(
+    instances: Instances, shapes: Singles, segments: Segments, blocks: Blocks, bases: Floats,
+    room: Floats, root_mass: Floats, half_length: Floats, poses: Floats, origin: Floats,
+    rotations: Floats, out: Floats, count: int,
+) -> None:  # fmt: skip
+    for k in range(count):
+        place(
+            instances, shapes, segments, blocks, bases, 1.0, 0.0, 1.0, room, rotations[k],
+            origin, poses,
+        )  # fmt: skip
+        middles = out[k]
+        for i in range(len(half_length)):
+            x, y, z, w = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
+            along = half_length[i]
+            twice = along + along
+            middles[3 * i] = root_mass[i] * (poses[i, 0] + along - twice * (y * y + z * z))
+            middles[3 * i + 1] = root_mass[i] * (poses[i, 1] + twice * (x * y + w * z))
+            middles[3 * i + 2] = root_mass[i] * (poses[i, 2] + twice * (x * z - w * y))

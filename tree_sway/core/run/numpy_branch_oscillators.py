@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.numpy_rotation import two_axis_moment, within_guard
+from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
 from tree_sway.core.run.branch_oscillators import BranchOscillators, NOT_FINITE
 from tree_sway.core.setup.numpy_branch_loads import Bases, into_slots, NumpyPasses, of_slots
 

@@ -10,21 +10,28 @@ tree are (Shabana 2020, *Dynamics of Multibody Systems*, chapter 3)
 
 All three are found by placing the tree: a column of J is the difference of two places of the
 segments, and the centrifugal force the second difference along the motion. **Columns are renewed
-in turn**, `RENEWED` a step, so that one is at most some tenth of a second old: M is a product of
-a matrix with itself, and so is positive definite however old its columns are.
+in turn**, `RENEWED` a step or more, so that one is at most some tenths of a second old: M is a
+product of a matrix with itself, and so is positive definite however old its columns are.
 
 **No energy comes of it.** In truth the change of M and the centrifugal force do no work together.
 So the rates are scaled to the kinetic energy that they had before a renewal, and what the
 centrifugal force has along the motion is left out.
+
+A step places the tree at some poses together: `HERE`, `AHEAD` and `BEHIND` along the motion, and
+from `COLUMNS` on turned a little from here, each along one leading coordinate. From those behind
+on, the places are then overwritten by the differences of which the products with J are taken.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import part
+from tree_sway.core.run.dense import copy, dot, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 
 LEADING = 60
@@ -36,13 +43,61 @@ Least number of columns that a step renews, and the largest rotation [rad] of a 
 renewals of a column.
 """
 
+HERE, AHEAD, BEHIND, COLUMNS = 0, 1, 2, 3
+"""Places of a step: here, a little ahead and behind along the motion, then those for columns."""
+
 _COLUMN_TURN, _MOTION_TURN = 1e-5, 1e-2
 """Largest key rotation [rad] of the differences for a column, and along the motion."""
 
 
-class PoseInertia:
+class PoseInertia(NamedTuple):
     """
-    Inertia of a tree at its pose, relative to that at rest.
+    Inertia of the q leading coordinates at a pose, relative to that at rest.
+
+    The first fields are its state, the last scratch memory.
+    """
+
+    columns: Floats
+    """J of the leading coordinates, times the square roots of the masses, (q, 3 n)."""
+    change: Floats
+    """M less that at rest, which is 1, (q, q)."""
+    weight: Floats
+    """Force of the weight beyond that which is linear in the coordinates, (q,)."""
+    directions: Floats
+    """Key rotations per unit of each leading coordinate, (q, N)."""
+    steps: Floats
+    """Amount of each leading coordinate for the difference of its column, (q,)."""
+    columns_at_rest: Floats
+    """The columns at rest, (q, 3 n)."""
+    weight_at_rest: Floats
+    """Force of the weight at rest on the leading coordinates, (q,)."""
+    slopes: Floats
+    """Derivative of this force by each coordinate, at rest, (q, m)."""
+    gravity: Floats
+    """Gravity on each middle over its factor, (3 n,)."""
+    place_at_rest: Floats
+    """The middles at rest, (3 n,)."""
+    force_at_rest: Floats
+    """Force of the weight at rest on the model's coordinates, (m,)."""
+    all_slopes: Floats
+    """Derivative of this force by each coordinate, at rest, (m, m)."""
+    turned: Floats
+    """Key rotations of the places of a step, (q + 3, N)."""
+    placed: Floats
+    """Middles at these, (q + 3, 3 n)."""
+    products: Floats
+    """Of the columns with the bend of the motion, then with each new column, (q + 1, q)."""
+    momentum: Floats
+    """Scratch memory, (q,)."""
+    sloped: Floats
+    """Scratch memory, (m,)."""
+
+
+def inertia_at_rest(
+    middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats
+) -> PoseInertia:
+    """
+    Find the inertia of a tree at rest.
 
     Parameters
     ----------
@@ -56,128 +111,187 @@ class PoseInertia:
         Derivative of the weight's force on the coordinates by each of them, at rest, (m, m).
 
     """
+    n_rotations, m = shapes.shape
+    q = min(LEADING, m)
+    at_rest = _columns_at_rest(middles, shapes)
+    # The model's coordinates have unit mass, that of its points to some percent.
+    unit = np.linalg.inv(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T))
+    directions = np.ascontiguousarray((shapes[:, :q] @ unit.T).T)
+    columns = unit @ at_rest[:q]
+    return PoseInertia(
+        columns=columns.copy(),
+        change=np.zeros((q, q)),
+        weight=np.zeros(q),
+        directions=directions,
+        steps=_COLUMN_TURN / np.maximum(np.abs(directions).max(axis=1), 1e-300),
+        columns_at_rest=columns,
+        weight_at_rest=columns @ gravity,
+        slopes=unit @ weight_slopes[:q],
+        gravity=gravity,
+        place_at_rest=middles.at(np.zeros(n_rotations)),
+        force_at_rest=at_rest @ gravity,
+        all_slopes=np.ascontiguousarray(weight_slopes),
+        turned=np.zeros((q + COLUMNS, n_rotations)),
+        placed=np.zeros((q + COLUMNS, len(gravity))),
+        products=np.zeros((q + 1, q)),
+        momentum=np.zeros(q),
+        sloped=np.zeros(m),
+    )
 
-    def __init__(
-        self, middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats
-    ) -> None:
-        self._middles, self._gravity = middles, gravity
-        self._room, self._other = np.zeros((2, len(gravity)))
-        at_rest = self._columns_at_rest(shapes)
-        self._place_at_rest = middles.fill(0.0 * shapes[:, 0], np.zeros(len(gravity)))
-        self._force_at_rest, self._slopes = at_rest @ gravity, weight_slopes
-        # The model's coordinates have unit mass, that of its points to some percent.
-        q = min(LEADING, shapes.shape[1])
-        unit = np.linalg.inv(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T))
-        self._directions = np.ascontiguousarray((shapes[:, :q] @ unit.T).T)
-        self._step = _COLUMN_TURN / np.maximum(np.abs(self._directions).max(axis=1), 1e-300)
-        self._at_rest, self._weight_slopes = unit @ at_rest[:q], unit @ weight_slopes[:q]
-        self._weight_at_rest = self._at_rest @ gravity
-        self.columns = self._at_rest.copy()
-        """J of the leading coordinates, times the square roots of the masses, (q, 3 n)."""
-        self.change = np.zeros((q, q))
-        """M less that at rest, which is 1, (q, q)."""
-        self.weight = np.zeros(q)
-        """Force of the weight beyond that which is linear in the coordinates, (q,)."""
-        self._next = 0
 
-    def _columns_at_rest(self, shapes: Floats) -> Floats:
-        """Find J at rest by central differences, (q, 3 n)."""
-        columns = np.zeros((shapes.shape[1], len(self._gravity)))
-        for shape, column in zip(shapes.T, columns, strict=True):
-            turn = _COLUMN_TURN / max(float(np.abs(shape).max()), 1e-300)
-            ahead = self._middles.fill(turn * shape, self._room)
-            behind = self._middles.fill(-turn * shape, self._other)
-            column[:] = (ahead - behind) / (2.0 * turn)
-        return columns
+def _columns_at_rest(middles: Middles, shapes: Floats) -> Floats:
+    """Find J at rest by central differences, (m, 3 n)."""
+    columns = []
+    for shape in shapes.T:
+        turn = _COLUMN_TURN / max(float(np.abs(shape).max()), 1e-300)
+        apart = middles.at(turn * shape) - middles.at(-turn * shape)
+        columns.append(apart / (2.0 * turn))
+    return np.array(columns)
 
-    def reset(self) -> None:
-        """Return to rest."""
-        self.columns[:] = self._at_rest
-        self.change[:] = 0.0
-        self.weight[:] = 0.0
-        self._next = 0
 
-    def renew(
-        self, eta: Floats, rotations: Floats, here: Floats, rate: Floats, turned: float
-    ) -> None:
-        """
-        Renew the next columns at a pose, and keep the kinetic energy of a motion.
+def return_to_rest(pose: PoseInertia) -> None:
+    """Take the inertia of the tree at rest."""
+    pose.columns[:] = pose.columns_at_rest
+    pose.change[:] = 0.0
+    pose.weight[:] = 0.0
 
-        Parameters
-        ----------
-        eta, rotations, here
-            Coordinates (m,) of the pose, its key rotations (N,), and the `Middles` there.
-        rate
-            Rates of the coordinates, (m,), scaled.
-        turned
-            Largest rotation of a branch in the step, [rad].
 
-        """
-        count = len(self.change)
-        if turned < OLDEST:
-            count = min(count, max(RENEWED, math.ceil(count * turned / OLDEST)))
-        rows = (self._next + np.arange(count)) % len(self.change)
-        self._next = int(rows[-1] + 1) % len(self.change)
-        before = self.twice_kinetic_energy(rate)
-        for row in rows.tolist():
-            step = self._step[row]
-            column = self.columns[row]
-            self._middles.fill(rotations + step * self._directions[row], column)
-            column -= here
-            column /= step
-        renewed = self.columns[rows]
-        inertia = renewed @ self.columns.T
-        inertia[np.arange(count), rows] -= 1.0
-        self.change[rows], self.change[:, rows] = inertia, inertia.T
-        weight = renewed @ self._gravity - self._weight_at_rest[rows]
-        self.weight[rows] = weight - self._weight_slopes[rows] @ eta
-        after = self.twice_kinetic_energy(rate)
-        if after > 0.0:
-            rate *= np.sqrt(before / after)
+@part
+def columns_due(pose: PoseInertia, turned: float) -> int:
+    """Return how many columns to renew after a branch has rotated by an angle [rad]."""
+    q = len(pose.change)
+    if turned >= OLDEST:
+        return q
+    return min(q, max(RENEWED, math.ceil(q * turned / OLDEST)))
 
-    def potential(self, eta: Floats, here: Floats) -> float:
-        """Energy [J] of the weight beyond that which the stiffness has, at coordinates (m,)."""
-        linear = float(self._force_at_rest @ eta) + 0.5 * float(eta @ (self._slopes @ eta))
-        return linear - float(self._gravity @ (here - self._place_at_rest))
 
-    def twice_kinetic_energy(self, rate: Floats) -> float:
-        """Twice the kinetic energy of a motion of rates (m,), [J]."""
-        leading = rate[: len(self.change)]
-        return float(rate @ rate + leading @ (self.change @ leading))
+@part
+def turn_for_columns(pose: PoseInertia, first: int, count: int) -> None:
+    """Turn the tree a little from here along each of the next leading coordinates."""
+    for k in range(count):
+        row = (first + k) % len(pose.change)
+        turned = pose.turned[COLUMNS + k]
+        np.multiply(pose.directions[row], pose.steps[row], turned)
+        turned += pose.turned[HERE]
 
-    def centrifugal(
-        self, rotations: Floats, here: Floats, rate: Floats, rotation_rates: Floats
-    ) -> tuple[Floats, Floats]:
-        """
-        Find ``-J' m (dJ/dt) q'`` but for what does work on the motion.
 
-        Parameters
-        ----------
-        rotations, here
-            Key rotations (N,), and the `Middles` there.
-        rate, rotation_rates
-            Rates of the coordinates (m,), and of the key rotations (N,).
+@part
+def turn_along(pose: PoseInertia, rotation_rates: Floats, fastest: float) -> float:
+    """
+    Turn the tree a little ahead and behind along a motion; returns the time [s] to there.
 
-        Returns
-        -------
-        tuple
-            The force, and the momentum over twice the kinetic energy, both (q,).
+    Rates of the key rotations are (N,) in [rad/s], ``fastest`` is the largest.
+    """
+    step = _MOTION_TURN / fastest if fastest > 0.0 else 0.0
+    here, ahead, behind = pose.turned[HERE], pose.turned[AHEAD], pose.turned[BEHIND]
+    np.multiply(rotation_rates, step, ahead)
+    np.subtract(here, ahead, behind)
+    ahead += here
+    return step
 
-        """
-        fastest = float(np.abs(rotation_rates).max(initial=0.0))
-        energy = self.twice_kinetic_energy(rate)
-        if not (fastest > 0.0 and energy > 0.0):
-            still = np.zeros(len(self.change))
-            return still, still
-        step = _MOTION_TURN / fastest
-        along = step * rotation_rates
-        bend = self._middles.fill(rotations + along, self._room)
-        bend += self._middles.fill(rotations - along, self._other)
-        bend -= here
-        bend -= here
-        force = self.columns @ bend
-        force /= -(step**2)
-        leading = rate[: len(self.change)]
-        momentum = (leading + self.change @ leading) / energy
-        force -= (force @ leading) * momentum
-        return force, momentum
+
+@part
+def twice_kinetic_energy(pose: PoseInertia, rate: Floats, momentum: Floats) -> float:
+    """Return twice the kinetic energy [J] of rates (m,), and write the momentum, (q,)."""
+    leading = rate[: len(momentum)]
+    multiply(pose.change, leading, momentum)
+    momentum += leading
+    others = rate[len(momentum) :]
+    return dot(leading, momentum) + dot(others, others)
+
+
+@part
+def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: Floats) -> float:
+    """
+    Take the next columns, inertia and weight of a pose, where the tree is placed.
+
+    Parameters
+    ----------
+    pose
+        The inertia.
+    first, count
+        First column to renew, and how many.
+    eta
+        Coordinates of the pose, (m,).
+    rate
+        Rates of the coordinates, (m,), scaled to the kinetic energy that they had before.
+
+    Returns
+    -------
+    float
+        Twice this energy in [J].
+
+    """
+    before = twice_kinetic_energy(pose, rate, pose.momentum)
+    _take_columns(pose, first, count, eta)
+    after = twice_kinetic_energy(pose, rate, pose.momentum)
+    if after > 0.0:
+        rate *= math.sqrt(before / after)
+    return before
+
+
+@part
+def _take_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> None:
+    """Take columns, inertia and weight of `renew_columns`, and the bend along the motion."""
+    q, here = len(pose.change), pose.placed[HERE]
+    bend = pose.placed[BEHIND]
+    bend += pose.placed[AHEAD]
+    bend -= here
+    bend -= here
+    new = pose.placed[COLUMNS : COLUMNS + count]
+    for k in range(count):
+        row = (first + k) % q
+        column = new[k]
+        column -= here
+        column /= pose.steps[row]
+        copy(column, pose.columns[row])
+    multiply_rows(pose.placed[BEHIND : COLUMNS + count], pose.columns, pose.products[: 1 + count])
+    for k in range(count):
+        row = (first + k) % q
+        for j in range(q):
+            pose.change[row, j] = pose.change[j, row] = pose.products[1 + k, j]
+    for k in range(count):
+        row = (first + k) % q
+        pose.change[row, row] -= 1.0
+        linear = pose.weight_at_rest[row] + dot(pose.slopes[row], eta)
+        pose.weight[row] = dot(new[k], pose.gravity) - linear
+
+
+@part
+def centrifugal_force(
+    pose: PoseInertia, rate: Floats, step: float, force: Floats, along: Floats
+) -> None:
+    """
+    Find ``-J' m (dJ/dt) q'`` but for what does work on the motion.
+
+    Parameters
+    ----------
+    pose
+        The inertia, after `renew_columns` with the tree placed ahead and behind.
+    rate
+        Rates of the coordinates, (m,).
+    step
+        Time [s] from here to the place ahead.
+    force, along
+        The force, and the momentum over twice the kinetic energy, both (q,), written.
+
+    """
+    energy = twice_kinetic_energy(pose, rate, along)
+    if not (step > 0.0 and energy > 0.0):
+        force[:] = 0.0
+        along[:] = 0.0
+        return
+    np.multiply(pose.products[0], -1.0 / (step * step), force)
+    along /= energy
+    working = dot(force, rate[: len(force)])
+    for i in range(len(force)):
+        force[i] -= working * along[i]
+
+
+@part
+def weight_potential(pose: PoseInertia, eta: Floats) -> float:
+    """Energy [J] of the weight beyond that which the stiffness has, at coordinates (m,), here."""
+    multiply(pose.all_slopes, eta, pose.sloped)
+    linear = dot(pose.force_at_rest, eta) + 0.5 * dot(eta, pose.sloped)
+    fallen = dot(pose.gravity, pose.placed[HERE]) - dot(pose.gravity, pose.place_at_rest)
+    return linear - fallen

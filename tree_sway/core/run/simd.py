@@ -30,17 +30,17 @@ def put_four(
 
     The numbers of a row are written from an element ``first`` on.
     """
-    for to, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
-        array[to, first : first + 4] = slots[row : row + 4, j]
+    for offset, target in enumerate((a, b, c, d)):
+        array[target, first : first + 4] = slots[row : row + 4, slot + offset]
 
 
 def take_four(
     array: Any, a: int, b: int, c: int, d: int, first: int, slots: Any, row: int, slot: int
 ) -> None:
     """Read rows as `put_four` writes them, or four numbers each of an array (n,)."""
-    for of, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
-        rows = array[of] if array.ndim == 2 else array[of:]
-        slots[row : row + 4, j] = rows[first : first + 4]
+    for offset, source in enumerate((a, b, c, d)):
+        numbers = array[source] if array.ndim == 2 else array[source:]
+        slots[row : row + 4, slot + offset] = numbers[first : first + 4]
 
 
 def write_past_caches(of: Any, into: Any) -> None:
@@ -59,12 +59,13 @@ def settle() -> None:
 
 def shapes_together(shapes: Floats) -> Any:
     """Lay shapes (k, n) out for `add_shapes`: (ceil(n / 64), k, 64), in single precision."""
-    k, n = shapes.shape
-    blocks = -(-n // TOGETHER)
-    laid: Any = zeros_in_lines(blocks, np.dtype([('shapes', 'f4', (k, TOGETHER))]))['shapes']
-    whole = np.zeros((k, blocks * TOGETHER))
-    whole[:, :n] = shapes
-    laid[:] = whole.reshape(k, blocks, TOGETHER).swapaxes(0, 1)
+    n_shapes, n_coordinates = shapes.shape
+    n_blocks = -(-n_coordinates // TOGETHER)
+    layout = np.dtype([('shapes', 'f4', (n_shapes, TOGETHER))])
+    laid: Any = zeros_in_lines(n_blocks, layout)['shapes']
+    padded = np.zeros((n_shapes, n_blocks * TOGETHER))
+    padded[:, :n_coordinates] = shapes
+    laid[:] = padded.reshape(n_shapes, n_blocks, TOGETHER).swapaxes(0, 1)
     return laid
 
 
@@ -77,8 +78,9 @@ if not WHY_PLAIN:
     from numba.core import cgutils, types
     from numba.extending import intrinsic, lower_builtin, overload, type_callable
 
-    ir = cgutils.ir
-    _VECTOR = ir.VectorType(ir.DoubleType(), 4)
+    llvm = cgutils.ir
+    _VECTOR = llvm.VectorType(llvm.DoubleType(), 4)
+    _INTEGER = llvm.IntType(32)
 
     def _element(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
         array = context.make_array(kind)(context, builder, array)
@@ -93,14 +95,20 @@ if not WHY_PLAIN:
         """Transpose four vectors of four numbers."""
 
         def mixed(one: Any, other: Any, which: list[int]) -> Any:
-            picked = ir.Constant(ir.VectorType(ir.IntType(32), 4), which)
+            picked = llvm.Constant(llvm.VectorType(_INTEGER, 4), which)
             return builder.shuffle_vector(one, other, picked)
 
-        a, b, c, d = rows
-        low, high = [0, 4, 2, 6], [1, 5, 3, 7]
-        ab, cd, ba, dc = mixed(a, b, low), mixed(c, d, low), mixed(a, b, high), mixed(c, d, high)
-        low, high = [0, 1, 4, 5], [2, 3, 6, 7]
-        return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
+        # First the squares of two numbers in the corners are transposed, then their places.
+        even, odd = [0, 4, 2, 6], [1, 5, 3, 7]
+        upper_even, lower_even = mixed(rows[0], rows[1], even), mixed(rows[2], rows[3], even)
+        upper_odd, lower_odd = mixed(rows[0], rows[1], odd), mixed(rows[2], rows[3], odd)
+        front, back = [0, 1, 4, 5], [2, 3, 6, 7]
+        return (
+            mixed(upper_even, lower_even, front),
+            mixed(upper_odd, lower_odd, front),
+            mixed(upper_even, lower_even, back),
+            mixed(upper_odd, lower_odd, back),
+        )
 
     def _generated(function: Any, typed: Any) -> Any:
         """Generate code for a function, which compiles faster than a call of an intrinsic."""
@@ -108,20 +116,26 @@ if not WHY_PLAIN:
         return lower_builtin(function, types.VarArg(types.Any))  # type: ignore[attr-defined]
 
     def _carried(is_put: bool) -> Any:
+        """Return what generates `put_four`, or `take_four`, whose slots come after the array."""
+
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            turn = 0 if is_put else 6
-            kinds, given = (each[turn:] + each[:turn] for each in (signature.args, tuple(values)))
-            slots, row, slot, array, *at, first = given
-            rows = [builder.add(row, row.type(k)) for k in range(4)]
-            source = [_place(context, builder, kinds[0], slots, each, slot) for each in rows]
-            if kinds[3].ndim == 2:
-                to = [_place(context, builder, kinds[3], array, each, first) for each in at]
-            else:
-                at = [builder.add(each, first) for each in at]
-                to = [_place(context, builder, kinds[3], array, each) for each in at]
-            source, to = (source, to) if is_put else (to, source)
-            read = [builder.load(where, align=8) for where in source]
-            for value, where in zip(_turned(builder, read), to, strict=True):
+            n_before_slots = 0 if is_put else 6
+            kinds, given = (
+                each[n_before_slots:] + each[:n_before_slots]
+                for each in (signature.args, tuple(values))
+            )
+            slots, row, slot, array, *array_rows, first = given
+            slot_rows = [builder.add(row, row.type(offset)) for offset in range(4)]
+            in_slots = [
+                _place(context, builder, kinds[0], slots, each, slot) for each in slot_rows
+            ]
+            index: list[tuple[Any, ...]] = [(each, first) for each in array_rows]
+            if kinds[3].ndim == 1:
+                index = [(builder.add(each, first),) for each in array_rows]
+            in_array = [_place(context, builder, kinds[3], array, *each) for each in index]
+            sources, targets = (in_slots, in_array) if is_put else (in_array, in_slots)
+            read = [builder.load(where, align=8) for where in sources]
+            for value, where in zip(_turned(builder, read), targets, strict=True):
                 builder.store(value, where, align=8)
             return context.get_dummy_value()
 
@@ -137,45 +151,47 @@ if not WHY_PLAIN:
         lambda rows, a, b, c, d, first, slots, row, slot: types.none(rows, *_ROWS, slots, *_AT),
     )(_carried(is_put=False))
 
-    _LINE = ir.VectorType(ir.DoubleType(), 8)
+    _LINE = llvm.VectorType(llvm.DoubleType(), 8)
 
     @intrinsic
     def _write_line(typing, into, at, of, row):  # type: ignore[no-untyped-def]
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             kinds, line = signature.args, _LINE.as_pointer()
-            to = builder.bitcast(_element(context, builder, kinds[0], *values[:2]), line)
-            read = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
-            written = builder.store(builder.load(read, align=8), to, align=64)
-            note = builder.module.add_metadata([ir.IntType(32)(1)])
+            target = builder.bitcast(_element(context, builder, kinds[0], *values[:2]), line)
+            source = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
+            written = builder.store(builder.load(source, align=8), target, align=64)
+            note = builder.module.add_metadata([_INTEGER(1)])
             written.set_metadata('nontemporal', note)
             return context.get_dummy_value()
 
         return types.none(into, types.intp, of, types.intp), generate
 
-    _SINGLES, _DOUBLES = (ir.VectorType(kind(), 16) for kind in (ir.FloatType, ir.DoubleType))
+    _SINGLES = llvm.VectorType(llvm.FloatType(), 16)
+    _DOUBLES = llvm.VectorType(llvm.DoubleType(), 16)
 
     @_generated(add_shapes, lambda table, block, by, to: types.none(table, types.intp, by, to))
     def _add(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        kinds, (table, row, shares, to) = signature.args, values
-        none = ir.Constant(_SINGLES, None)
-        sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 16)]
-        count = context.make_array(kinds[2])(context, builder, shares).nitems
-        with cgutils.for_range(builder, count) as loop:
-            share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
-            one = builder.insert_element(none, share, ir.IntType(32)(0))
-            every = ir.Constant(ir.VectorType(ir.IntType(32), 16), None)
-            shared = builder.shuffle_vector(one, none, every)
-            at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
-            at = builder.bitcast(at, _SINGLES.as_pointer())
-            for k, total in enumerate(sums):
-                read = builder.load(builder.gep(at, [row.type(k)]), align=64)
-                part = builder.fmul(read, shared, flags=['contract'])
-                whole = builder.fadd(builder.load(total), part, flags=['contract'])
+        kinds = signature.args
+        table, block, amounts, target = values
+        zeros = llvm.Constant(_SINGLES, None)
+        sums = [cgutils.alloca_once_value(builder, zeros) for _ in range(TOGETHER // 16)]
+        n_shapes = context.make_array(kinds[2])(context, builder, amounts).nitems
+        with cgutils.for_range(builder, n_shapes) as loop:
+            amount = builder.load(_element(context, builder, kinds[2], amounts, loop.index))
+            in_first = builder.insert_element(zeros, amount, _INTEGER(0))
+            first_for_all = llvm.Constant(llvm.VectorType(_INTEGER, 16), None)
+            in_all = builder.shuffle_vector(in_first, zeros, first_for_all)
+            shape = _element(context, builder, kinds[0], table, block, loop.index, block.type(0))
+            shape = builder.bitcast(shape, _SINGLES.as_pointer())
+            for sixteen, total in enumerate(sums):
+                read = builder.load(builder.gep(shape, [block.type(sixteen)]), align=64)
+                added = builder.fmul(read, in_all, flags=['contract'])
+                whole = builder.fadd(builder.load(total), added, flags=['contract'])
                 builder.store(whole, total)
-        at = builder.mul(row, row.type(TOGETHER))
-        for k, total in enumerate(sums):
-            first = builder.add(at, row.type(16 * k))
-            where = _element(context, builder, kinds[3], to, first)
+        begin = builder.mul(block, block.type(TOGETHER))
+        for sixteen, total in enumerate(sums):
+            first = builder.add(begin, block.type(16 * sixteen))
+            where = _element(context, builder, kinds[3], target, first)
             written = builder.bitcast(where, _DOUBLES.as_pointer())
             builder.store(builder.fpext(builder.load(total), _DOUBLES), written, align=8)
         return context.get_dummy_value()
@@ -188,14 +204,17 @@ if not WHY_PLAIN:
     @overload(write_past_caches)
     def _write_past_caches(of, into):  # type: ignore[no-untyped-def]
         def write(of, into):  # type: ignore[no-untyped-def]
-            n, address = len(of), into.ctypes.data
-            first = min((64 - address % 64) % 64 // 8, n) if address % 8 == 0 else n
-            for i in range(first):
-                into[i] = of[i]
-            last = first + (n - first) // 8 * 8
-            for i in range(first, last, 8):
-                _write_line(into, i, of, i)
-            for i in range(last, n):
-                into[i] = of[i]
+            count, address = len(of), into.ctypes.data
+            # Lines of a cache begin at multiples of 64 bytes.
+            first = count
+            if address % 8 == 0:
+                first = min((64 - address % 64) % 64 // 8, count)
+            for number in range(first):
+                into[number] = of[number]
+            last = first + (count - first) // 8 * 8
+            for number in range(first, last, 8):
+                _write_line(into, number, of, number)
+            for number in range(last, count):
+                into[number] = of[number]
 
         return write

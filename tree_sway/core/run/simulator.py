@@ -434,9 +434,9 @@ class SwaySimulator:
         return np.asarray(tip - self.tree.end[self._highest])
 
     @property
-    def base_moment(self) -> Floats:
+    def wind_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        return self._bank.base_moment()
+        return self._bank.wind_moment()
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Check changes as `tune`; returns all values after the changes."""

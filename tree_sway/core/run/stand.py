@@ -108,19 +108,19 @@ def _wind_in_frame(here: Placement, wind: Floats) -> tuple[float, float, float]:
 def _is_finite(instance: Instance) -> bool:
     """Whether all coordinates and rates are finite."""
     n_finite = 0
-    for i in range(len(instance.eta)):  # without an exit, so that the loop is a vector
-        n_finite += math.isfinite(instance.eta[i]) and math.isfinite(instance.rate[i])
+    for mode in range(len(instance.eta)):  # without an exit, so that the loop is a vector
+        n_finite += math.isfinite(instance.eta[mode]) and math.isfinite(instance.rate[mode])
     return n_finite == len(instance.eta)
 
 
 @part
 def _come_to_rest(instance: Instance) -> None:
-    for i in range(len(instance.eta)):
-        instance.eta[i] = 0.0
-        instance.rate[i] = 0.0
-        instance.force[i] = 0.0
-        instance.middle[i] = 0.0
-        instance.middle_rate[i] = 0.0
+    for mode in range(len(instance.eta)):
+        instance.eta[mode] = 0.0
+        instance.rate[mode] = 0.0
+        instance.force[mode] = 0.0
+        instance.middle[mode] = 0.0
+        instance.middle_rate[mode] = 0.0
 
 
 @fused

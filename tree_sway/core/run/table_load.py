@@ -71,8 +71,9 @@ def find_corners(table: Table, x: float, y: float, eta: Floats) -> Corners:
     after = (before + 1) % N_AZIMUTHS
     rest = 1.0 - share
     lean = 0.0
-    for i in range(len(eta)):
-        lean += (rest * table.amount[before, i] + share * table.amount[after, i]) * eta[i]
+    for mode in range(len(eta)):
+        amount = rest * table.amount[before, mode] + share * table.amount[after, mode]
+        lean += amount * eta[mode]
     level = 0
     low = rest * table.levels[before, 0] + share * table.levels[after, 0]
     high = rest * table.levels[before, 1] + share * table.levels[after, 1]
@@ -125,8 +126,8 @@ def _weights_of(corners: Corners, level_winds: float) -> Weights:
     """Find the weights of the corners, which add up to a share of winds that are not steep."""
     before = level_winds * (1.0 - corners.azimuth_share)
     after = level_winds * corners.azimuth_share
-    up = corners.level_share
-    return Weights(before * (1.0 - up), before * up, after * (1.0 - up), after * up)
+    below, above = 1.0 - corners.level_share, corners.level_share
+    return Weights(before * below, before * above, after * below, after * above)
 
 
 @part
@@ -143,14 +144,14 @@ def _begin(table: Table, instance: Instance, corners: Corners, weights: Weights)
     """Begin the forces with the interpolated load."""
     force, turned, damped = instance.wanted, instance.turned, instance.damped
     before, after, below, above = corners.before, corners.after, corners.below, corners.above
-    for i in range(len(force)):
-        force[i] = (
-            weights.before_below * table.load[before, below, i]
-            + weights.before_above * table.load[before, above, i]
-            + weights.after_below * table.load[after, below, i]
-            + weights.after_above * table.load[after, above, i]
+    for mode in range(len(force)):
+        force[mode] = (
+            weights.before_below * table.load[before, below, mode]
+            + weights.before_above * table.load[before, above, mode]
+            + weights.after_below * table.load[after, below, mode]
+            + weights.after_above * table.load[after, above, mode]
         )
-        turned[i] = damped[i] = 0.0
+        turned[mode] = damped[mode] = 0.0
 
 
 @part
@@ -158,18 +159,20 @@ def _find_distances(table: Table, instance: Instance, corners: Corners, weights:
     """Find how far the tree is from the poses at the corners, times their weights."""
     eta, distance = instance.middle, instance.distance
     before, after, below, above = corners.before, corners.after, corners.below, corners.above
-    share, up = corners.azimuth_share, corners.level_share
-    for i in range(len(eta)):
-        low, other_low = table.equilibrium[before, below, i], table.equilibrium[after, below, i]
-        step = table.equilibrium[before, above, i] - low
-        other_step = table.equilibrium[after, above, i] - other_low
-        away = eta[i] - (1.0 - share) * (low + up * step)
-        away -= share * (other_low + up * other_step)
+    share, above_share = corners.azimuth_share, corners.level_share
+    for mode in range(len(eta)):
+        low = table.equilibrium[before, below, mode]
+        other_low = table.equilibrium[after, below, mode]
+        step = table.equilibrium[before, above, mode] - low
+        other_step = table.equilibrium[after, above, mode] - other_low
+        away = eta[mode] - (1.0 - share) * (low + above_share * step)
+        away -= share * (other_low + above_share * other_step)
         # Half of the way to each pose, so that loads between levels are cubic.
-        distance[0, i] = weights.before_below * (away + 0.5 * up * step)
-        distance[1, i] = weights.before_above * (away - 0.5 * (1.0 - up) * step)
-        distance[2, i] = weights.after_below * (away + 0.5 * up * other_step)
-        distance[3, i] = weights.after_above * (away - 0.5 * (1.0 - up) * other_step)
+        to_below, to_above = 0.5 * above_share, 0.5 * (1.0 - above_share)
+        distance[0, mode] = weights.before_below * (away + to_below * step)
+        distance[1, mode] = weights.before_above * (away - to_above * step)
+        distance[2, mode] = weights.after_below * (away + to_below * other_step)
+        distance[3, mode] = weights.after_above * (away - to_above * other_step)
 
 
 @part
@@ -184,18 +187,18 @@ def _drag_per_speed(table: Table, instance: Instance, wind: UniformWind) -> floa
     square = 0.0
     if wind.per_speed_squared > 0.0:
         square = wind.dynamic_pressure / wind.per_speed_squared
-    for i in range(len(rate)):
-        single_rate[i] = rate[i]
-        square += table.motion[i] * rate[i] * rate[i]
+    for mode in range(len(rate)):
+        single_rate[mode] = rate[mode]
+        square += table.motion[mode] * rate[mode] * rate[mode]
     return wind.per_speed_squared * math.sqrt(square)
 
 
 @part
 def _add_harmonics(values: Floats, harmonics: Floats, force: Floats) -> None:
     """Add the load at rest, a sum of harmonics (h, m) by their values at the wind (h,)."""
-    for k in range(len(values)):
-        for i in range(len(force)):
-            force[i] += values[k] * harmonics[k, i]
+    for number in range(len(values)):
+        for mode in range(len(force)):
+            force[mode] += values[number] * harmonics[number, mode]
 
 
 @part
@@ -216,23 +219,28 @@ def _add_slopes(
     before_above = np.float32(weights.before_above)
     after_below = np.float32(weights.after_below)
     after_above = np.float32(weights.after_above)
-    for k in range(n_coupled):
-        away_0, away_1 = distance[0, k], distance[1, k]
-        away_2, away_3 = distance[2, k], distance[3, k]
-        rate_0, rate_1 = before_below * rates[k], before_above * rates[k]
-        rate_2, rate_3 = after_below * rates[k], after_above * rates[k]
-        moved = np.float32(eta[k])
+    for moving in range(n_coupled):
+        away_0, away_1 = distance[0, moving], distance[1, moving]
+        away_2, away_3 = distance[2, moving], distance[3, moving]
+        rate_0, rate_1 = before_below * rates[moving], before_above * rates[moving]
+        rate_2, rate_3 = after_below * rates[moving], after_above * rates[moving]
+        moved = np.float32(eta[moving])
         slant_before, slant_after = slants[0] * moved, slants[1] * moved
-        for i in range(len(eta)):
-            turned[i] += (
-                away_0 * turning[before, below, k, i] + away_1 * turning[before, above, k, i]
-                + away_2 * turning[after, below, k, i] + away_3 * turning[after, above, k, i]
-                + slant_before * lean[before, k, i] + slant_after * lean[after, k, i]
-            )  # fmt: skip
-            damped[i] += (
-                rate_0 * damping[before, below, k, i] + rate_1 * damping[before, above, k, i]
-                + rate_2 * damping[after, below, k, i] + rate_3 * damping[after, above, k, i]
-            )  # fmt: skip
+        for mode in range(len(eta)):
+            turned[mode] += (
+                away_0 * turning[before, below, moving, mode]
+                + away_1 * turning[before, above, moving, mode]
+                + away_2 * turning[after, below, moving, mode]
+                + away_3 * turning[after, above, moving, mode]
+                + slant_before * lean[before, moving, mode]
+                + slant_after * lean[after, moving, mode]
+            )
+            damped[mode] += (
+                rate_0 * damping[before, below, moving, mode]
+                + rate_1 * damping[before, above, moving, mode]
+                + rate_2 * damping[after, below, moving, mode]
+                + rate_3 * damping[after, above, moving, mode]
+            )
 
 
 @part
@@ -242,12 +250,12 @@ def _fill_diagonal(
     """Fill the slopes of the forces by the rate of the same coordinate."""
     diagonal, below, above = instance.diagonal, corners.below, corners.above
     before, after = corners.before, corners.after
-    for i in range(len(diagonal)):
-        diagonal[i] = drag * (
-            weights.before_below * table.damping[before, below, i, i]
-            + weights.before_above * table.damping[before, above, i, i]
-            + weights.after_below * table.damping[after, below, i, i]
-            + weights.after_above * table.damping[after, above, i, i]
+    for mode in range(len(diagonal)):
+        diagonal[mode] = drag * (
+            weights.before_below * table.damping[before, below, mode, mode]
+            + weights.before_above * table.damping[before, above, mode, mode]
+            + weights.after_below * table.damping[after, below, mode, mode]
+            + weights.after_above * table.damping[after, above, mode, mode]
         )
 
 
@@ -256,13 +264,17 @@ def _add_steep_slopes(
     table: Table, instance: Instance, upwards: int, steepness: float, drag: float, n_coupled: int
 ) -> None:
     """Add the slopes in winds straight up or down, by the share that the wind has of them."""
-    turned, damped, share = instance.turned, instance.damped, np.float32(steepness)
-    for k in range(n_coupled):
-        moved, rate = share * np.float32(instance.middle[k]), share * instance.single_rate[k]
-        for i in range(len(turned)):
-            turned[i] += moved * table.steep_turning[upwards, k, i]
-            damped[i] += rate * table.steep_damping[upwards, k, i]
-        instance.diagonal[k] += drag * steepness * table.steep_damping[upwards, k, k]
+    turned, damped = instance.turned, instance.damped
+    share = np.float32(steepness)
+    for moving in range(n_coupled):
+        moved = share * np.float32(instance.middle[moving])
+        rate = share * instance.single_rate[moving]
+        for mode in range(len(turned)):
+            turned[mode] += moved * table.steep_turning[upwards, moving, mode]
+            damped[mode] += rate * table.steep_damping[upwards, moving, mode]
+        instance.diagonal[moving] += (
+            drag * steepness * table.steep_damping[upwards, moving, moving]
+        )
 
 
 @part
@@ -272,12 +284,12 @@ def _sum_up(
     """Sum the forces of load and damping."""
     force, turned, damped = instance.wanted, instance.turned, instance.damped
     limit, diagonal, rate = table.limit, instance.diagonal, instance.middle_rate
-    for i in range(len(force)):
+    for mode in range(len(force)):
         # Slopes are valid near a pose; the load far from it is bounded by that of any wind.
-        load = min(max(force[i] + turned[i], -limit[i]), limit[i])
-        force[i] = dynamic_pressure * load + drag * damped[i]
-    for i in range(n_coupled, len(force)):
-        force[i] += diagonal[i] * rate[i]
+        load = min(max(force[mode] + turned[mode], -limit[mode]), limit[mode])
+        force[mode] = dynamic_pressure * load + drag * damped[mode]
+    for mode in range(n_coupled, len(force)):
+        force[mode] += diagonal[mode] * rate[mode]
 
 
 @part
@@ -287,10 +299,10 @@ def _take_off_cross_damping(
     """Take the damping by the rates of the other coordinates off the slopes."""
     diagonal, below, above = instance.diagonal, corners.below, corners.above
     before, after = corners.before, corners.after
-    for i in range(len(diagonal)):
-        diagonal[i] -= drag * (
-            weights.before_below * table.cross_damping[before, below, i]
-            + weights.before_above * table.cross_damping[before, above, i]
-            + weights.after_below * table.cross_damping[after, below, i]
-            + weights.after_above * table.cross_damping[after, above, i]
+    for mode in range(len(diagonal)):
+        diagonal[mode] -= drag * (
+            weights.before_below * table.cross_damping[before, below, mode]
+            + weights.before_above * table.cross_damping[before, above, mode]
+            + weights.after_below * table.cross_damping[after, below, mode]
+            + weights.after_above * table.cross_damping[after, above, mode]
         )

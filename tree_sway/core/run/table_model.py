@@ -153,16 +153,16 @@ class WindBasisBank:
     @property
     def swing(self) -> tuple[Floats, ...]:
         """Displacement, rate and force of each coordinate, (m,)."""
-        m = self.modal.shapes.shape[1]
-        return tuple(self.instance[name][0, :m] for name in STATE_FIELDS[:3])
+        count = self.modal.shapes.shape[1]
+        return tuple(self.instance[name][0, :count] for name in STATE_FIELDS[:3])
 
     @property
     def whole(self) -> Floats:
         """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
-        time_step, m = self.time_step[0], self.modal.shapes.shape[1]
+        time_step, count = self.time_step[0], self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
-        implicit = 1.0 - self.instance['diagonal'][0, :m] * time_step['half'][5, :m]
-        return np.asarray((time_step['whole'][:, :m] / implicit).T)
+        implicit = 1.0 - self.instance['diagonal'][0, :count] * time_step['half'][5, :count]
+        return np.asarray((time_step['whole'][:, :count] / implicit).T)
 
     @cached_property
     def _step(self) -> Callable[..., int]:
@@ -213,15 +213,14 @@ class WindBasisBank:
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
-        m = self.modal.shapes.shape[1]
-        return self.rotations().copy(), self.modal.shapes @ self.instance[0]['rate'][:m]
+        shapes = self.modal.shapes
+        return self.rotations().copy(), shapes @ self.instance[0]['rate'][: shapes.shape[1]]
 
     def take_over(self, x: Floats, v: Floats) -> None:
         """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
-        m = self.modal.shapes.shape[1]
-        eta, rate = self.modal.projected(x, v)
-        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = eta, rate
+        displacements, rates, _ = self.swing
+        displacements[:], rates[:] = self.modal.projected(x, v)
 
     def reset(self) -> None:
         """Return to rest."""
@@ -291,7 +290,7 @@ def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
 
 
 def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
-    """Displacement, then rate, after a step h [s] by displacement, rate and force, (6, m)."""
+    """Return displacement, then rate, after h [s] by displacement, rate and force, (6, m)."""
     share = 1.0 / (1.0 + h * damping + h * h * stiffness)
     rate = np.stack([-h * stiffness * share, share, h * share])
     displacement = h * rate
@@ -326,44 +325,67 @@ def step_instance(
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-    x, y, z = 1.0, 0.0, 0.0
+    ahead, aside, upwards = 1.0, 0.0, 0.0
     if speed > 0.0:
-        x, y, z = wx / speed, wy / speed, wz / speed
+        ahead, aside, upwards = wx / speed, wy / speed, wz / speed
     dynamic_pressure = per_speed_squared * speed * speed
     instance.outside = 0 if is_clamped or dynamic_pressure <= table.most_pressure else 1
     dynamic_pressure = min(dynamic_pressure, table.most_pressure)
-    eta, rate, force = instance.eta, instance.rate, instance.force
-    half, whole = time_step.half, time_step.whole
-    middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
-    before = 0.0
-    for i in range(len(eta)):
-        q, v, f = eta[i], rate[i], force[i]
-        before += table.stiffness[i] * q * q + v * v
-        middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
-        middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
-    diagonal = instance.diagonal
-    wind = UniformWind(x, y, z, dynamic_pressure, per_speed_squared)
+    energy_before = _to_middle(table, time_step, instance)
+    wind = UniformWind(ahead, aside, upwards, dynamic_pressure, per_speed_squared)
     wind_force(table, instance, wind, table.n_modes - instance.left_out)
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
-    energy = 0.0
-    for i in range(len(eta)):
-        # Implicit in all damping, with equal rates of the others: stable for any wind and step.
-        own = diagonal[i] * half[5, i]
-        f = (wanted[i] - own * force[i]) / (1.0 - own)
-        q, v = eta[i], rate[i]
-        eta[i] = whole[0, i] * q + whole[1, i] * v + (whole[2, i] + whole[3, i]) * f
-        rate[i] = whole[4, i] * q + whole[5, i] * v + (whole[6, i] + whole[7, i]) * f
-        force[i] = f
-        energy += table.stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i]
-    most = max(before, table.most_energy)
-    if not energy <= most:
-        # A pull may bend it more than any wind; no wind adds to that.
-        share = math.sqrt(most / energy)
-        for i in range(len(eta)):
-            eta[i], rate[i] = share * eta[i], share * rate[i]
+    energy = _step_coordinates(table, time_step, instance)
+    # A pull may bend it more than any wind; no wind adds to that.
+    most_energy = max(energy_before, table.most_energy)
+    if not energy <= most_energy:
+        _scale_motion(instance, math.sqrt(most_energy / energy))
         instance.outside = 1
     return int(instance.outside)
+
+
+@part
+def _to_middle(table: Table, time_step: TimeStep, instance: Instance) -> float:
+    """Write the state at the middle of the step; return twice the energy before the step."""
+    half, middle, middle_rate = time_step.half, instance.middle, instance.middle_rate
+    energy = 0.0
+    for mode in range(len(instance.eta)):
+        eta, rate, force = instance.eta[mode], instance.rate[mode], instance.force[mode]
+        energy += table.stiffness[mode] * eta * eta + rate * rate
+        middle[mode] = half[0, mode] * eta + half[1, mode] * rate + half[2, mode] * force
+        middle_rate[mode] = half[3, mode] * eta + half[4, mode] * rate + half[5, mode] * force
+    return energy
+
+
+@part
+def _step_coordinates(table: Table, time_step: TimeStep, instance: Instance) -> float:
+    """
+    Step the coordinates by the forces of the wind; return twice the energy after the step.
+
+    The step is implicit in all damping, with equal rates of the other coordinates: stable for any
+    wind and length of the step.
+    """
+    half, whole = time_step.half, time_step.whole
+    energy = 0.0
+    for mode in range(len(instance.eta)):
+        own = instance.diagonal[mode] * half[5, mode]
+        force = (instance.wanted[mode] - own * instance.force[mode]) / (1.0 - own)
+        eta, rate = instance.eta[mode], instance.rate[mode]
+        by_force, rate_by_force = whole[2, mode] + whole[3, mode], whole[6, mode] + whole[7, mode]
+        new_eta = whole[0, mode] * eta + whole[1, mode] * rate + by_force * force
+        new_rate = whole[4, mode] * eta + whole[5, mode] * rate + rate_by_force * force
+        instance.eta[mode], instance.rate[mode] = new_eta, new_rate
+        instance.force[mode] = force
+        energy += table.stiffness[mode] * new_eta * new_eta + new_rate * new_rate
+    return energy
+
+
+@part
+def _scale_motion(instance: Instance, scale: float) -> None:
+    for mode in range(len(instance.eta)):
+        instance.eta[mode] *= scale
+        instance.rate[mode] *= scale
 
 
 @fused
@@ -401,11 +423,13 @@ def step_in_wind(
         Sum of 1 if the wind was refused, and 2 if it was clamped to the limit of the table.
 
     """
-    refused = 1
-    if math.sqrt(x * x + y * y + z * z) <= limits[0]:
-        refused, stored[0], stored[1], stored[2] = 0, x, y, z
-    x, y, z = stored[0], stored[1], stored[2]
-    load = pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
-    return refused + 2 * step_instance(
-        tables[0], time_steps[0], instances[0], False, x, y, z, load
+    is_refused = not math.sqrt(x * x + y * y + z * z) <= limits[0]
+    if not is_refused:
+        stored[0], stored[1], stored[2] = x, y, z
+    used_x, used_y, used_z = stored[0], stored[1], stored[2]
+    speed = math.sqrt(used_x * used_x + used_y * used_y + used_z * used_z)
+    load = pressure(speed, limits[1], limits[2], limits[3])
+    is_outside = step_instance(
+        tables[0], time_steps[0], instances[0], False, used_x, used_y, used_z, load
     )
+    return int(is_refused) + 2 * is_outside

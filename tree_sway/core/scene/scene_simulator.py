@@ -325,13 +325,13 @@ class SceneSimulator:
         return loads
 
     @property
-    def base_moment(self) -> Floats:
+    def wind_moment(self) -> Floats:
         """Moment of the last step's wind on each tree about its root node, [N m], (t, 3)."""
         moments = np.zeros((len(self.names), 3))
         for number in range(len(moments)):
             alone = self._alone.get(number)
             moments[number] = (
-                self._shared.base_moment(number) if alone is None else alone.base_moment
+                self._shared.wind_moment(number) if alone is None else alone.wind_moment
             )
         return moments
 

@@ -290,9 +290,9 @@ class SharedTables:
         """Return the number of key rotations of a tree."""
         return self._kind_of(number).models[0].n_keys
 
-    def base_moment(self, number: int) -> Floats:
+    def wind_moment(self, number: int) -> Floats:
         """Moment of the last step's wind on a tree about its root node, [N m], (3,)."""
-        moment = self.tree(number).bank.base_moment()
+        moment = self.tree(number).bank.wind_moment()
         return self._frame(number).to_tree(np.zeros(3), moment)[1]
 
     def _frame(self, number: int) -> KindFrame:

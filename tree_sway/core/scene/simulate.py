@@ -275,7 +275,7 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
 
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
-    now, found = simulator.counts, list[str]()
+    now, found = simulator.counts, [bank.doubt for bank in simulator.banks if bank.doubt]
     if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     if now.reduced > before.reduced:

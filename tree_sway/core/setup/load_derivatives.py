@@ -36,7 +36,7 @@ from tree_sway.core.setup.tree_motion import joint_motion, levels_of, own_motion
 _IDENTITY = np.eye(3)
 _CHUNK = 256
 """Branches that are summed at once, so that intermediate results stay in the cache."""
-_SYMMETRIC = [0, 3, 4, 3, 1, 5, 4, 5, 2]
+SYMMETRIC = [0, 3, 4, 3, 1, 5, 4, 5, 2]
 """Places in a symmetric matrix, row by row, of its entries xx, yy, zz, xy, xz, yz."""
 
 
@@ -250,7 +250,7 @@ class LoadSlopes:
 
         With the projector P across the branch, the force is area |P u| P u.
         """
-        projector = self._in_slots('projector')[:, _SYMMETRIC].reshape(-1, 3, 3)
+        projector = self._in_slots('projector')[:, SYMMETRIC].reshape(-1, 3, 3)
         across = (projector @ air[..., None])[..., 0]
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)

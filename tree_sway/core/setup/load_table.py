@@ -22,7 +22,7 @@ blended with those of vertical winds.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +33,7 @@ from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.model.table_record import arrays_of_record
 from tree_sway.core.setup.bent_inertia import inertia_change
+from tree_sway.core.setup.equilibrium import EquilibriumSearch
 from tree_sway.core.setup.modal_arrays import Coordinates
 from tree_sway.core.setup.static_responses import WindMoments
 
@@ -47,7 +48,6 @@ _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
 _MOST_ENERGY = 1.5
-_STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
 _BREEZE, _STORM, _FLUTTER = 6.0, 25.0, (0.6, 3.0)
 """
@@ -67,6 +67,38 @@ def load_table(
     """Find the arrays and numbers of the table of a `SwayModel`."""
     record = WindBasisTable(coordinates, wind_moments, drag_law).record
     return arrays_of_record(record[0], len(coordinates.stiffness))
+
+
+class _Standing(NamedTuple):
+    """
+    Equilibria at the computed azimuths and levels, and the slopes of the load there.
+
+    Parameters
+    ----------
+    equilibrium
+        Coordinates, (a, l, m).
+    amount
+        Weights of the coordinates in the lean, (a, m).
+    turning, damping
+        Slopes of the load by the coordinates and by their rates, (a, l, m, m).
+
+    """
+
+    equilibrium: Floats
+    amount: Floats
+    turning: Floats
+    damping: Floats
+
+    @classmethod
+    def of_size(cls, n_azimuths: int, n_modes: int) -> _Standing:
+        """Return zeros for a number of azimuths and of coordinates."""
+        slopes = n_azimuths, N_LEVELS, n_modes, n_modes
+        return cls(
+            equilibrium=np.zeros(slopes[:3]),
+            amount=np.zeros((n_azimuths, n_modes)),
+            turning=np.zeros(slopes),
+            damping=np.zeros(slopes),
+        )
 
 
 class WindBasisTable:
@@ -96,6 +128,7 @@ class WindBasisTable:
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
         self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
+        self._search = EquilibriumSearch(wind_moments, self._slopes, bank.shapes, bank.stiffness)
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m))
         table = self.record[0]
@@ -119,58 +152,48 @@ class WindBasisTable:
         """Fill loads and their slopes at the equilibria in winds of each speed."""
         m = int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        poses, amount, turning, damping = self._standing(stiffness, pressures)
+        standing = self._standing(stiffness, pressures)
         n_calm = int(np.searchsorted(SPEEDS, _STORM))
-        for k, azimuth_poses in enumerate(poses):
-            for j in range(1, n_calm):
-                self._turn_inertia(azimuth_poses[j], pressures[j], turning[k, j], damping[k, j])
-        table['equilibrium'][..., :m] = equilibrium = _between(poses)
-        table['amount'][..., :m] = _between(amount)
+        for azimuth in range(len(self._azimuths)):
+            for level in range(1, n_calm):
+                self._turn_inertia(standing, azimuth, level, pressures[level])
+        equilibrium = _between(standing.equilibrium)
+        table['equilibrium'][..., :m] = equilibrium
+        table['amount'][..., :m] = _between(standing.amount)
         load = self._loads_at(equilibrium, stiffness, pressures, n_calm)
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         table['load'][..., :m] = load - load[:, :1]
-        table['turning'][..., :m, :m] = _between(turning)
-        table['damping'][..., :m, :m] = _between(damping)
+        table['turning'][..., :m, :m] = _between(standing.turning)
+        table['damping'][..., :m, :m] = _between(standing.damping)
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
         table['levels'] = _rising_levels(table['equilibrium'], table['amount'])
 
-    def _standing(
-        self, stiffness: Floats, pressures: list[float]
-    ) -> tuple[Floats, Floats, Floats, Floats]:
-        """
-        Find the equilibria at the computed azimuths, and the slopes of the load there.
-
-        Returns
-        -------
-        tuple
-            Equilibria, (a, l, m); weights of the coordinates in the lean, (a, m); slopes by the
-            coordinates and by their rates, both (a, l, m, m).
-
-        """
-        n, m = len(self._azimuths), len(stiffness)
-        poses, amount = np.zeros((n, N_LEVELS, m)), np.zeros((n, m))
-        turning, damping = np.zeros((2, n, N_LEVELS, m, m))
+    def _standing(self, stiffness: Floats, pressures: list[float]) -> _Standing:
+        """Find the equilibria at the computed azimuths, and the slopes of the load there."""
+        found = _Standing.of_size(len(self._azimuths), len(stiffness))
         winds = direction(self._azimuths, 0.0)
-        at_rest = self._moments.at_rest(winds, self._shapes)
-        for k, (wind, load) in enumerate(zip(winds, at_rest, strict=True)):
+        loads = self._moments.at_rest(winds, self._shapes)
+        for azimuth, (wind, load) in enumerate(zip(winds, loads, strict=True)):
             # One unit of the lean is the pose in a steady wind that bends the tree a little.
-            amount[k] = load / max(float(load @ (load / stiffness)), 1e-300)
-            opposite = k - n // 2
+            found.amount[azimuth] = load / max(float(load @ (load / stiffness)), 1e-300)
+            turning, damping = found.turning[azimuth], found.damping[azimuth]
+            opposite = azimuth - len(winds) // 2
             if opposite >= 0:
-                turning[k, 0], damping[k, 0] = -turning[opposite, 0], damping[opposite, 0]
+                turning[0], damping[0] = -found.turning[opposite, 0], found.damping[opposite, 0]
             else:
-                turning[k, 0], damping[k, 0] = self._slopes(self._still, wind)
-            pose = np.zeros(m)
-            for j in range(1, N_LEVELS):
-                weaker = pose
-                pose = self._equilibrium(weaker, pressures[j], wind, turning[k, j - 1])
-                poses[k, j] = pose
-                if pose is weaker:  # there is no equilibrium near it
-                    turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
+                turning[0], damping[0] = self._slopes(self._still, wind)
+            pose = np.zeros(len(stiffness))
+            for level in range(1, N_LEVELS):
+                weaker, pressure_there = pose, pressures[level]
+                pose = self._search.near(weaker, pressure_there, wind, turning[level - 1])
+                found.equilibrium[azimuth, level] = pose
+                if pose is weaker:
+                    slopes = turning[level - 1], damping[level - 1]
                 else:
-                    turning[k, j], damping[k, j] = self._damped_slopes(pose, wind, j, pressures[j])
-        return poses, amount, turning, damping
+                    slopes = self._damped_slopes(pose, wind, level, pressure_there)
+                turning[level], damping[level] = slopes
+        return found
 
     def _damped_slopes(
         self, pose: Floats, wind: Floats, level: int, pressure_there: float
@@ -203,20 +226,26 @@ class WindBasisTable:
             loads[:n_calm] = moment @ self._shapes
         return np.asarray(load)
 
-    def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:
+    def _turn_inertia(
+        self, standing: _Standing, azimuth: int, level: int, pressure_there: float
+    ) -> None:
         """
-        Apply the inertia at an equilibrium to the slopes there, both (m, m), in place.
+        Apply the inertia at an equilibrium to the slopes there, in place.
 
         Loads and springs accelerate the tree by the inverse inertia A. What that changes in the
         springs, ``K - A K``, is zero at the equilibrium with the load, and is taken per dynamic
         pressure [kg/m/s^2].
         """
-        q = len(self._inertia_slopes)
-        inverse = np.linalg.inv(np.eye(q) + inertia_change(self._inertia_slopes, at))
-        stiffness = np.square(self._root[:q, None])
+        turning, damping = standing.turning[azimuth, level], standing.damping[azimuth, level]
+        count = len(self._inertia_slopes)
+        unit = np.eye(count)
+        change = inertia_change(self._inertia_slopes, standing.equilibrium[azimuth, level])
+        inverse = np.linalg.inv(unit + change)
         for slopes in (turning, damping):
-            slopes[:, :q] = slopes[:, :q] @ inverse
-        turning[:q, :q] += stiffness * (np.eye(q) - inverse) / max(s, 1e-300)
+            slopes[:, :count] = slopes[:, :count] @ inverse
+        stiffness = np.square(self._root[:count, None])
+        by_springs = stiffness * (unit - inverse) / max(pressure_there, 1e-300)
+        turning[:count, :count] += by_springs
 
     def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
         """
@@ -231,40 +260,6 @@ class WindBasisTable:
         if float(np.linalg.norm(scaled)) <= most:  # at least the spectral norm
             return np.zeros_like(slopes)
         return circulating * max(0.0, 1.0 - most / float(np.linalg.norm(scaled, 2)))
-
-    def _equilibrium(self, at: Floats, s: float, ahead: Floats, turning: Floats) -> Floats:
-        """
-        Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
-
-        It is found from the last equilibrium, by Broyden's method (Broyden 1965, Mathematics of
-        Computation 19, 577-593) with the slopes there, or new ones where these do not converge.
-        Where a branch flips, the path of equilibria ends: slopes follow the motion of a tree
-        without inertia (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523).
-        Where that ends far from any equilibrium, the pose of the weaker wind is repeated.
-        """
-        start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
-        inverse: Floats = np.eye(len(at))
-        for turn in range(_STEPS):
-            load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
-            load, missed = load / self._root, rest
-            rest = self._root * at - load
-            size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
-            nearest, least = (at, size) if size < least else (nearest, least)
-            if size < _AT_REST:
-                break
-            if size < before < np.inf:
-                change = inverse @ (rest - missed)
-                inverse += np.outer(step - change, step @ inverse) / float(step @ change)
-            else:
-                changes = self._slopes(self._shapes @ at, ahead)[0] if turn else turning
-                slope = np.eye(len(at)) - s * (changes / self._root / self._root[:, None]).T
-                lowest = float(np.linalg.eigvalsh(0.5 * (slope + slope.T))[0])
-                inverse[:] = np.linalg.inv(slope + max(0.0, 0.1 - 1.5 * lowest) * np.eye(len(at)))
-            before, step = size, -inverse @ rest
-            far = float(np.abs(self._shapes @ (step / self._root)).max())
-            step *= min(1.0, _FARTHEST / max(far, 1e-12))
-            at = at + step / self._root
-        return nearest if least < _NEAR_REST else start
 
     def _fill_aslant(self, table: np.void) -> None:
         """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""

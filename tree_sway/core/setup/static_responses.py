@@ -10,7 +10,7 @@ these and of the responses to gusts (`gust_responses`, `modes.leading_modes`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property, partial
 from typing import Any
 
@@ -21,13 +21,15 @@ from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.load_derivatives import LoadSlopes
+from tree_sway.core.setup.load_derivatives import LoadSlopes, SYMMETRIC
 from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
-_TURNS, _FARTHEST = 6, 1.0
+_TURNS = 6
+_FARTHEST = 1.0
+"""Largest key rotation of a pose in [rad]."""
 
 _TOGETHER = 2000
 """Branches of copies of a tree whose loads are found at once in numpy, for speed."""
@@ -62,12 +64,17 @@ class WindMoments:
 
     def __call__(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Moments by a wind (3,) of 1 kg/m^3 on a tree at x that moves at v, both (N,)."""
-        moments, (wx, wy, wz) = np.empty(self.n), wind.tolist()
-        if not self._plain:
-            self._compiled(x, v, moments, wx, wy, wz, 1.0)
-            return moments
-        self._in_numpy(x, v, wind, moments)
+        moments = np.empty(self.n)
+        self.fill(x, v, wind.tolist(), moments)
         return moments
+
+    def fill(self, x: Floats, v: Floats, wind: Iterable[float], moments: Floats) -> None:
+        """Write the moments of a call, (N,); arrays are contiguous."""
+        wx, wy, wz = wind
+        if self._plain:
+            self._in_numpy(x, v, np.array([wx, wy, wz]), moments)
+        else:
+            self._compiled(x, v, moments, wx, wy, wz, 1.0)
 
     def at_poses(self, poses: Floats, winds: Floats) -> Floats:
         """Moments (k, N) by winds (k, 3) as in a call, each on the tree held in a pose (k, N)."""
@@ -104,10 +111,11 @@ class WindMoments:
 
     def _in_numpy(self, x: Floats, v: Floats, wind: Floats, moments: Floats) -> None:
         """Write the moments, and in the records what `LoadSlopes` reads, as the kernel does."""
-        passes, n = self._passes, len(self.branches)
+        passes, count = self._passes, len(self.branches)
         angles, rates = passes.per_branch(x), passes.per_branch(v)
         bases = passes.outward(angles, rates)
-        force = passes.wind_forces(bases, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
+        at_once, impulse = np.zeros(count), np.zeros((count, 3))
+        force = passes.wind_forces(bases, angles, rates, wind, 1.0, at_once, impulse)
         _, work, loads = self._records
         work['force'] = passes.bent_loads(bases, angles, force, moments)
         for name in ('orientation', 'rotation', 'displacement', 'arm'):
@@ -119,15 +127,17 @@ class WindMoments:
 
     def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
         """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
-        branches, n = self.branches, len(self.branches)
-        moved = base_motion(branches, shapes)
-        at = moved[:, :3] + branches['coupling'].swapaxes(1, 2) @ moved[:, 3:]
-        at += own_motion(branches, 'load_mode', shapes)
-        projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(n, 3, 3)
+        branches = self.branches
+        base = base_motion(branches, shapes)
+        moved = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
+        moved += own_motion(branches, 'load_mode', shapes)
+        projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
-        load = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
-        return np.asarray((load[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1))
+        per_velocity = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
+        force = per_velocity[:, None] * across
+        n_components = 3 * len(branches)
+        return np.asarray(force.reshape(n_components, -1).T @ moved.reshape(n_components, -1))
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""
@@ -150,23 +160,42 @@ def static_responses(
         Dynamic pressure [kg/m/s^2] of a wind in [m/s].
 
     """
-    rest = np.zeros(moments.n)
-    directions = np.array([[np.cos(each), np.sin(each), 0.0] for each in _AZIMUTHS])
-    winds = np.repeat(directions, len(_SPEEDS), axis=0)
-    calm = np.zeros((len(directions), moments.n))
-    found = list(solve(moments.at_poses(calm, directions).T).T)
-    scale = np.array([pressure(speed) for speed in _SPEEDS])
-    x = np.zeros((len(directions), len(scale), moments.n))
-    for turn in range(_TURNS):
-        loads = moments.at_poses(x.reshape(-1, moments.n), winds)
-        scaled = np.tile(scale, len(directions))[:, None] * loads
-        x += (solve(scaled.T).T.reshape(x.shape) - x) / (turn + 2.0) ** 0.5
-        x *= np.minimum(1.0, _FARTHEST / np.maximum(np.abs(x).max(axis=2), 1e-12))[..., None]
+    level_winds = np.array([_direction(azimuth, 0.0) for azimuth in _AZIMUTHS])
+    at_rest = np.zeros((len(level_winds), moments.n))
+    small = solve(moments.at_poses(at_rest, level_winds).T).T
+    pressures = np.tile([pressure(speed) for speed in _SPEEDS], len(level_winds))[:, None]
+    far = _equilibria(moments, solve, np.repeat(level_winds, len(_SPEEDS), axis=0), pressures)
     # Where air has no pressure, none of these winds bends the tree.
-    found.extend((x / np.maximum(scale, 1e-300)[:, None]).reshape(-1, moments.n))
-    for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
-        for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
-            level = np.cos(rise)
-            wind = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(rise)])
-            found.append(solve(moments(rest, rest, wind)))
-    return np.array(found).T
+    per_pressure = far / np.maximum(pressures, 1e-300)
+    aslant = [solve(moments(at_rest[0], at_rest[0], wind)) for wind in _inclined_winds()]
+    return np.vstack([small, per_pressure, aslant]).T
+
+
+def _equilibria(
+    moments: WindMoments, solve: Callable[[Floats], Floats], winds: Floats, pressures: Floats
+) -> Floats:
+    """
+    Find the key rotations (k, N) at which a tree is at rest in winds (k, 3) of pressures (k, 1).
+
+    Each turn goes a part of the way to the pose that the springs have under the load of the last,
+    less and less of it, so that a pose between two that alternate is reached.
+    """
+    poses = np.zeros((len(winds), moments.n))
+    for turn in range(_TURNS):
+        loads = pressures * moments.at_poses(poses, winds)
+        poses += (solve(loads.T).T - poses) / (turn + 2.0) ** 0.5
+        farthest = np.maximum(np.abs(poses).max(axis=1, keepdims=True), 1e-12)
+        poses *= np.minimum(1.0, _FARTHEST / farthest)
+    return poses
+
+
+def _inclined_winds() -> list[Floats]:
+    """Return directions of winds that fall and rise, straight and aslant."""
+    aslant, straight = _AZIMUTHS[::2], _AZIMUTHS[:1]
+    azimuths_of = ((-0.5, straight), (-0.25, aslant), (0.25, aslant), (0.5, straight))
+    return [_direction(each, rise * np.pi) for rise, azimuths in azimuths_of for each in azimuths]
+
+
+def _direction(azimuth: float, elevation: float) -> Floats:
+    level = np.cos(elevation)
+    return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])

@@ -10,7 +10,7 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.numpy_rotation import two_axis_moment, within_guard
+from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
 from tree_sway.core.setup.gust_responses import drag_slopes
 from tree_sway.core.setup.numpy_branch_loads import Bases, NumpyPasses
 from tree_sway.core.setup.one_thread import one_thread

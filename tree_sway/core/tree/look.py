@@ -37,6 +37,7 @@ class Spray:
 FORMS = (
     'ovate',
     'pointed',
+    'heart',
     'lobed',
     'palmate',
     'compound',

@@ -271,12 +271,14 @@ interface Look {
   bark: number[];
   twig: number[];
   bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes" | "scales";
-  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
+  form: "ovate" | "pointed" | "heart" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
   /** Width of a leaf over its length. */
   slenderness: number;
   /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
   leaf_size: number;
   has_needles: boolean;
+  /** How far shoots hang down; 1 is half-way. */
+  droop?: number;
   /** Whether one alone stands in a pot. */
   is_potted: boolean;
   spray: Spray;

@@ -7,7 +7,7 @@ import { STRIDE } from "../placing.js";
 import { multiply, turned } from "../quaternions.js";
 import { lookOf, seeded } from "./looks.js";
 import { leafPlace } from "./mesh.js";
-import { leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
+import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
 const LARGEST_CARDS = 4;
@@ -22,8 +22,15 @@ const VARIETY = 200;
 /** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
  * drawn there over that of a cluster, and at most [m]. */
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
-/** Height up to which no small card is drawn [m]. */
-const BROWSED = 1.6;
+/** From which droop a tree weeps: the same wood of it, whose boughs a curtain hides, down to the ground. */
+const [WEEPS, THIN_WEEPING] = [0.8, 8];
+/** The frame of a shoot that hangs straight down. */
+const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
+/** Length of a candle of flowers over that of a leaf, its width over its length; how open to the sky the leaves
+ * are that it stands over, and how many cards there are to one. */
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.5, 17];
+/** Height up to which no small card is drawn [m], and that of a curtain. */
+const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers of a corner of a card. */
 const PER_CORNER = 19;
 const ORIGIN = [0, 0, 0];
@@ -45,11 +52,15 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   const look = lookOf(kind);
   const { each, along, spray, isSpread } = cardsOf(look, mean, carrier.length, cards, most);
   const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
-  if (isSpread) shoots.push(...bareShoots(kind, rest, branches, mean));
+  if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
+  const share = leafShare(look, along);
+  const uneven = look.has_needles ? 0.07 : 0.14;
+  const candle = candleCorners(CANDLE * wholeLeaf(look));
   // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
-  const lowest = look.is_potted ? -Infinity : rest[2] + Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
+  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
+  const lowest = look.is_potted ? -Infinity : rest[2] + browsed;
   const values = [];
   for (const shoot of shoots) {
     const p = STRIDE * hung[shoot.segment];
@@ -64,13 +75,21 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
       if (isSpread && end[2] < lowest) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards);
-      const tint = 1 + 0.16 * Math.sin(7 * shoot.phase + 2 * card);
+      const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
+      const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       for (const { place, swing, normal, u, v } of corners) {
         values.push(slot);
         values.push(...inFrame(own, place, shoot.size, centre));
         values.push(...inFrame(own, swing, shoot.size));
         values.push(...inFrame(own, normal, 1));
-        values.push(...light, shoot.frequency, shoot.phase + 2.4 * card, open, tint, u, v);
+        values.push(...light, ...flutter, open, tint, share * u, v);
+      }
+      if (share === 1 || open < CANDLE_OPEN || card % PER_CANDLE) continue;
+      // It stands upright, whatever the shoot does.
+      const foot = end.map((each, c) => each - rest[p + c]);
+      for (const { place, normal, u, v } of candle) {
+        values.push(slot, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
+        values.push(...turned(back, normal), ...light, ...flutter, open, 1, share + (1 - share) * v, u);
       }
     }
   }
@@ -102,31 +121,35 @@ function leafyShoot(kind, rest, i) {
 }
 
 /** Shoots at the end of each branch, and along thin wood that has no cluster: none of it is bare.
- * @param {Kind} kind @param {Float32Array} rest @param {Int32Array} branches that are drawn
+ * @param {Kind} kind @param {Look} look @param {Float32Array} rest @param {Int32Array} branches that are drawn
  * @param {number} mean size of clusters [m] @returns {Shoot[]} */
-function bareShoots({ arrays }, rest, branches, mean) {
+function bareShoots({ arrays }, look, rest, branches, mean) {
   const { branch_first: first, segment_length: length, segment_radius: radius, leaf_segment: carrier } = arrays;
   const leafy = new Set(carrier);
   const thickest = Math.max(...Array.from(leafy, (segment) => radius[2 * segment]));
   const frequency = arrays.leaf_frequency[0];
   /** @type {Shoot[]} */
   const shoots = [];
-  const size = Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const weeps = (look.droop ?? 0) > WEEPS;
+  const size = weeps ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const leafiest = thickest * (weeps ? THIN_WEEPING : THIN);
   const share = (size / mean) ** 2;
   /** @param {number} segment @param {number} along [m] */
   const add = (segment, along) => {
     const o = STRIDE * segment;
-    const frame = Array.from(rest.subarray(o + 4, o + 8));
-    const at = turned(frame, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    const own = Array.from(rest.subarray(o + 4, o + 8));
+    const frame = weeps ? DOWN : own;
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A dead stub stays bare.
-    if (length[end] > size || leafy.has(end)) add(end, length[end] - 0.5 * size);
+    const reach = Array.from(length.subarray(first[branch], end + 1)).reduce((sum, each) => sum + each, 0);
+    if (reach > 2 * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
-      if (leafy.has(segment) || radius[2 * segment] > THIN * thickest) continue;
-      const count = Math.ceil(length[segment] / (1.5 * size));
+      if (leafy.has(segment) || radius[2 * segment] > leafiest) continue;
+      const count = Math.ceil(length[segment] / ((weeps ? 0.7 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
@@ -195,6 +218,15 @@ function spreadCorners(look, { length, width }, random) {
     swing: normal.map((each) => length * (0.4 * u + v * width) * each),
     normal: normal.map((each, c) => each + 0.3 * u * away[c] + 0.5 * v * across[c]),
   }));
+}
+
+/** Corners of two crossed cards with a candle of flowers, which stands on 0 and goes down the picture from its
+ * tip. @param {number} long [m] */
+function candleCorners(long) {
+  const wide = CANDLE_WIDE * long;
+  return [[1, 0], [0, 1]].flatMap(([x, y]) => cornersOf((down, across) => ({
+    place: [x * wide * across, y * wide * across, long * (1 - down)], normal: [y, -x, 0.5],
+  })));
 }
 
 /** Four corners of a picture. @template T @param {(u: number, v: number) => T} at */

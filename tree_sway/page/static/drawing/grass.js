@@ -7,7 +7,7 @@ import { Gusts } from "./gusts.js";
 import { seeded } from "./looks.js";
 
 /** Blades with and without a graphics unit. */
-const [BLADES, FEW_BLADES] = [12000, 2500];
+const [BLADES, FEW_BLADES] = [26000, 2500];
 /** How far it grows over the size of the scene, and its height over that of the trees. */
 const [REACH, TALL] = [2, 0.03];
 /** Lowest and highest grass [m]. */

@@ -89,8 +89,8 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
       const joined = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : thick;
       let r = Math.max(isLast ? radius[2 * segment + 1] : joined, 0.56 * pixel);
       // The foot of the stem spreads into roots.
-      const foot = parents[branch] < 0 ? Math.exp(-risen / (2.5 * thick)) : 0;
-      r *= 1 + 0.9 * foot;
+      const foot = parents[branch] < 0 ? Math.exp(-risen / (1.3 * thick)) : 0;
+      r *= 1 + 0.7 * foot;
       const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
       const up = (risen * around) / (2 * Math.PI * thick);
       for (let k = 0; k < corners; k++) {

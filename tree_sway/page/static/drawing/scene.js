@@ -25,7 +25,7 @@ const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
 /** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
  * has all of its cards and of one that is a picture [px]. */
-const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
+const MOST = { segments: 40000, cards: 64000, all: 200000, near: 700, far: 90 };
 /** Of a crowd, whose kinds take memory. */
 const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */

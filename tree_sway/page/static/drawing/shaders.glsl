@@ -29,14 +29,17 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-// Share of the sun that reaches a point past what is some way above it, softly.
-float sunlight(vec3 p) {
+// Share of the sun that reaches a point past what is some way above it, softly; round the point it is asked
+// for at four places, turned by an angle.
+float sunlight(vec3 p, float soft, float turn) {
   vec3 at = 0.5 + 0.5 * fallen(p);
   float low = at.z - 0.35 * shadowTop * sqrt(1.0 / shadowTop);
-  float soft = 0.0035;
-  return 0.25 * (texture(sunMap, vec3(at.xy + vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(-0.4 * soft, soft), low))
-    + texture(sunMap, vec3(at.xy - vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(0.4 * soft, -soft), low)));
+  vec2 a = soft * vec2(cos(turn), sin(turn));
+  vec2 b = vec2(-a.y, a.x);
+  return 0.25 * (texture(sunMap, vec3(at.xy + a, low)) + texture(sunMap, vec3(at.xy + b, low))
+    + texture(sunMap, vec3(at.xy - a, low)) + texture(sunMap, vec3(at.xy - b, low)));
 }
+float sunlight(vec3 p) { return sunlight(p, 0.0038, 0.38); }
 
 #part hung sunlit
 // What hangs on a segment: its pose, and the scale of its tree.
@@ -182,17 +185,19 @@ void main() {
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
-  vec3 n = normalize(flat_ + 0.8 * outward * sign(dot(flat_, outward) + 1e-6));
+  // The crown is round: its leaves are lit as its surface is, more than as each lies.
+  vec3 n = normalize(0.8 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
   edge = dot(flat_, back);
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
-  float sunny = sunlight(p) * (0.45 + 0.55 * open);
-  vec3 up = sky * (0.1 + 0.9 * open) * (0.8 + 0.2 * n.z * side);
+  // Each leaf asks at places of its own: the border of a shadow is a mixture of light and dark leaves.
+  float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.5 + 0.5 * open);
+  vec3 up = sky * (0.2 + 0.8 * open) * (0.8 + 0.2 * n.z * side);
   // A leaf with the sun behind it shines yellow.
   vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
-  vec3 direct = sun * sunny * (0.22 + 0.85 * max(across, 0.0) + through);
+  vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
   // No two leaves have the same green.
   vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
   if (gloss > 0.0) shine = gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0);
@@ -316,10 +321,10 @@ void main() {
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
   vec3 p = vec3(foot, ground);
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * 0.09 * field.w;
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * 0.045 * field.w;
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.36, 0.46, 0.2), vec3(0.54, 0.55, 0.29), blade.w);
+  vec3 tint = mix(vec3(0.33, 0.45, 0.18), vec3(0.46, 0.53, 0.26), blade.w);
   // A blade that lies down shows its pale side.
   tint *= (corner == 0.0 ? 1.15 : 0.9) + 0.8 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
@@ -419,8 +424,8 @@ void main() {
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      vec3 lush = vec3(0.4, 0.47, 0.24);
-      vec3 dry = vec3(0.54, 0.53, 0.31);
+      vec3 lush = vec3(0.36, 0.46, 0.22);
+      vec3 dry = vec3(0.47, 0.51, 0.28);
       float patch_ = 0.5 + 0.5 * grain(p, 14.0, pixel) + 0.45 * grain(p, 3.1, pixel) + 0.3 * grain(p, 0.7, pixel);
       soil = mix(lush, dry, clamp(patch_, 0.0, 1.0));
       soil *= 1.0 + 0.42 * grain(p, 0.22, pixel) + 0.5 * grain(p * vec2(1.0, 0.6), 0.06, pixel)

@@ -9,7 +9,9 @@ const ALONG = [1, 3, 5, 8, 12, 18, 24];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
 const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
-const WITH_LEAFLETS = { compound: 0.7, digitate: 1 };
+const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
+/** Share of a picture beside a candle. */
+const LEAF_SHARE = 0.75;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
@@ -20,6 +22,10 @@ export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form
  * @param {number} along as in `leafPicture` */
 export const pictureWidth = ({ form, slenderness, spray }, along) =>
   along > 1 ? spray.width : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+
+/** Share of the width of a picture that leaves have; the flowers of a horse chestnut stand beside them.
+ * @param {Look} look @param {number} along as in `leafPicture` */
+export const leafShare = ({ form }, along) => (form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
 /** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
  * @param {Look} look @param {number} long length of a card [m] */
@@ -32,7 +38,9 @@ export function leavesAlong(look, long) {
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
  * @param {boolean} isAutumn @param {number} [size] of the picture [px] */
 export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128) {
-  const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along));
+  const share = leafShare(look, along);
+  const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
+  if (share < 1 && !isAutumn) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
   else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 26);
   else if (look.form === "tufts") brush.tufts();
@@ -122,14 +130,15 @@ const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(
  * spray. */
 class Brush {
   /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {number} width over length
-   * @param {() => number} random */
-  constructor(look, isAutumn, size, width, random) {
+   * @param {() => number} random @param {number} [share] of the picture's width that is painted on */
+  constructor(look, isAutumn, size, width, random, share = 1) {
     const turned = isAutumn && look.autumn;
     this.base = turned ? turned : look.green;
     this.fresh = turned ? turned.map((c) => 1.2 * c) : look.fresh;
     this.look = look;
     this.random = random;
     this.half = 0.5 * width;
+    this.isAutumn = isAutumn;
     this.unit = IN_LEAFLETS[look.form] ?? 1;
     const half = outlineOf(look).map(([x, y]) => [x, 0.5 * look.slenderness * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
@@ -137,7 +146,7 @@ class Brush {
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     // The picture fills the texture, however wide the card is.
-    this.context.setTransform(size, 0, 0, size / width, 0, size / 2);
+    this.context.setTransform(share * size, 0, 0, size / width, 0, size / 2);
     this.context.lineCap = "round";
   }
 
@@ -199,6 +208,9 @@ class Brush {
           const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
           const size = Math.min(unit * (0.7 + 0.35 * random()), 0.99 - cx, Math.sin(lean) * cy < 0 ? 1 : room);
           if (size > 0.3 * unit) this.at(cx, cy, lean, 1, () => this.leaf(size, light));
+          if (look.form === "heart" && layer && !this.isAutumn && random() < 0.3) {
+            this.at(cx, cy, lean + 0.8, 1, () => this.blossom(0.8 * unit));
+          }
         }
         const [ex, ey] = [x + long * Math.cos(turn), y + long * Math.sin(turn)];
         const size = Math.min(0.9 * unit, 0.99 - ex, (this.half - Math.abs(ey)) / Math.max(0.1, Math.abs(Math.sin(turn))));
@@ -293,11 +305,41 @@ class Brush {
     });
   }
 
+  /** A candle of white flowers beside the leaf, as high as the picture. */
+  candle() {
+    const { context, random } = this;
+    const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.4 * (1 / LEAF_SHARE - 1)];
+    for (let i = 0; i < 240; i++) {
+      const up = random();
+      const reach = half * (1 - up) ** 0.7;
+      const light = 0.78 + 0.22 * random();
+      context.fillStyle = i % 6 ? css([1, 0.98, 0.9], light) : css([0.95, 0.72, 0.6], light);
+      context.beginPath();
+      context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
+      context.fill();
+    }
+  }
+
+  /** Small pale flowers that hang under a leaf-like bract. @param {number} long [picture lengths] */
+  blossom(long) {
+    const { context, random } = this;
+    context.fillStyle = css([0.78, 0.82, 0.5], 1);
+    context.beginPath();
+    context.ellipse(0.3 * long, 0, 0.3 * long, 0.09 * long, 0, 0, 7);
+    context.fill();
+    for (let i = 0; i < 9; i++) {
+      context.fillStyle = css([0.97, 0.93, 0.62], 0.85 + 0.15 * random());
+      context.beginPath();
+      context.arc(long * (0.45 + 0.4 * random()), 0.4 * long * (random() - 0.5), 0.075 * long, 0, 7);
+      context.fill();
+    }
+  }
+
   /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
     const { look: { form, slenderness }, random } = this;
-    const size = (form === "digitate" ? 1 : 1.25) / IN_LEAFLETS[form];
+    const size = 1 / IN_LEAFLETS[form];
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
       for (const [lean, share] of [[2, 0.55], [-2, 0.55], [1.3, 0.8], [-1.3, 0.8], [0.6, 0.95], [-0.6, 0.95], [0, 1]]) {
