@@ -49,8 +49,8 @@ if TYPE_CHECKING:
 MOST_COORDINATES = 32
 """Largest number of coordinates that sensors correct."""
 
-_NOISE = 3.5
-"""Noise for which gains are found, over the noise of the sensors."""
+_NOISE, _DOUBTED = 3.5, 8.0
+"""Noise for which gains, and what the sensors tell, are found, over the noise of the sensors."""
 
 _FADE = 0.3
 _HISTORY = 64
@@ -63,7 +63,7 @@ _STIFFER, _MORE_DAMPED = 0.03, 0.2
 
 _FIRST_FIT, _FIT_LATER = 40.0, 1.4
 
-_TELLS_LITTLE, _TELLS_ENOUGH = 0.45, 0.6
+_TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 """
 Shares of the variance of a coordinate that the sensors take away below and above which its
 correction is not applied, and applied whole.
@@ -80,11 +80,12 @@ LATE_STEPS = SMOOTHED_LAG + len(_WINDOW) // 2
 
 
 class _Design(NamedTuple):
-    """Numbers of sensors, their noise (p,), and gains."""
+    """Numbers of sensors, their noise (p,), gains, and share told of each coordinate (n,)."""
 
     used: tuple[int, ...]
     noise: Floats
     gains: SteadyFilter
+    told: Floats
 
 
 @kernel
@@ -333,7 +334,7 @@ class Observer:
             return
         self._designing, self._used, self.noise = None, found.used, found.noise
         self._estimate = Estimate(found.gains, self._estimate)
-        told = (told_shares(found.gains) - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
+        told = (found.told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
         self._wanted_trust = np.clip(told, 0.0, 1.0)
         for k, track in enumerate(self.tracks):
             track.tells_little = k in found.used and not self._wanted_trust.any()
@@ -347,9 +348,13 @@ class Observer:
         found = [self._felt(k, self.damped) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
+        for doubted in filter_in_parts(law, sensed, _DOUBTED * noise):
+            yield None
+            if doubted is not None:
+                told = told_shares(doubted)
         lag = SMOOTHED_LAG if self._is_smoothed else 0
         for gains in filter_in_parts(law, sensed, _NOISE * noise, lag):
-            yield None if gains is None else _Design(used, noise, gains)
+            yield None if gains is None else _Design(used, noise, gains, told)
 
     def _present_law(self) -> SwayLaw:
         """Find the law of the unknown motion in the present wind, and its covariance."""
