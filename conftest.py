@@ -173,28 +173,21 @@ MODELS = ('60', 'full', 'branch')
 
 
 @pytest.fixture(scope='session', autouse=True)
-def kernels_are_compiled_once(shared_folder):
+def kernels_are_compiled_first():
     """
-    Compile the kernels of each model in one worker of a run, where they are not on disk yet.
+    Compile the kernels of each model before the tests, which measure their own effort.
 
-    All workers need them at once, and each would compile them by itself. A worker begins with the
-    model of its own number, and waits for those that another is compiling.
+    Each worker begins with the model of its own number, so that workers compile different kernels;
+    those that another one is compiling it waits for and reads (`kernel_claim`).
     """
     worker = os.environ.get('PYTEST_XDIST_WORKER', '')
-    if WHY_PLAIN or not worker or not sys.platform.startswith('linux'):
+    if WHY_PLAIN or not worker:
         return
-    import fcntl
-
     first = int(worker.removeprefix('gw')) % len(MODELS)
     for model in MODELS[first:] + MODELS[:first]:
-        with (shared_folder / f'kernels_of_{model}').open('a+') as marker:
-            fcntl.flock(marker, fcntl.LOCK_EX)
-            if marker.tell():
-                continue  # compiled
-            simulator = make_simulator(_stem(), model=model, cache=None)
-            simulator.step((5.0, 0.0, 0.0), 1.0 / 60.0)
-            simulator.place()
-            marker.write('compiled')
+        simulator = make_simulator(_stem(), model=model, cache=None)
+        simulator.step((5.0, 0.0, 0.0), 1.0 / 60.0)
+        simulator.place()
 
 
 @pytest.fixture(scope='session')

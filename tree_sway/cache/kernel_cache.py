@@ -7,7 +7,7 @@ numba's own cache checks only the file of a function, so that after an edit the 
 changed function run the old code. Here the key is a digest of all modules of the core, and of the
 package of a function if it is a different one, beside signature, processor, compiler version and
 flags. A kernel that cannot be read from disk is compiled again; one that cannot be written is
-stored in memory.
+stored in memory. Processes that need the same kernel at once compile it once (`kernel_claim`).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ import re
 import sys
 from typing import Any
 
+from tree_sway.cache.kernel_claim import KernelClaim
 from tree_sway.cache.kernel_folder import complain, kernel_folder, read_own, write_own
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -93,6 +94,7 @@ class KernelCache:
             ]
         )
         self._enabled = bool(digest)
+        self._claims: dict[Path, KernelClaim] = {}
 
     @property
     def cache_path(self) -> str:
@@ -111,10 +113,16 @@ class KernelCache:
         """Do nothing: changed source has a different key."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return compiled code for a signature, or None."""
+        """Return compiled code for a signature, or None where this process is to compile it."""
         path = self._path(sig, target_context.codegen())
-        if path is None or not path.is_file():
+        if path is None:
             return None
+        if not path.is_file():
+            claim = KernelClaim(path)
+            if not path.is_file():
+                self._claims[path] = claim
+                return None
+            claim.release()  # another process has compiled it meanwhile
         # The typing of numba takes long to load; compiled code does not need it, of it, and
         # whatever compiles loads it then.
         import_module('numba.core.runtime').rtsys.initialize(target_context)
@@ -128,12 +136,16 @@ class KernelCache:
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write compiled code atomically."""
         path = self._path(sig, data.codegen)
-        if path is None or not self._codec.check_cachable(None, data):
+        if path is None:
             return
         try:
-            write_own(path, self._dumps(self._codec.reduce(None, data)))
+            if self._codec.check_cachable(None, data):
+                write_own(path, self._dumps(self._codec.reduce(None, data)))
         except OSError as error:
             complain(f'compiled kernels cannot be stored: {error}')
+        finally:
+            if path in self._claims:
+                self._claims.pop(path).release()
 
     def _path(self, sig: Any, codegen: Any) -> Path | None:
         folder = kernel_folder() if self._enabled else None

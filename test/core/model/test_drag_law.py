@@ -150,7 +150,7 @@ def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     x, v = sim.banks[0].oscillators.motion()
     x[0] = 0.1
     sim.banks[0].oscillators.take_over(x, v)
-    rate = 2000
+    rate = 500
     per_cycle = rate / sim.frequencies(1)[0]
     tip = []
     for _ in range(round(12.2 * per_cycle)):
