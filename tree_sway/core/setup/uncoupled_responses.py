@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
@@ -68,7 +68,7 @@ def uncoupled_responses(
     load_mode, damping_mode = branches['load_mode'][:, :2], branches['damping_mode'][:, :2]
     steady, gusts = np.zeros((2, 0, 2 * len(branches)))
     for speed in _SPEEDS:
-        per_speed = pressure(speed, *law)
+        per_speed = drag_density(speed, *law)
         still, swings = [], []
         for ahead in ways:
             still.append(_equilibrium(passes, stiffness, speed * ahead, per_speed))
