@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
     'mqtt://host/topic, signalk://host, http://host/path.json, tempest, weatherlink:HOST, '
-    'ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
+    'cumulus:HOST/realtime.txt, ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
 )
 _LOOK = 0.1
 _PATIENCE = 90.0
