@@ -24,7 +24,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
@@ -193,7 +193,7 @@ class LimpStep(WindBasisBank):
         if not is_refused:
             stored[:] = x, y, z
         wx, wy, wz = stored.tolist()
-        load = pressure(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
+        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
         return int(is_refused) + 2 * self._step_once(wx, wy, wz, load)
 
     def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -212,7 +212,7 @@ class LimpStep(WindBasisBank):
             self._forget()
             outside = int(self._step(wx, wy, wz, per_speed_squared))
         else:
-            instance['wind'], instance['pressure'] = (wx, wy, wz), per_speed_squared
+            instance['wind'], instance['drag_density'] = (wx, wy, wz), per_speed_squared
             instance['outside'], instance['diagonal'] = 0, 0.0
         self._take(share)
         return outside
