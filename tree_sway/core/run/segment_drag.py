@@ -4,7 +4,7 @@
 Drag of the wind on every segment of a tree at its pose, as it is placed.
 
 The force on a segment of area A is ``p A |u| u`` with u the velocity of the air across the segment
-and p `drag_law.pressure`. The velocity of the segment is the difference of its places a little
+and p `drag_law.drag_density`. The velocity of the segment is the difference of its places a little
 ahead and behind along the motion. A segment's load on a coordinate is the work that its force does
 per unit of it.
 """
