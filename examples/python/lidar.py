@@ -1,14 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A laser scanner among trees that move: the wood as a `PointCloud2` on `points`, ten times a second.
+A laser scanner among moving trees: wood and leaves as a `PointCloud2` on `points`, at 10 Hz.
 
     ros2 launch tree_sway_ros sway.launch.py tree:=$PWD/config/forest.yaml
     python examples/python/lidar.py --at 20 0 1.5
 
-Each pulse meets the nearest segment, a cylinder of its mean radius, where it is in the newest
-frame of `segment_poses`; a whole turn is of that frame. Leaves, the ground and the width of the
-beam are left out.
+Each pulse meets the nearest cylinder where it is in the newest frame of `segment_poses`; a whole
+turn is of that frame. A segment is a cylinder of its mean radius, and so is each cluster of leaves
+in `tree_description`. The ground and the width of the beam are left out.
 """
 
 from __future__ import annotations
@@ -115,6 +115,43 @@ class Lidar:
         return np.stack([np.ceil(low / step), np.floor(high / step)], axis=1).astype(np.int64)
 
 
+class Cylinders:
+    """
+    Wood and leaves of a `tree_description`, carried by the segments.
+
+    A cluster of leaves of diameter d has the area of a disc, whose shadow is half of it in the
+    mean of all directions. That of a cylinder as long, of radius d / 4, is as large.
+    """
+
+    def __init__(self, description: dict) -> None:
+        segments, leaves = description['segments'], description.get('leaves', {})
+        radii = np.array([segments['base_radii'], segments['tip_radii']])
+        size = np.array(leaves.get('size', []))
+        self.n_segments = len(segments['lengths'])
+        self.length = np.concatenate([segments['lengths'], size])
+        self.radius = np.concatenate([radii.mean(axis=0), size / 4.0])
+        self._segment = np.array(leaves.get('segment', []), dtype=np.int64)
+        self._centre = np.array(leaves.get('offset', [])).reshape(-1, 3)
+        turns = np.array(leaves.get('orientation', [])).reshape(-1, 4)  # w x y z
+        x, y, z = turns[:, 1], turns[:, 2], turns[:, 3]
+        w = turns[:, 0]
+        self._axis = np.stack(
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
+        )
+
+    def placed(self, places: Floats, turns: Floats) -> tuple[Floats, Floats]:
+        """Return starts and axes, (n, 3) each, of segments at places and turns of x y z w."""
+        turn = Rotation.from_quat(turns)
+        wood = turn.apply([1.0, 0.0, 0.0])
+        if len(self._segment) == 0:
+            return places, wood
+        carrier = turn[self._segment]
+        leaf = carrier.apply(self._axis)
+        centre = places[self._segment] + carrier.apply(self._centre)
+        start = centre - 0.5 * self.length[self.n_segments :, None] * leaf
+        return np.concatenate([places, start]), np.concatenate([wood, leaf])
+
+
 def cloud_of(points: Floats, poses: PoseArray) -> PointCloud2:
     """Return points in the frame and at the time of poses, as x y z float32."""
     fields = [
@@ -132,7 +169,9 @@ class Scanner:
     """Scans the newest frame of the trees at a rate [Hz]."""
 
     def __init__(self, node: rclpy.node.Node, lidar: Lidar, rate: float) -> None:
-        self._lidar, self._sizes, self._poses = lidar, None, None
+        self._lidar = lidar
+        self._cylinders: Cylinders | None = None
+        self._poses: PoseArray | None = None
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node.create_subscription(String, 'tree_description', self._describe, latched)
         node.create_subscription(PoseArray, 'segment_poses', self._see, 2)
@@ -140,26 +179,23 @@ class Scanner:
         node.create_timer(1.0 / rate, self._scan)
 
     def _describe(self, message: String) -> None:
-        segments = json.loads(message.data)['segments']
-        radii = np.array([segments['base_radii'], segments['tip_radii']])
-        self._sizes = np.array(segments['lengths']), radii.mean(axis=0)
+        self._cylinders = Cylinders(json.loads(message.data))
 
     def _see(self, message: PoseArray) -> None:
         self._poses = message
 
     def _scan(self) -> None:
-        if self._poses is None or self._sizes is None:
+        poses, cylinders = self._poses, self._cylinders
+        if poses is None or cylinders is None or len(poses.poses) != cylinders.n_segments:
             return
-        poses, (length, radius) = self._poses, self._sizes
         places = [(p.position.x, p.position.y, p.position.z) for p in poses.poses]
         turns = [
             (p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
             for p in poses.poses
         ]
-        if len(places) == len(length):
-            axis = Rotation.from_quat(turns).apply([1.0, 0.0, 0.0])
-            points = self._lidar.points(np.array(places), axis, length, radius)
-            self._points.publish(cloud_of(points, poses))
+        start, axis = cylinders.placed(np.array(places), np.array(turns))
+        points = self._lidar.points(start, axis, cylinders.length, cylinders.radius)
+        self._points.publish(cloud_of(points, poses))
 
 
 def main() -> None:

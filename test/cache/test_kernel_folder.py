@@ -14,6 +14,7 @@ import time
 
 import pytest
 
+from tree_sway.cache import kernel_folder as kernel_folder_module
 from tree_sway.cache import kernel_folder as module
 from tree_sway.cache.kernel_folder import kernel_folder, read_own, UNUSED, why_unsafe, write_own
 
@@ -125,6 +126,26 @@ def test_a_machine_that_is_read_only_has_none(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setenv('XDG_CACHE_HOME', '/proc/none')
     with pytest.warns(RuntimeWarning, match='no folder for compiled kernels can be written'):
         assert chosen(Path('/proc/none/kernels'), monkeypatch) is None
+
+
+@pytest.mark.parametrize('kind', ['file', 'circle', 'long', 'nowhere'])
+def test_a_given_folder_that_cannot_be_used_is_told_and_replaced(
+    place: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    given = place / 'given'
+    if kind == 'file':
+        given.write_text('')
+    elif kind == 'circle':
+        given.symlink_to(given)
+    elif kind == 'long':
+        given = place / ('a' * 300)
+    else:
+        given = Path('/proc/none/kernels')
+    monkeypatch.setenv('XDG_CACHE_HOME', str(place))
+    monkeypatch.setattr(kernel_folder_module, '_said', set())
+    with pytest.warns(RuntimeWarning, match='which was given') as told:
+        assert chosen(given, monkeypatch) == place / 'tree_sway'
+    assert len(told) == 1
 
 
 def test_kernels_that_nobody_reads_are_removed(

@@ -51,15 +51,27 @@ def test_a_film_is_the_picture_of_the_page(tmp_path: Path) -> None:
     assert tree[1] > tree[0]
 
 
-def test_a_browser_that_draws_nothing_is_named_and_ends(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ('lasts', 'patience', 'expected'),
+    [('exec sleep 60', 0.2, 'drew nothing'), ('exit 7', 60.0, 'ended with status 7')],
+)
+def test_a_browser_that_draws_nothing_or_ends_is_named(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    lasts: str,
+    patience: float,
+    expected: str,
 ) -> None:
-    monkeypatch.setattr(film, 'browser', lambda: '/bin/true')
-    monkeypatch.setattr(film, '_PATIENCE', 0.2)
+    program = tmp_path / 'browser'
+    program.write_text(f'#!/bin/sh\n{lasts}\n')
+    program.chmod(0o700)
+    monkeypatch.setattr(film, 'browser', lambda: str(program))
+    monkeypatch.setattr(film, '_PATIENCE', patience)
     monkeypatch.setattr(render, 'browser', film.browser)
     target = tmp_path / 'sway.gif'
     assert main(['render', SEEDLING, '--seconds', '0.2', '-o', str(target)]) == 2
-    assert 'drew nothing' in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert not target.exists()
 
 

@@ -23,6 +23,7 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway.commands import sensor_arguments  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.commands.sensor_arguments import HELP  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
@@ -133,6 +134,23 @@ def test_means_are_recorded_with_their_gusts(tmp_path: Path, no_ros: None) -> No
     record = read_wind(out)
     assert any('by their gusts' in note for note in record.notes)
     assert record.velocity[:, 1].mean() == pytest.approx(6.0, rel=0.1)
+
+
+def test_a_source_that_is_not_reached_is_told_at_once_and_given_up_soon(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A machine without a network, or a server that is gone."""
+    monkeypatch.setattr(sensor_arguments, '_UNREACHED', 1.0)
+    server = 'http://127.0.0.1:1/v1'
+    address = f'open-meteo:52.5,13.4?server={server}'
+    began = time.monotonic()
+    assert main(['simulate', SEEDLING, '--sensor', address, '-o', str(tmp_path / 'a.csv')]) == 2
+    assert time.monotonic() - began < sensor_arguments._PATIENCE
+    said = capfd.readouterr().err
+    assert f'sensor: waiting for {server}; Ctrl-C ends it\n' in said
+    last = said.splitlines()[-1]
+    assert 'no wind within 1 s: no connection: ' in last
+    assert '127.0.0.1:1' in last
 
 
 @pytest.mark.parametrize(

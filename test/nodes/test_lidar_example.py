@@ -3,6 +3,7 @@
 """The example of a laser scanner: each pulse beside all cylinders, and a cloud on the wire."""
 
 import importlib.util
+import json
 import os
 from pathlib import Path
 import subprocess
@@ -10,14 +11,17 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from sensor_msgs.msg import PointCloud2  # noqa: E402, I100
 
+from tree_sway.core.leaves.foliage import leaf_clusters  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.wire.tree_description import describe  # noqa: E402
 
 EXAMPLE = Path(__file__).parents[2] / 'examples' / 'python' / 'lidar.py'
 
@@ -58,6 +62,24 @@ def test_each_pulse_meets_what_is_nearest_of_all(lidar):
     expected = expected[expected < 120.0]
     assert len(expected) > 300
     np.testing.assert_allclose(np.linalg.norm(points, axis=1), expected, atol=1e-9)
+
+
+def test_leaves_hang_where_their_segments_are(lidar):
+    tree = open_tree('benjamina').tree
+    clusters = leaf_clusters(tree, np.random.default_rng(0), count=200)
+    cylinders = lidar.Cylinders(json.loads(describe(tree, 'map', 'tree', clusters)))
+    turn = Rotation.from_quat(tree.rest_poses[:, 3:])
+    start, axis = cylinders.placed(tree.rest_poses[:, :3], tree.rest_poses[:, 3:])
+    n = tree.n_segments
+    centre = start[n:] + 0.5 * cylinders.length[n:, None] * axis[n:]
+    expected = tree.start[clusters.segment] + turn[clusters.segment].apply(clusters.offset)
+    np.testing.assert_allclose(centre, expected, atol=2e-4)
+    away = Rotation.from_quat(clusters.orientation[:, [1, 2, 3, 0]]).apply([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(axis[n:], turn[clusters.segment].apply(away), atol=1e-3)
+    # The mean shadow of a cylinder is a quarter of its surface, that of a disc half of its area.
+    area = 0.25 * np.pi * clusters.size**2
+    mantle = 2.0 * np.pi * cylinders.radius[n:] * cylinders.length[n:]
+    np.testing.assert_allclose(mantle / 4.0, 0.5 * area, rtol=2e-3, atol=1e-6)
 
 
 def test_a_cloud_lies_on_the_wood(compose, observer, domain, tree_file):

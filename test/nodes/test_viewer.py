@@ -14,6 +14,9 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+import tree_sway.page.server as server_module  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.placing import Placer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
@@ -21,6 +24,7 @@ from tree_sway.stream.protocol import (  # noqa: E402
     PAUSED,
     WIND_LOST,
 )
+from tree_sway_ros.nodes.viewer import USUAL_OR_FREE  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
     message_class,
     SEGMENT_POSES,
@@ -88,6 +92,13 @@ def test_the_page_is_fed_and_passes_changes_on(compose, observer, tree_file):
     while nodes['anemometer'].values['mean_speed'] != 11.5:
         assert time.monotonic() < end
         threading.Event().wait(0.01)
+
+
+def test_the_usual_port_or_a_free_one(compose, monkeypatch):
+    with PageServer(PageSettings(port=0)) as other:
+        monkeypatch.setattr(server_module, 'USUAL_PORT', other.port)
+        nodes = compose(viewer={'port': USUAL_OR_FREE})
+        assert nodes['viewer'].server.port not in (0, other.port)
 
 
 def wind_of_status(url, holds):

@@ -185,6 +185,7 @@ def test_what_is_no_path_is_refused(text: str) -> None:
         ('modbus:host?speed=0&direction=500', 'registers'),
         ('signalk:host', 'no host'),
         ('weatherlink:', 'no host'),
+        ('cumulus:', 'no host'),
     ],
 )
 def test_a_wrong_address_is_refused_in_words(address: str, message: str) -> None:

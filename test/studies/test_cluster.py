@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
+import multiprocessing
 import os
 from pathlib import Path
 import re
@@ -191,6 +192,31 @@ def test_results_come_as_they_are_done(apart: Apart) -> None:
     with cluster.cluster(1, apart.address) as (distributed, client):
         work = [(f'piece {k}', (k,)) for k in range(5)]
         assert sorted(run_all(distributed, client, abs, work)) == [0, 1, 2, 3, 4]
+
+
+def study_with_another(started: list[multiprocessing.process.BaseProcess]) -> None:
+    """Start a worker, then a process that is none, and press Ctrl-C."""
+    with cluster.cluster(1):
+        until(multiprocessing.active_children)
+        started += multiprocessing.active_children()
+        context = multiprocessing.get_context('spawn')
+        started.append(context.Process(target=time.sleep, args=(DEADLINE,)))
+        started[-1].start()
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.skipif(not hasattr(signal, 'pthread_sigmask'), reason='delays Ctrl-C by a mask')
+def test_ctrl_c_in_a_study_ends_its_own_workers_alone() -> None:
+    """A program that calls the library may have processes of its own, also younger ones."""
+    started: list[multiprocessing.process.BaseProcess] = []
+    with pytest.raises(KeyboardInterrupt):
+        study_with_another(started)
+    *workers, other = started
+    until(lambda: not any(each.is_alive() for each in workers))
+    is_alive = other.is_alive()
+    other.kill()
+    other.join()
+    assert is_alive
 
 
 STUDY = """

@@ -16,7 +16,8 @@ from tree_sway.studies.compute import _wind
 from tree_sway.studies.plan import read_study
 
 ONE = 'trees: [goldcrest]\n'
-LEAST = ONE + 'winds:\n- {speed: 3}\n'
+WINDS = 'winds:\n- {speed: 3}\n'
+LEAST = ONE + WINDS
 GROWN = 'trees:\n  - grow: {species: '
 
 
@@ -87,6 +88,8 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
         (f'{LEAST}settings: {{damping_ratio: strong}}', ParameterError, 'strong'),
         (f'{ONE}winds: [{{file: gone.csv}}]', FormatError, r'gone\.csv'),
         (f'{ONE}winds: [{{seeds: 2}}]', FormatError, 'a wind is a file or a speed'),
+        (f'trees: [{{}}]\n{WINDS}', FormatError, 'yaml:1: a tree is a file or grown; give one of'),
+        (f'trees: [{{file: goldcrst}}]\n{WINDS}', FormatError, "mean 'goldcrest'"),
         ('trees: [', FormatError, r'study\.yaml:'),
         (f'{ONE}winds: [{{speed: 3, intensity: true}}]', FormatError, "intensity is 'true'"),
         (f'{LEAST}settings: {{model: {"9" * 5000}}}', ParameterError, "unknown model '999"),
@@ -140,6 +143,14 @@ def test_the_built_in_wind_is_one_of_a_study(study, tmp_path):
     assert (twice.velocity == 2.0 * once.velocity).all()
     (tmp_path / 'canopy').write_text('time,u,v\n0,1,0\n1,2,0\n', encoding='utf-8')
     assert [case.wind['file'] for case in read_study(path)] == [str(tmp_path / 'canopy')] * 2
+
+
+def test_a_tree_of_a_file_can_be_written_as_a_wind_of_one(study, tmp_path):
+    (tmp_path / 'own.yaml').write_text('segments: []\n', encoding='utf-8')
+    short = read_study(study(f'trees: [own.yaml, goldcrest]\n{WINDS}'))
+    long = read_study(study(f'trees: [{{file: own.yaml}}, {{file: goldcrest}}]\n{WINDS}'))
+    assert short == long
+    assert long[0].tree == {'file': str(tmp_path / 'own.yaml')}
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):

@@ -41,9 +41,9 @@ def kernel_folder() -> Path | None:
     places.append(Path(home) / 'tree_sway')
     with suppress(FileNotFoundError):  # no folder is writable
         places.append(Path(tempfile.gettempdir()) / own)
-    for place in places:
-        place = place.resolve()  # no link is followed from here on
+    for candidate in places:
         try:
+            place = candidate.resolve()  # no link is followed from here on
             for folder in (*reversed(place.parents), place):
                 if not folder.is_dir():
                     folder.mkdir(mode=0o700, exist_ok=True)
@@ -52,7 +52,9 @@ def kernel_folder() -> Path | None:
                 continue
             with tempfile.TemporaryFile(dir=place) as probe:
                 probe.write(b'\0' * 4096)
-        except OSError:
+        except (OSError, RuntimeError) as error:  # links in a circle are a RuntimeError until 3.12
+            if asked and candidate is places[0]:
+                complain(f'nothing is stored in {candidate}, which was given: {error}')
             continue
         # Kernels that are no longer read, and what processes left that were killed.
         for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT), ('claim', _PART_LEFT)):

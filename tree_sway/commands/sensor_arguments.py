@@ -24,11 +24,13 @@ if TYPE_CHECKING:
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
     'mqtt://host/topic, signalk://host, http://host/path.json, tempest, weatherlink:HOST, '
-    'ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
+    'cumulus:HOST/realtime.txt, ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
 )
 _LOOK = 0.1
 _PATIENCE = 90.0
 """Longest wait for the first wind of a source [s]: a garden station sends once in a minute."""
+_UNREACHED = 12.0
+"""Longest wait for its connection [s]: a little longer than a request may take."""
 
 
 def add_sensor_argument(parser: argparse.ArgumentParser, *others: str) -> None:
@@ -65,13 +67,18 @@ def listening(
 
 
 def wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
-    """Wait for the first reading; a `TransportError` with the reason if none comes."""
-    pause, end = threading.Event(), time.monotonic() + patience
+    """
+    Wait for the first reading.
+
+    A `TransportError` with the reason reports that none came, or sooner that the source was never
+    reached.
+    """
+    pause, began = threading.Event(), time.monotonic()
+    say(f'waiting for {wind.link.transport}; Ctrl-C ends it')
     while wind.newest is None:
-        if time.monotonic() > end:
-            raise TransportError(
-                f'no wind within {patience:g} s: {wind.problem}', where='--sensor'
-            )
+        limit = patience if wind.link.connections else min(patience, _UNREACHED)
+        if time.monotonic() > began + limit:
+            raise TransportError(f'no wind within {limit:g} s: {wind.problem}', where='--sensor')
         pause.wait(_LOOK)
 
 

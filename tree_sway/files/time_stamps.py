@@ -12,6 +12,7 @@ us or ns, that.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
@@ -141,14 +142,12 @@ def _total_step(found: Sequence[re.Match[str]], is_month_first: bool) -> int:
 def _microseconds(stamp: str, is_month_first: bool) -> int:
     """Microseconds after 1970-01-01, `_NONE` for other text than a date."""
     match = _STAMP.fullmatch(stamp)
-    if match is None:
-        general = _ANY.fullmatch(stamp)
-        return _NONE if general is None else _general(general, is_month_first)
-    try:
-        microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
-    except ValueError:  # a month 13 or a February 30
-        return _NONE
-    return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
+    if match is not None:
+        with suppress(ValueError):  # 24:00, a month 13 or a February 30
+            microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
+            return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
+    general = _ANY.fullmatch(stamp)
+    return _NONE if general is None else _general(general, is_month_first)
 
 
 def _general(match: re.Match[str], is_month_first: bool) -> int:

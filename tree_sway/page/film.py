@@ -18,6 +18,7 @@ import shutil
 import subprocess
 from tempfile import TemporaryDirectory
 from threading import Thread
+import time
 from urllib.parse import urlencode
 
 from tree_sway.core.scene.scene_simulator import Simulator
@@ -34,6 +35,8 @@ _WIDTH = 1.6
 """Width of a picture over its height."""
 _PATIENCE = 120.0
 """Time without a picture after which the browser is stopped [s]."""
+_LOOK = 0.5
+"""Interval at which it is looked whether the browser still runs [s]."""
 
 
 def browser() -> str | None:
@@ -105,11 +108,24 @@ def page_pictures(
                 wind, coordinates = simulator.wind.tolist(), scene.coordinates().tolist()
                 state = {'time': number / rate, 'wind': wind, 'coordinates': coordinates}
                 states.put(json.dumps(state).encode())
-                yield pictures.get(timeout=_PATIENCE)
-        except Empty:
-            what = f'the browser drew nothing for {_PATIENCE:.0f} s'
-            raise TransportError(what, where=words[0], cure='give fewer --pixels') from None
+                yield _next_picture(pictures, process, words[0])
         finally:
             process.kill()
             process.wait()
             server.shutdown()
+
+
+def _next_picture(pictures: Queue[bytes], process: subprocess.Popen[bytes], where: str) -> bytes:
+    """Wait for a picture; a `TransportError` reports a browser that ended or draws nothing."""
+    end = time.monotonic() + _PATIENCE
+    while time.monotonic() < end:
+        has_ended = process.poll() is not None
+        try:
+            return pictures.get(timeout=_LOOK)
+        except Empty:
+            if has_ended:
+                what = f'the browser ended with status {process.returncode}'
+                cure = 'start it by itself to see why'
+                raise TransportError(what, where=where, cure=cure) from None
+    what = f'the browser drew nothing for {_PATIENCE:.0f} s'
+    raise TransportError(what, where=where, cure='give fewer --pixels')

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.model.fill_records import rotation_modes_of
+from tree_sway.core.model.fill_records import segment_turns_of
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description
@@ -116,7 +116,7 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            turns.append(rotation_modes_of(record, segments).reshape(-1, 3))
+            turns.append(segment_turns_of(record, segments).reshape(-1, 3))
             count += len(turns[-1])
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)

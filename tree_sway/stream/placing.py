@@ -119,7 +119,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
         rest=arrays['segment_rest'],
         slope=arrays['segment_slope'],
         tip_slope=arrays['segment_tip_slope'],
-        rotation_mode=_rotation_modes(arrays, first, n_keys, room),
+        segment_turn=_segment_turns(arrays, first, n_keys, room),
     )
     branches = np.zeros(len(parent), branch_layout(room))
     fill_places(places, branches)
@@ -154,7 +154,7 @@ def _base_rotations(arrays: dict[str, Array], parent: Ints, n_keys: Ints, room: 
     return rotation
 
 
-def _rotation_modes(arrays: dict[str, Array], first: Ints, n_keys: Ints, room: int) -> Floats:
+def _segment_turns(arrays: dict[str, Array], first: Ints, n_keys: Ints, room: int) -> Floats:
     """
     Rotation of each segment per unit of its branch's keys, (n, room, 3).
 

@@ -16,7 +16,6 @@ from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from multiprocessing import active_children, resource_tracker
-from multiprocessing.process import BaseProcess
 import signal
 import sys
 import threading
@@ -227,13 +226,19 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
     page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
     dask, distributed = import_module('dask'), import_module('distributed')
     import_module('cryptography')  # keys that exclude other users of this machine
-    before = active_children()
+    parents: list[Any] = []
+
+    def parent(*arguments: Any, **options: Any) -> Any:
+        parents.append(distributed.Nanny(*arguments, **options))
+        return parents[-1]
+
     with delayed_interrupt() as delayed:
         with (
             dask.config.set(settings),
             distributed.utils.silence_logging_cmgr('CRITICAL'),
             distributed.LocalCluster(
-                n_workers=0, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',
+                n_workers=0, processes=True, worker_class=parent, threads_per_worker=1,
+                memory_limit=0, silence_logs='CRITICAL',
                 scheduler_kwargs={'allowed_failures': ATTEMPTS - 1, **page}, security=True,
             ) as local,
             distributed.Client(local) as client,
@@ -245,16 +250,17 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
             except BaseException:  # Ctrl-C: running cases are computed in the next run
                 is_closed = threading.Event()
                 delayed.callback(is_closed.set)
-                threading.Thread(target=_kill_workers, args=(before, is_closed)).start()
+                threading.Thread(target=_kill_workers, args=(parents, is_closed)).start()
                 raise
 
 
-def _kill_workers(others: Sequence[BaseProcess], is_closed: threading.Event) -> None:
-    """Kill the children that are not among others, also those that start until it is closed."""
+def _kill_workers(parents: Sequence[Any], is_closed: threading.Event) -> None:
+    """Kill the workers of some parents in Dask, also those that start until it is closed."""
     while not is_closed.wait(_KILL_PERIOD):
-        for worker in active_children():
-            if worker not in others:
-                worker.kill()
+        own = {parent.pid for parent in parents}
+        for process in active_children():
+            if process.pid in own:
+                process.kill()
 
 
 def delayed_interrupt() -> ExitStack:

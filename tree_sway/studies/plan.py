@@ -28,7 +28,7 @@ from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
 from tree_sway.studies.cluster import ROOMS
-from tree_sway.studies.refuse_impossible import listed, refuse_impossible
+from tree_sway.studies.refuse_impossible import listed, named_tree, refuse_impossible
 
 Plain = dict[str, Any]
 
@@ -131,7 +131,8 @@ def _refuse_large(study: Plain, case: Case, where: str) -> None:
     """Refuse too many cases, or too many steps of one, before any is made."""
     trees = winds = 0
     for entry in study['trees']:
-        trees += 1 if isinstance(entry, str) else _count(entry['grow'], 'species', 'height')
+        is_grown = isinstance(entry, dict) and 'grow' in entry
+        trees += _count(entry['grow'], 'species', 'height') if is_grown else 1
     for entry in study['winds']:
         winds += _count(entry, 'speed', 'intensity', 'scale')
     settings = math.prod(len(listed(value)) for value in study.get('settings', {}).values())
@@ -155,9 +156,9 @@ def _count(entry: Plain, *names: str) -> int:
 def _trees(entries: list[Any], folder: Path) -> list[Plain]:
     found: list[Plain] = []
     for entry in entries:
-        if isinstance(entry, str):
-            beside = folder / path_of(entry)
-            found.append({'file': str(beside)} if is_file(beside) else {'name': entry})
+        if (name := named_tree(entry)) is not None:
+            beside = folder / path_of(name)
+            found.append({'file': str(beside)} if is_file(beside) else {'name': name})
         else:
             grow = entry['grow']
             rows = itertools.product(

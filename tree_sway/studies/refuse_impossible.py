@@ -34,7 +34,8 @@ def refuse_impossible(document: YamlDocument, folder: Path) -> None:
     Raises
     ------
     FormatError
-        An unknown tree, or a wind that is not either a file or a speed.
+        An unknown tree, a tree that is not either a file or grown, or a wind that is not either a
+        file or a speed.
     SpeciesError
         An unknown species.
     ParameterError
@@ -43,10 +44,12 @@ def refuse_impossible(document: YamlDocument, folder: Path) -> None:
     """
     for number, entry in enumerate(document.values['trees']):
         with _at(document, 'trees', number):
-            if isinstance(entry, str):
-                _refuse_unknown_tree(entry, folder)
-        if isinstance(entry, dict):
-            _refuse_grown(document, number, entry['grow'])
+            if isinstance(entry, dict) and ('file' in entry) == ('grow' in entry):
+                raise FormatError('a tree is a file or grown', cure='give one of file and grow')
+            if (name := named_tree(entry)) is not None:
+                _refuse_unknown_tree(name, folder)
+                continue
+        _refuse_grown(document, number, entry['grow'])
     for number, entry in enumerate(document.values['winds']):
         with _at(document, 'winds', number):
             _refuse_wind(entry)
@@ -55,6 +58,11 @@ def refuse_impossible(document: YamlDocument, folder: Path) -> None:
 def listed(value: Any) -> list[Any]:
     """Return the values of a key, which are a list or one value."""
     return value if isinstance(value, list) else [value]
+
+
+def named_tree(entry: str | dict[str, Any]) -> str | None:
+    """Return the file or built-in tree that an entry of ``trees`` names; None for a grown one."""
+    return entry if isinstance(entry, str) else entry.get('file')
 
 
 def _refuse_unknown_tree(name: str, folder: Path) -> None:

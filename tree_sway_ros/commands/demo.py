@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 from contextlib import ExitStack
 from pathlib import Path
-import socket
 import sys
 import tempfile
 import webbrowser
@@ -27,12 +26,12 @@ from tree_sway.commands.wind_arguments import (
 )
 from tree_sway.core.scene.scene import Scene
 from tree_sway.files.export.tree_export import write_tree
-from tree_sway.page.page_settings import USUAL_PORT
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.commands.watch import watch
+from tree_sway_ros.nodes.viewer import USUAL_OR_FREE
 from tree_sway_ros.process.composition import Composition
 
 
@@ -98,23 +97,11 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     values['origins'] = ' '.join(values['origins'])
     del values['token']  # the node reads it from the file
     if values['port'] is None:
-        values['port'] = USUAL_PORT if _is_free(arguments.address, USUAL_PORT) else 0
+        values['port'] = USUAL_OR_FREE
     server = nodes.add('viewer', values).server
     print_address(server, 'page:')
     if arguments.open:
         webbrowser.open(server.url)
-
-
-def _is_free(address: str, port: int) -> bool:
-    """Whether a port can be bound now; the parameter of the node names one port alone."""
-    family = socket.AF_INET6 if ':' in address else socket.AF_INET
-    with socket.socket(family, socket.SOCK_STREAM) as trial:
-        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            trial.bind((address, port))
-        except OSError:
-            return False
-    return True
 
 
 def _tree_of(scene: Scene, arguments: argparse.Namespace, files: ExitStack) -> str:

@@ -34,6 +34,8 @@ from tree_sway_ros.process.topics import (
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 
+USUAL_OR_FREE = -1
+"""Value of `port` for the usual port or, if it is in use, a free one."""
 _CHECK_PERIOD = 0.5
 _LIVE = {
     'mean_speed': ('anemometer', 'Wind'),
@@ -54,8 +56,9 @@ class ViewerNode(TreeSwayNode):
     def configure(self) -> None:
         """Subscribe to the description, and prepare the controls."""
         self._settings = PageSettings(
-            **self.values.subset('address', 'port', 'token_file', 'certificate', 'private_key'),
+            **self.values.subset('address', 'token_file', 'certificate', 'private_key'),
             **self.values.subset('max_clients'),
+            port=None if self.values['port'] == USUAL_OR_FREE else self.values['port'],
             origins=tuple(self.values['origins'].split()),
         )
         require_token(self._settings.address, read_token(self._settings.token_file))

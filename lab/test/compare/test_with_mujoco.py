@@ -6,12 +6,14 @@ import sys
 
 import numpy as np
 import pytest
+from tree_sway_lab.compare.exported_wind import compare_exported_wind, row_of
 from tree_sway_lab.compare.mujoco_tree import mujoco_module, MujocoTree, take_warnings
 from tree_sway_lab.compare.with_mujoco import compare_with_mujoco
 from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.frame.frame import frame_model
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import MissingDependencyError
 
 WOOD = Species('example', 'example', 8.0e9, 900.0)
@@ -35,6 +37,28 @@ def test_both_run_on_one_tree_and_agree():
     assert found.error < 0.05
     assert found.speed_up > 0.0
     assert 'tip error over tip motion: full' in str(found)
+
+
+def test_displacements_are_compared_by_their_mean_rms_and_correlation():
+    ours = np.random.default_rng(0).normal(0.2, 0.1, (50, 4, 3))
+    assert row_of('all', ours, 1.5 * ours).split() == ['all', '1.500', '1.500', '1.000']
+    shaken = 0.2 + 2.0 * (ours - 0.2)
+    mean, rms, correlation = map(float, row_of('all', ours, shaken).split()[1:])
+    assert mean == pytest.approx(1.0, abs=0.1)
+    assert rms > 1.15
+    assert correlation == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.long
+def test_the_exported_tree_sways_in_the_engines_wind_as_ours_does():
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
+    tree = builtin_tree('goldcrest', 0)
+    wind = np.tile([8.0, 2.0, 0.0], (480, 1))
+    text = compare_exported_wind(tree, species_named(tree.species), wind)
+    rows = [line.split() for line in text.splitlines()[2:]]
+    assert [' '.join(row[:-3]) for row in rows] == ['all segments', 'the stem', 'the highest']
+    ratios = np.array([row[-3:-1] for row in rows], dtype=float)
+    assert (np.abs(ratios - 1.0) < 0.15).all(), text
 
 
 def test_with_weight_and_twist_it_sways_as_the_frame_and_is_at_rest_in_a_calm():

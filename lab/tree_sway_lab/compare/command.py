@@ -9,10 +9,14 @@ import argparse
 from tree_sway.commands.arguments import add_tree_arguments, opened_tree
 from tree_sway.errors import ParameterError
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway_lab.compare.exported_wind import compare_exported_wind, SETTLES
 from tree_sway_lab.compare.mujoco_tree import FRAME, take_warnings
 from tree_sway_lab.compare.with_mujoco import compare_with_mujoco
 from tree_sway_lab.frame_means import frame_means
 from tree_sway_lab.validation.winds import turbulent
+
+EXPORTED_SPEED = 8.0
+"""Mean wind at which the drag of an exported tree is that of ours [m/s]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,20 +35,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default='default',
         help='of ours: a number of coordinates, branch, full (%(default)s)',
     )
+    parser.add_argument(
+        '--exported',
+        action='store_true',
+        help="the exported file in MuJoCo's own wind instead: mean and rms over ours",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run both and print how they compare."""
-    if not 0.1 <= arguments.seconds <= 600.0:
-        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0.1 to 600')
+    least = SETTLES + 1.0 if arguments.exported else 0.1
+    if not least <= arguments.seconds <= 600.0:
+        cure = f'give {least:g} to 600'
+        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure=cure)
     tree_file = opened_tree(arguments)
     if arguments.wind is None:
-        wind = turbulent(7.0, arguments.seconds, 1)
+        speed = EXPORTED_SPEED if arguments.exported else 7.0
+        wind = turbulent(speed, arguments.seconds, 1)
     else:
         record = read_wind(arguments.wind)
         means = frame_means(record.time, record.velocity, FRAME)
         wind = means[: round(arguments.seconds / FRAME)]
-    print(compare_with_mujoco(tree_file.tree, tree_file.species, wind, model=arguments.model))
+    tree, species = tree_file.tree, tree_file.species
+    if arguments.exported:
+        print(compare_exported_wind(tree, species, wind))
+    else:
+        print(compare_with_mujoco(tree, species, wind, model=arguments.model))
     for warning in take_warnings():
         print(f'MuJoCo warned: {warning}')
     return 0

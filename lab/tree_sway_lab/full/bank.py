@@ -97,7 +97,7 @@ class Law(NamedTuple):
 
 
 class Air(NamedTuple):
-    """The mean wind of a step in [m/s], and its `drag_law.pressure` in [kg/m^3]."""
+    """The mean wind of a step in [m/s], and its `drag_law.drag_density` in [kg/m^3]."""
 
     x: float
     y: float
@@ -137,7 +137,7 @@ class FullBank(Branchwise, ModalCoordinates):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step under a mean wind [m/s], with `drag_law.pressure` in [kg/m^3].
+        Advance one step under a mean wind [m/s], with `drag_law.drag_density` in [kg/m^3].
 
         Returns how many loads were clamped to their limit, `NOT_FINITE` if the motion is not
         finite.

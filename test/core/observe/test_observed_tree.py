@@ -142,7 +142,7 @@ def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
     true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
     rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
     assert np.sqrt(rough[1]) < 1.5
-    assert np.sqrt(rough[0]) < 4.0
+    assert np.sqrt(rough[0]) < 2.5
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:

@@ -79,7 +79,7 @@ def test_a_step_in_numpy_is_the_step_of_the_kernel(pair, what, wind, size, left_
         assert found[0] == found[1], what
         kernel, twin = (bank.instance[0] for bank in pair)
         assert kernel['outside'] == twin['outside']
-        for name in ('eta', 'rate', 'force', 'wanted', 'diagonal', 'wind', 'pressure'):
+        for name in ('eta', 'rate', 'force', 'wanted', 'diagonal', 'wind', 'drag_density'):
             # Products of single precision are summed in another order.
             scale = np.abs(kernel[name]).max()
             assert twin[name] == pytest.approx(

@@ -12,7 +12,7 @@ from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.simulator import WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
@@ -203,7 +203,7 @@ def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
         ahead = direction(2.0 * np.pi * azimuth / N_AZIMUTHS, 0.0)
         for speed, at in zip(SPEEDS[1:], table['equilibrium'][azimuth, 1:], strict=True):
             load = (
-                pressure(speed, *law)
+                drag_density(speed, *law)
                 * speed**2
                 * (
                     moments(bank.modal.shapes @ at[: bank.modal.shapes.shape[1]], still, ahead)
@@ -240,7 +240,7 @@ def test_a_step_in_one_call_is_that_of_its_parts(fork):
     for wind in gusty(4.0)[:240]:
         assert sim.step(wind, DT) == 0
         bank.set_step(DT)
-        bank.advance(*wind, pressure(float(np.linalg.norm(wind)), *parts.models[0].drag_law))
+        bank.advance(*wind, drag_density(float(np.linalg.norm(wind)), *parts.models[0].drag_law))
     assert np.abs(sim.rotations()).max() > 1e-3
     assert sim.rotations() == pytest.approx(bank.rotations(), rel=1e-9, abs=1e-12)
     assert sim.place() == pytest.approx(sim.place_rotations(sim.rotations()), abs=1e-12)

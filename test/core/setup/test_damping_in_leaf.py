@@ -16,7 +16,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.simulate import Rig
 
 RATE = 60.0
-BENT, CYCLES = 20.0, 3.8
+BENT, CYCLES = 20.0, 2.5
 """How long the wind blows [s], and cycles after it."""
 
 

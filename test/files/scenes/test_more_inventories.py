@@ -141,8 +141,80 @@ READ = {
         '-108.550731,39.064012,Gleditsia,triacanthos,"Honeylocust",9,30\n',
         [('ash', 13.716, 0.356), ('honey_locust', 9.144, 0.229)],
     ),
+    'Calgary, a point in one column, epithets that are not known': (
+        'TREE_ASSET_CD,COMMON_NAME,GENUS,SPECIES,CULTIVAR,DBH_CM,POINT\n'
+        'A1,"SPRUCE, COLORADO",PICEA,PUNGENS,STANDARD,22,POINT (-114.1 51.05)\n'
+        'A2,POPLAR SPECIES,POPULUS,SP.,,40,POINT (-114.1001 51.05)\n',
+        [('spruce', None, 0.22), ('poplar', None, 0.4)],
+    ),
+    'Dublin, Irish Transverse Mercator': (
+        'Tree Number;Tree_Species_English;Tree_Species_Latin;Height_M;Trunk_Dia_MM;X_ITM;Y_ITM\n'
+        '1;Sycamore;Acer pseudoplatanus;14;480;715800.1;734100.2\n'
+        '2;Ash;Fraxinus excelsior;12;360;715808.1;734101.2\n',
+        [('sycamore', 14.0, 0.48), ('ash', 12.0, 0.36)],
+    ),
+    'Adelaide, degrees of four digits in x and y': (
+        'OBJECTID,Botanical_Name,Height__m_,DBH__mm_,Canopy_Spread__m_,x,y\n'
+        '1,Jacaranda mimosifolia,9,310,8,138.6011,-34.9211\n'
+        '2,Eucalyptus camaldulensis,21,910,18,138.6012,-34.9212\n',
+        [('broadleaf', 9.0, 0.31), ('eucalyptus', 21.0, 0.91)],
+    ),
+    'Bologna': (
+        'Geo Point;Specie arborea;Genere;Altezza (m);Diametro fusto (cm)\n'
+        '44.4938,11.3387;Celtis australis;Celtis;9;45\n'
+        '44.4939,11.3388;Tilia cordata;Tilia;14;38\n',
+        [('hackberry', 9.0, 0.45), ('lime', 14.0, 0.38)],
+    ),
+    'Leipzig, Rechtswert and Hochwert by their letters': (
+        'standortnr;baumart_lat;baumart_dt;stammdurchmesser_cm;baumhoehe_m;rw;hw\n'
+        '1;Quercus robur;Stiel-Eiche;55;16;317500,2;5690100,3\n'
+        '2;Fraxinus excelsior;Gemeine Esche;45;15;317507,2;5690100,3\n',
+        [('oak', 16.0, 0.55), ('ash', 15.0, 0.45)],
+    ),
+    'Prague, a negative grid': (
+        'X;Y;OBJECTID;DRUH_CESKY;DRUH_LAT;VYSKA;OBVOD_KMENE\n'
+        '-742100,2;-1043100,1;1;lípa srdčitá;Tilia cordata;12;110\n'
+        '-742110,2;-1043101,1;2;javor mléč;Acer platanoides;9;75\n',
+        [('lime', 12.0, 0.35), ('maple', 9.0, 0.239)],
+    ),
+    'Mexico': (
+        'no,ESPECIE,NOMBRE COMÚN,ALTURA (M),DAP (CM),COORDENADA X,COORDENADA Y\n'
+        '1,Jacaranda mimosifolia,Jacaranda,9,31,485100,2147000\n'
+        '2,Fraxinus uhdei,Fresno,14,45,485110,2147002\n',
+        [('broadleaf', 9.0, 0.31), ('ash', 14.0, 0.45)],
+    ),
+    'Oslo': (
+        'Tre-ID;Art norsk;Art latin;Høyde (m);Stammeomkrets (cm);Øst;Nord\n'
+        '1;Parklind;Tilia x europaea;14;126;597900;6643100\n'
+        '2;Hengebjørk;Betula pendula;12;94;597907;6643100\n',
+        [('lime', 14.0, 0.401), ('birch', 12.0, 0.299)],
+    ),
+    'Hong Kong, a species known by its cells': (
+        'Tree ID,Tree Species 樹木品種,Tree Height(m) 樹高(米),DBH(mm) 樹幹直徑,Easting,Northing\n'
+        '1,Celtis sinensis 朴樹,11,550,835100,818100\n'
+        '2,Ficus microcarpa 細葉榕,15,800,835120,818100\n',
+        [('hackberry', 11.0, 0.55), ('benjamina', 15.0, 0.8)],
+    ),
+    'Portland, degrees of four digits, inches and feet': (
+        'X,Y,OBJECTID,Species,DBH,Condition,Scientific,Common,TreeHeight\n'
+        '-122.6600,45.5200,1,ACPL,12.5,Good,Acer platanoides,Norway maple,40\n'
+        '-122.6601,45.5201,2,PSME,24.0,Good,Pseudotsuga menziesii,Douglas-fir,85\n',
+        [('maple', 12.192, 0.318), ('douglas_fir', 25.908, 0.61)],
+    ),
+    'Christchurch, all in metres': (
+        'TreeID,BotanicalName,CommonName,Height,StemDiameter,GirthSize,NZTMX,NZTMY\n'
+        '1,Quercus robur,English oak,16,0.85,2.67,1570100.1,5180100.2\n'
+        '2,Betula pendula,Silver birch,12,0.35,1.1,1570110.1,5180100.2\n',
+        [('oak', 16.0, 0.85), ('birch', 12.0, 0.35)],
+    ),
+    'Lyon, decimal commas': (
+        'essencefrancais;circonference_cm;hauteurtotale_m;hauteurfut_m;genre;espece;lon;lat\n'
+        "Platane à feuilles d'érable;187;17;4;Platanus;acerifolia;4,8501;45,7501\n"
+        'Micocoulier;93;11;3;Celtis;australis;4,8502;45,7502\n',
+        [('plane', 17.0, 0.595), ('hackberry', 11.0, 0.296)],
+    ),
     'a plot in metres with few digits stays one': (
-        'x,y,species,height,dbh\n12.25,3.5,oak,18,45\n30.5,8.75,oak,20,50\n',
+        'x,y,species,height,dbh\n12.250,3.500,oak,18,45\n30.500,8.750,oak,20,50\n',
         [('oak', 18.0, 0.45), ('oak', 20.0, 0.5)],
     ),
 }  # fmt: skip

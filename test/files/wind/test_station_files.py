@@ -153,6 +153,58 @@ CSV = {
     + rows(lambda t, u: f'2,{t:%m/%d/%Y},{t:%H%M},61,{u / MILE:.4f}, ,270, ', 60),
     'ISD as R reads it': 'USAFID,WBAN,year,month,day,hour,min,wind.dir,wind.dir.qc,wind.sp\n'
     + rows(lambda t, u: f'1,2,{t.year},{t.month},{t.day},{t.hour},0,270,5,{u:.3f}', 60),
+    'EasyWeather': 'NO.,Time,Interval,Outdoor Temperature(°C),Wind Speed(m/s),Gust Speed(m/s),'
+    'Wind Direction\n'
+    + rows(lambda t, u: f'1,{t:%d-%m-%Y %H:%M},30,8.1,{u:.3f},{2 * u:.2f},W'),
+    'Tempest': 'device_id,timestamp,wind_lull,wind_avg,wind_gust,wind_dir,wind_interval\n'
+    + rows(lambda t, u: f'1,{seconds(t)},1,{u:.3f},{2 * u:.2f},270,3', 5),
+    'Met Office, WOW': 'Id,Site Id,Report Date / Time,Wind Speed (Knots),Wind Direction (Deg)\n'
+    + rows(lambda t, u: f'1,2,{t:%d/%m/%Y %H:%M:%S},{u / KNOT:.4f},270', 10),
+    'AWEKAS, decimal commas': 'Datum;Uhrzeit;Windgeschwindigkeit (km/h);Windrichtung (°)\n'
+    + rows(lambda t, u: f'{t:%d.%m.%Y};{t:%H:%M};{3.6 * u:.2f};270'.replace('.', ','), 10).replace(
+        ',03,2024', '.03.2024'
+    ),
+    'Zurich, water police': 'timestamp_utc,timestamp_cet,wind_gust_max_10min,'
+    'wind_speed_avg_10min,wind_force_avg_10min,wind_direction\n'
+    + rows(
+        lambda t, u: f'{t:%Y-%m-%dT%H:%M:%S}+00:00,{t + timedelta(hours=1):%Y-%m-%dT%H:%M:%S}'
+        f'+01:00,{2 * u:.2f},{u:.3f},3,270',
+        10,
+    ),
+    'NREL, TMY3': '724940,"SAN FRANCISCO INTL AP",CA,-8.0,37.62,-122.4,2\n'
+    'Date (MM/DD/YYYY),Time (HH:MM),GHI (W/m^2),Wdir (degrees),Wspd (m/s)\n'
+    + rows(lambda t, u: f'{t:%m/%d/%Y},{t:%H:%M},0,270,{u:.3f}', 60),
+    'EnergyPlus': 'LOCATION,Berlin,-,DEU,IWEC Data,103840,52.47,13.40,1.0,49.0\n'
+    'DESIGN CONDITIONS,0\nTYPICAL/EXTREME PERIODS,0\nGROUND TEMPERATURES,0\n'
+    'HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0\nCOMMENTS 1,made\nCOMMENTS 2,up\n'
+    'DATA PERIODS,1,1,Data,Friday,3/1,3/2\n'
+    + rows(
+        lambda t, u: f'{t - timedelta(hours=1):%Y,%m,%d},{(t.hour - 1) % 24 + 1},60,?9,8.1,5.0,80,'
+        f'101325{",0" * 10},270,{u:.1f},5,5,20,7700,9,999999999,10,0,0,88',
+        60,
+    ),
+    'CWA, Taiwan, with hours to 24 and a row of names below': 'ObsTime,StnPres,WS,WD,WSGust\n'
+    '觀測時間(hour),測站氣壓(hPa),風速(m/s),風向(360degree),最大瞬間風(m/s)\n'
+    + rows(
+        lambda t, u: f'{t - timedelta(hours=1):%Y-%m-%d} {(t.hour - 1) % 24 + 1:02d}:00,1008.1,'
+        f'{u:.2f},270,{2 * u:.2f}',
+        60,
+    ),
+    'AEMET, points in words': 'Estación;Fecha y hora;Temperatura (ºC);'
+    'Velocidad del viento (km/h);Dirección del viento;Racha (km/h)\n'
+    + rows(lambda t, u: f'Madrid;{t:%d/%m/%Y %H:%M};8;{3.6 * u:.2f};Oeste;{7.2 * u:.1f}', 60),
+    'INMET, Brazil': 'REGIAO:;SE\nESTACAO:;SAO PAULO - MIRANTE\nLATITUDE:;-23,49\n'
+    'Data;Hora UTC;TEMPERATURA DO AR - BULBO SECO, HORARIA (°C);'
+    'VENTO, DIREÇÃO HORARIA (gr) (° (gr));VENTO, RAJADA MAXIMA (m/s);'
+    'VENTO, VELOCIDADE HORARIA (m/s);\n'
+    + rows(
+        lambda t, u: f'{t:%Y/%m/%d};{t:%H}00 UTC;8,1;270;{2 * u:.1f};{u:.1f};'.replace('.', ','),
+        60,
+    ),
+    'Cumulus, realtime.txt': rows(
+        lambda t, u: f'{t:%d/%m/%y %H:%M:%S} 8.4 84 5.8 {3.6 * u:.2f} {4 * u:.1f} 270 0.0 1.0 '
+        f'999.7 W 3 km/h C hPa mm {"1 " * 23}{7.2 * u:.2f} 10.3 10.5'
+    ),
     'a hash before the header': '# Time, Temp (C), Wind Speed (m/s), Wind Dir (deg)\n'
     + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S}, 20.1, {u:.3f}, 270', 5),
 }  # fmt: skip
@@ -314,6 +366,27 @@ def test_the_old_text_of_weatherlink(tmp_path: Path) -> None:
     assert record.duration == 1800.0 * (N - 1)
 
 
+@pytest.mark.parametrize('separator', [',', ';'])
+def test_the_log_of_cumulus(separator: str, tmp_path: Path) -> None:
+    def row(time: datetime, speed: float) -> str:
+        wind = [f'{speed / MILE:.4f}', f'{2 * speed / MILE:.3f}', '270']
+        cells = ['8.4', '84', '5.8', *wind, *['0.0'] * 15]
+        if separator == ';':
+            cells = [cell.replace('.', ',') for cell in cells]
+        return separator.join([f'{time:%d/%m/%y}', f'{time:%H:%M}', *cells])
+
+    path = tmp_path / 'Mar24log.txt'
+    path.write_text(f'{rows(row, 10)}\n01/03/24 broken\n')
+    with pytest.raises(FormatError, match='a file of Cumulus does not say the unit of the speed'):
+        read_wind(path)
+    record = read_wind(path, speed_unit='mph', turbulence=False)
+    np.testing.assert_allclose(record.velocity[:, 0], SPEEDS, atol=0.01)
+    np.testing.assert_allclose(record.velocity[:, 1:], 0.0, atol=1e-9)
+    assert record.time.tolist() == [600.0 * k for k in range(N)]
+    assert record.epoch == seconds(BEGIN)
+    assert record.refused == 1
+
+
 @pytest.mark.parametrize('encoding', ['cp1252', 'utf-16', 'utf-8-sig'])
 def test_encodings_of_spreadsheets(encoding: str, tmp_path: Path) -> None:
     path = tmp_path / 'a.csv'
@@ -331,6 +404,7 @@ def test_encodings_of_spreadsheets(encoding: str, tmp_path: Path) -> None:
         (['NO', 'SO'], [np.nan, np.nan]),
         (['---', '', 'VRB'], [np.nan] * 3),
         (['270', '90°'], [270, 90]),
+        (['Noroeste', 'Sur', 'Este', 'Nord-Ouest', 'Südwest'], [315, 180, 90, 315, 225]),
     ],
 )
 def test_points_of_the_compass(points: list[str], expected: list[float]) -> None:
@@ -352,6 +426,7 @@ def test_a_calm_needs_no_direction(tmp_path: Path) -> None:
     [
         (('1/2/24 11:30 PM', '1/3/24 12:00 AM'), 1800),
         (('13/1/2024 23:00', '14/1/2024 00:00'), 3600),
+        (('2024-02-28 24:00', '2024-02-29 24:00'), 86400),
         (('3/1/2024 12:00 AM', '3/1/2024 12:00 PM'), 43200),
         (('31.12.2023 23:59:59', '01.01.2024 00:00:00'), 1),
         (('01-Mar-2024 00:00', '01-Mar-2024 00:10'), 600),

@@ -21,7 +21,7 @@ from typing import cast, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.run.bank import Bank, Oscillators
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.setup.tree_motion import branch_rotations, tip_motion
@@ -162,7 +162,7 @@ class ErrorEstimator:
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """Estimate every number of coordinates in a wind, the fewest first."""
-        per_square = pressure(climate.speed, *self._law)
+        per_square = drag_density(climate.speed, *self._law)
         steady, upward = _steady_wind(climate)
         bearing = int(np.rint(np.arctan2(steady[1], steady[0]) / _APART)) % len(_AXES)
         swings, squares = self._tip_squares(climate, bearing)
@@ -188,7 +188,7 @@ class ErrorEstimator:
         """
         Find the mean square motion of the tips by the coordinates left out, by number, (k,).
 
-        First the motion about the mean, then from rest; per squared `drag.pressure`.
+        First the motion about the mean, then from rest; per squared `drag_law.drag_density`.
         """
         axes = _AXES[bearing]
         # Damped by the air at least as in a wind of the next lower of a few speeds.
@@ -210,7 +210,7 @@ class ErrorEstimator:
 
     def _find_grams(self, speed: float, bearing: int) -> Floats:
         """Return inner products of tip motions of the last coordinates, by number, (k, 9 f)."""
-        damping = self._own_damping + pressure(speed, *self._law) * speed * self._air_damping
+        damping = self._own_damping + drag_density(speed, *self._law) * speed * self._air_damping
         circular = 2.0 * np.pi * self._frequencies[:, None]
         impedance = self._stiffness - circular**2 + 1j * damping * circular
         responses = self._loads[bearing] / impedance[:, :, None]

@@ -88,7 +88,7 @@ def crown_drag(
 
 
 @part
-def pressure(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
+def drag_density(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
     """Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3], U in [m/s]."""
     if exponent == 0.0:
         return 0.5 * AIR_DENSITY * (coefficient + steady)
@@ -109,7 +109,7 @@ def drag(
     pxx, pyy, pzz, pxy, pxz, pyz
         Projector of the branch.
     c
-        `pressure` times the area of the branch in [kg/m].
+        `drag_density` times the area of the branch in [kg/m].
     compliance
         Velocity half a step after a unit of force in [s/kg].
     ux, uy, uz

@@ -51,15 +51,15 @@ class Places(NamedTuple):
     rest: Floats
     slope: Floats
     tip_slope: Floats
-    rotation_mode: Floats
+    segment_turn: Floats
     """Rotation vector of each segment per unit of its branch's coordinates, (n, k, 3)."""
 
 
 def segment_records(places: Places) -> Records:
     """Fill the segments for placing: records of `segment_layout`, in blocks."""
     block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
-    is_plain = places.rotation_mode.shape[1] == 2
-    records = zeros_in_lines(n_records, segment_layout(places.rotation_mode.shape[1]))
+    is_plain = places.segment_turn.shape[1] == 2
+    records = zeros_in_lines(n_records, segment_layout(places.segment_turn.shape[1]))
     records['rest'][:, 0] = 1.0
     size = np.diff(places.first)
     rows = np.arange(len(places.slope)) + np.repeat(block - places.first[:-1], size)
@@ -69,8 +69,8 @@ def segment_records(places: Places) -> Records:
     records['slope'][rows, own], records['tip_slope'][rows, own] = places.slope, places.tip_slope
     np.maximum.at(records['n_slots'], rows, own + 1)
     if not is_plain:
-        n_modes = places.rotation_mode.shape[1]
-        records['rotation_mode'][rows, :n_modes, :, own] = places.rotation_mode
+        n_modes = places.segment_turn.shape[1]
+        records['segment_turn'][rows, :n_modes, :, own] = places.segment_turn
     return records
 
 
@@ -87,18 +87,18 @@ def fill_places(places: Places, records: Records) -> None:
     k = min(places.base_rotation.shape[1], records['twist'].shape[1])
     records['twist'][:, :k, 3:] = places.base_rotation[:, :k]
     begin = places.first[:-1]
-    steepest = np.maximum.reduceat(np.square(places.rotation_mode).sum(axis=2), begin)
+    steepest = np.maximum.reduceat(np.square(places.segment_turn).sum(axis=2), begin)
     tips = np.maximum.reduceat(np.square(places.tip_slope), begin)
     records['steepest'][:, : steepest.shape[1]] = steepest
     records['steepest'][:, 0] = np.maximum(records['steepest'][:, 0], tips)
 
 
-def rotation_modes_of(branch: np.void, segments: Records) -> Floats:
+def segment_turns_of(branch: np.void, segments: Records) -> Floats:
     """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
     first, count = int(branch['first_record']), int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['load_mode'].shape[0] > 2:
-        return np.asarray(segments['rotation_mode'][rows, :count, :, branch['slot']])
+        return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])
     slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
     return np.multiply.outer(slope, np.stack([e2, -e1]))
 

@@ -81,7 +81,7 @@ class Segment:
     chord: Annotated[Floats, 3, WIDTH]  # from the start of a segment to that of the next, at rest
     own_chord: Annotated[Floats, 3, WIDTH]  # chord in the frame of the segment
     rest: Annotated[Floats, 4, WIDTH]  # orientation at rest, w x y z
-    rotation_mode: Annotated[Floats, 'rows', 'axes', WIDTH]  # rotation per unit of coordinate
+    segment_turn: Annotated[Floats, 'rows', 'axes', WIDTH]  # rotation per unit of coordinate
     n_slots: int  # number of branches that have this segment, in the first slots
 
 
@@ -238,7 +238,7 @@ class Instance:
     rate: Annotated[Floats, 'modes']
     force: Annotated[Floats, 'modes']
     wind: Annotated[Floats, 3]  # [m/s]
-    pressure: float  # drag per area and squared speed [kg/m^3]
+    drag_density: float  # drag per area and squared speed [kg/m^3]
     middle: Annotated[Floats, 'modes']
     middle_rate: Annotated[Floats, 'modes']
     wanted: Annotated[Floats, 'modes']
@@ -315,7 +315,7 @@ def in_lines(records: Records) -> Records:
 
 @cache
 def segment_layout(n_coordinates: int) -> np.dtype[np.void]:
-    """Lay out `Segment`, without ``rotation_mode`` where all branches are plain."""
+    """Lay out `Segment`, without ``segment_turn`` where all branches are plain."""
     rows, axes = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(fields_of(Segment, rows=rows, axes=axes))
 

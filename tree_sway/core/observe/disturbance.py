@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 from tree_sway.core.wind.crown_wind import DECAY
 
@@ -112,7 +112,7 @@ def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[
     at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
     pushed = at + own_motion(branches, 'load_mode', shapes)
     projector = branches['projector'][:, _PROJECTOR].reshape(-1, 3, 3)
-    per_speed = pressure(speed, *simulator.models[0].drag_law) * speed
+    per_speed = drag_density(speed, *simulator.models[0].drag_law) * speed
     area = _SLOPE * per_speed * branches['speed'] * branches['area']
     moved = at + own_motion(branches, 'damping_mode', shapes)
     return area[:, None, None] * (projector @ pushed), moved

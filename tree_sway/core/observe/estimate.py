@@ -1,13 +1,26 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a steady-state filter, moved and corrected in arrays made once."""
+"""
+The state of a steady-state filter, moved and corrected in arrays made once.
+
+What a sensor tells arrives with its noise, at every step anew. The motion that is shown moves by
+the same law, and comes nearer to the estimate by a share of their difference at each step
+(`PACE`): noise is averaged, while free sway, which both follow alike, is not late.
+"""
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.observe.steady_filter import SteadyFilter
+
+PACE = 0.15
+"""Share of the difference from the estimate by which the calm motion comes nearer per step."""
 
 _CLIPPED = 6.0
 """Largest innovation that corrects, in its standard deviations."""
@@ -23,50 +36,53 @@ class Estimate:
         Law and gains.
     old
         Estimate from which it continues; from zero if None.
+    plain
+        Whether numpy is used where a compiler is there.
 
     """
 
-    def __init__(self, gains: SteadyFilter, old: Estimate | None = None) -> None:
+    def __init__(
+        self, gains: SteadyFilter, old: Estimate | None = None, *, plain: bool = bool(WHY_PLAIN)
+    ) -> None:
         self.gains = gains
         _, *shape = gains.law.step.shape
-        self.state: Floats = np.zeros(shape)
-        """Displacement, rate and disturbance of each coordinate, (3, m)."""
+        self.state, self.calm = np.zeros((2, *shape))
+        """Displacement, rate and disturbance of each coordinate, as told and calm, (3, m)."""
         if old is not None:
-            self.state[:] = old.state
+            self.state[:], self.calm[:] = old.state, old.calm
         n_measurements, lag = len(gains.sensed), gains.backward.shape[1]
         self.innovation = np.zeros(n_measurements)
         """What the last measurements had beyond those expected, (p,)."""
         self.innovations = np.zeros((max(lag, 1), n_measurements))
         """Those of the last steps, limited, the oldest first, (l, p)."""
         self._backward = gains.backward.reshape(len(gains.backward), -1)
-        self._terms = np.zeros(gains.law.step.shape)
-        self._flat = self.state.reshape(-1)
-        self._change, self._past = np.zeros(len(self._flat)), np.zeros(shape[1])
-        self._limit = _CLIPPED * gains.deviation
-        self._gain = np.ascontiguousarray(gains.gain)
+        self._past = np.zeros(shape[1])
         self._scaled = np.zeros(n_measurements)
         self._squares = self._scaled.reshape(-1, 3)
         self._sizes = np.zeros(len(self._squares))
+        law, limit = np.ascontiguousarray(gains.law.step), _CLIPPED * gains.deviation
+        sensed, gain = (np.ascontiguousarray(each) for each in (gains.sensed, gains.gain))
+        states = self.state, self.calm, self.innovation, self.innovations
+        given = np.zeros(n_measurements), np.zeros(n_measurements, dtype=np.bool_)
+        steps = law, sensed, gain, limit, *states
+        self._advance = partial(advance_in_numpy, *steps)
+        if not plain:
+            self._advance = partial(entry_of(advance, *steps, *given, 1), *steps)
+
+    def advance(self, beyond: Floats, is_known: NDArray[np.bool_], n_periods: int) -> None:
+        """Move by a number of steps, and correct by measurements (p,) where they are known."""
+        self._advance(beyond, is_known, n_periods)
 
     def move(self, n_periods: int) -> None:
-        """Move the state by a number of steps."""
+        """Move by a number of steps."""
         for _ in range(n_periods):
-            np.multiply(self.gains.law.step, self.state, out=self._terms)
-            np.add.reduce(self._terms, axis=1, out=self.state)
+            for each in (self.state, self.calm):
+                each[:] = (self.gains.law.step * each).sum(axis=1)
 
-    def correct(self, beyond: Floats, unknown: list[slice]) -> None:
-        """Correct the state by measurements (p,), some rows of which are not known."""
-        innovation, used = self.innovation, self.innovations[-1]
-        np.dot(self.gains.sensed, self._flat, out=innovation)
-        np.subtract(beyond, innovation, out=innovation)
-        for rows in unknown:
-            innovation[rows] = 0.0
-        if len(self.innovations) > 1:
-            self.innovations[:-1] = self.innovations[1:]
-        np.minimum(innovation, self._limit, out=used)
-        np.maximum(used, -self._limit, out=used)
-        np.dot(self._gain, used, out=self._change)
-        self._flat += self._change
+    def scale(self, share: float) -> None:
+        """Scale the motion by a share."""
+        self.state *= share
+        self.calm *= share
 
     def sizes(self) -> list[float]:
         """Mean square of the last innovations over that expected, of each three, (p / 3,)."""
@@ -82,3 +98,72 @@ class Estimate:
         The array is reused.
         """
         return np.dot(self._backward, self.innovations.reshape(-1), out=self._past)
+
+
+@kernel
+def advance(
+    step: Floats, sensed: Floats, gain: Floats, limit: Floats, state: Floats, calm: Floats,
+    innovation: Floats, innovations: Floats, beyond: Floats, is_known: NDArray[np.bool_],
+    n_periods: int,
+) -> None:  # fmt: skip
+    """
+    Move an estimate by its law, and correct it.
+
+    Parameters
+    ----------
+    step
+        State after a step by that before, of each coordinate, (3, 3, m).
+    sensed, gain
+        Measurements by the state, (p, 3 m), and its correction by their innovations, (3 m, p).
+    limit
+        Largest innovation that corrects, (p,).
+    state, calm
+        The state as it is told, and calm, (3, m), written.
+    innovation, innovations
+        Innovation (p,), and those of the last steps, limited, (l, p), written.
+    beyond, is_known
+        Measurements, and which of them are there, (p,).
+    n_periods
+        Steps since the last correction.
+
+    """
+    m, p = step.shape[2], len(beyond)
+    for _ in range(n_periods):
+        for each in (state, calm):
+            for i in range(m):
+                eta, rate, force = each[0, i], each[1, i], each[2, i]
+                for j in range(3):
+                    moved = step[j, 0, i] * eta + step[j, 1, i] * rate
+                    each[j, i] = moved + step[j, 2, i] * force
+    for k in range(1, len(innovations)):
+        for r in range(p):
+            innovations[k - 1, r] = innovations[k, r]
+    used = innovations[-1]
+    for r in range(p):
+        expected = 0.0
+        for j in range(3):
+            for i in range(m):
+                expected += sensed[r, j * m + i] * state[j, i]
+        innovation[r] = beyond[r] - expected if is_known[r] else 0.0
+        used[r] = min(max(innovation[r], -limit[r]), limit[r])
+    for j in range(3):
+        for i in range(m):
+            for r in range(p):
+                state[j, i] += gain[j * m + i, r] * used[r]
+            calm[j, i] += PACE * (state[j, i] - calm[j, i])
+
+
+def advance_in_numpy(
+    step: Floats, sensed: Floats, gain: Floats, limit: Floats, state: Floats, calm: Floats,
+    innovation: Floats, innovations: Floats, beyond: Floats, is_known: NDArray[np.bool_],
+    n_periods: int,
+) -> None:  # fmt: skip
+    """Move and correct an estimate as `advance`."""
+    for _ in range(n_periods):
+        for each in (state, calm):
+            each[:] = (step * each).sum(axis=1)
+    innovation[:] = np.where(is_known, beyond - sensed @ state.reshape(-1), 0.0)
+    innovations[:-1] = innovations[1:]
+    np.clip(innovation, -limit, limit, out=innovations[-1])
+    state += (gain @ innovations[-1]).reshape(state.shape)
+    calm += PACE * (state - calm)

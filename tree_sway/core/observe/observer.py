@@ -8,9 +8,8 @@ of a model. At each step the difference moves by its own law, and what the senso
 the model corrects it (`steady_filter`). Sensors that are late are read at an earlier step, and the
 difference is moved on to the present. Without a usable sensor the difference fades.
 
-Two sets of gains are kept. The causal one expects more noise than the sensors have, since noise
-would otherwise shake branches that no sensor sees. The one of the smoother trusts them, and is
-late by a fixed lag.
+The motion of the present is the calm one of `Estimate`. The smoothed one is late by a fixed lag,
+and knows what was measured since.
 
 A sensor on the stem tells about a hanging twig only what both have in common by the law of the
 gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
@@ -50,8 +49,8 @@ if TYPE_CHECKING:
 MOST_COORDINATES = 32
 """Largest number of coordinates that sensors correct."""
 
-_CAUSAL, _SMOOTH = 8.0, 3.5
-"""Noise for which gains are found, over the noise of the sensors."""
+_NOISE, _DOUBTED = 3.5, 8.0
+"""Noise for which gains, and what the sensors tell, are found, over the noise of the sensors."""
 
 _FADE = 0.3
 _HISTORY = 64
@@ -81,12 +80,12 @@ LATE_STEPS = SMOOTHED_LAG + len(_WINDOW) // 2
 
 
 class _Design(NamedTuple):
-    """Numbers of sensors, their noise (p,), and gains: at once, and of the smoother if any."""
+    """Numbers of sensors, their noise (p,), gains, and share told of each coordinate (n,)."""
 
     used: tuple[int, ...]
     noise: Floats
-    causal: SteadyFilter
-    late: SteadyFilter | None
+    gains: SteadyFilter
+    told: Floats
 
 
 @kernel
@@ -163,8 +162,7 @@ class Observer:
         self._used: tuple[int, ...] = ()
         self._designed_for = 0.0
         self._mean_speed = 0.0
-        self._causal: Estimate | None = None
-        self._late_one: Estimate | None = None
+        self._estimate: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
         self._designed: tuple[int, ...] = ()
         self.trust = np.zeros(self.count)
@@ -185,7 +183,7 @@ class Observer:
         self._ahead: dict[int, Floats] = {}
         self._moved = np.zeros((3, self.count))
         self._terms = np.zeros((3, 3, self.count))
-        self._values = np.zeros(0)
+        self._values, self._is_known = np.zeros(0), np.zeros(0, dtype=np.bool_)
         self.energies = np.zeros(4)
         """Energies of the last correction, as `find_energies` writes them."""
         self._swing = np.zeros(3 * shapes.shape[1])
@@ -267,16 +265,16 @@ class Observer:
         self._forces[slot] = swing[2][:n] + self._air_damping * swing[1][:n]
         beyond = self._beyond(time)
         self._redesign()
-        if self._causal is None:
+        if self._estimate is None:
             self._moved[:] = 0.0
             self._smooth(None)
         elif not self._used:
-            self._fade(self._causal, n_periods)
+            self._fade(self._estimate, n_periods)
             self._smooth(None)
         else:
-            self._watch_refused(beyond)
+            self._watch_refused(self._estimate, beyond)
             self._learn()
-            self._correct(self._causal, beyond, n_periods)
+            self._correct(self._estimate, beyond, n_periods)
         self._moved *= self.trust
         self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
         return self._moved[:2]
@@ -335,14 +333,13 @@ class Observer:
         if found is None:
             return
         self._designing, self._used, self.noise = None, found.used, found.noise
-        self._causal = Estimate(found.causal, self._causal)
-        if found.late is not None:
-            self._late_one = Estimate(found.late, self._late_one)
-        told = (told_shares(found.causal) - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
+        self._estimate = Estimate(found.gains, self._estimate)
+        told = (found.told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
         self._wanted_trust = np.clip(told, 0.0, 1.0)
         for k, track in enumerate(self.tracks):
             track.tells_little = k in found.used and not self._wanted_trust.any()
-        self._values = np.zeros(len(found.causal.sensed))
+        self._values = np.zeros(len(found.gains.sensed))
+        self._is_known = np.zeros(len(self._values), dtype=np.bool_)
         self._ahead = {}
 
     def _in_parts(self, used: tuple[int, ...]) -> Iterator[_Design | None]:
@@ -351,13 +348,13 @@ class Observer:
         found = [self._felt(k, self.damped) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        gains: list[SteadyFilter] = []
-        for size, lag in ((_CAUSAL, 0), (_SMOOTH, SMOOTHED_LAG))[: 1 + self._is_smoothed]:
-            for each in filter_in_parts(law, sensed, size * noise, lag):
-                yield None
-                if each is not None:
-                    gains.append(each)
-        yield _Design(used, noise, gains[0], gains[1] if self._is_smoothed else None)
+        for doubted in filter_in_parts(law, sensed, _DOUBTED * noise):
+            yield None
+            if doubted is not None:
+                told = told_shares(doubted)
+        lag = SMOOTHED_LAG if self._is_smoothed else 0
+        for gains in filter_in_parts(law, sensed, _NOISE * noise, lag):
+            yield None if gains is None else _Design(used, noise, gains, told)
 
     def _present_law(self) -> SwayLaw:
         """Find the law of the unknown motion in the present wind, and its covariance."""
@@ -383,8 +380,8 @@ class Observer:
 
     @property
     def gains(self) -> SteadyFilter | None:
-        """Gains of the correction at once; None before any."""
-        return None if self._causal is None else self._causal.gains
+        """Gains of the correction; None before any."""
+        return None if self._estimate is None else self._estimate.gains
 
     def _felt(self, which: int, damping: Floats) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -431,47 +428,42 @@ class Observer:
         rows = as_felt(sensed_rows(first, stiffness, damping), has_gravity=has_gravity)
         return rows[3 * track.fitted : 3 * track.fitted + 3]
 
-    def _correct(self, causal: Estimate, beyond: list[Floats | None], n_periods: int) -> None:
-        """Correct the estimates by the measurements of the step that is late."""
-        at, late = self._steps - 1 - self.late, self._late_one
+    def _correct(self, estimate: Estimate, beyond: list[Floats | None], n_periods: int) -> None:
+        """Correct the estimate by the measurements of the step that is late."""
+        at = self._steps - 1 - self.late
         if at > self._done:
             # More than one step where sensors have become less late.
             n_periods *= min(at - self._done, _LATEST)
             skipped = range(max(self._done + 1, at - _LATEST), at)
             self._done = at
-            unknown = self._join(beyond)
-            causal.move(n_periods)
-            causal.correct(self._values, unknown)
+            self._join(beyond)
+            estimate.advance(self._values, self._is_known, n_periods)
             share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
             self.trust += share * (self._wanted_trust - self.trust)
-            self._judge(causal.sizes(), beyond)
-            if late is not None:
-                late.move(n_periods)
+            self._judge(estimate.sizes(), beyond)
+            if self._is_smoothed:
                 for each in skipped:
-                    self._states[each % _HISTORY] = self.trust * late.state[0]
-                late.correct(self._values, unknown)
-                self._smooth(late)
+                    self._states[each % _HISTORY] = estimate.state[0]
+                self._smooth(estimate)
         if not self.late:
-            self._moved[:] = causal.state
+            self._moved[:] = estimate.calm
             return
         if self.late not in self._ahead:
-            self._ahead[self.late] = causal.gains.law.ahead(self.late)
-        np.multiply(self._ahead[self.late], causal.state, out=self._terms)
+            self._ahead[self.late] = estimate.gains.law.ahead(self.late)
+        np.multiply(self._ahead[self.late], estimate.calm, out=self._terms)
         np.add.reduce(self._terms, axis=1, out=self._moved)
 
-    def _join(self, beyond: list[Floats | None]) -> list[slice]:
-        """Join the measurements of the sensors in use; return the rows that are not known."""
-        first, unknown = 0, []
+    def _join(self, beyond: list[Floats | None]) -> None:
+        """Join the measurements of the sensors in use, and note which are known."""
+        first = 0
         for k in self._used:
             track, row = self.tracks[k], beyond[k]
             picked = track.picked
             rows = slice(first, first + picked.stop - picked.start)
             first = rows.stop
-            if row is None or not track.in_use:
-                unknown.append(rows)
-            else:
+            is_known = self._is_known[rows] = row is not None and track.in_use
+            if row is not None and is_known:
                 self._values[rows] = row[picked]
-        return unknown
 
     def _judge(self, sizes: list[float], beyond: list[Floats | None]) -> None:
         """Judge the sensors in use by their innovations."""
@@ -483,22 +475,21 @@ class Observer:
                 track.judge(max(sizes[first:last]))
             first = last
 
-    def _watch_refused(self, beyond: list[Floats | None]) -> None:
+    def _watch_refused(self, estimate: Estimate, beyond: list[Floats | None]) -> None:
         """Judge refused sensors by the motion expected without any sensor."""
-        assert self._causal is not None
-        state = self._causal.state.ravel()
+        state = estimate.state.ravel()
         for k, row in enumerate(beyond):
             if row is None or self.tracks[k].in_use:
                 continue
             if self._open is None:
-                self._open = stationary_covariance(self._causal.gains.law)
+                self._open = stationary_covariance(estimate.gains.law)
             felt, noise = self._felt(k, self.damped)
             expected = np.einsum('ij,jk,ik->i', felt, self._open, felt)
             missed = row[self.tracks[k].picked] - felt @ state
-            squares = np.square(missed) / (expected + np.square(_CAUSAL * noise))
+            squares = np.square(missed) / (expected + np.square(_NOISE * noise))
             self.tracks[k].judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
-    def _smooth(self, late: Estimate | None) -> None:
+    def _smooth(self, estimate: Estimate | None) -> None:
         """
         Estimate the displacements of the lag ago, and keep them for the window.
 
@@ -507,15 +498,15 @@ class Observer:
         if not self._is_smoothed:
             return
         n, newest = self.count, (self._steps - 1 - self.late) % _HISTORY
-        present = self._late_one
-        self._states[newest] = 0.0 if present is None else self.trust * present.state[0]
+        present = self._estimate
+        self._states[newest] = 0.0 if present is None else present.state[0]
         then = (newest - SMOOTHED_LAG) % _HISTORY
+        added = self._states[then]
+        if estimate is not None:
+            added = added + estimate.past_change()
         self._smoothed[:-1] = self._smoothed[1:]
         self._smoothed[-1] = self._eta[then]
-        last = self._smoothed[-1, :n]
-        last += self._states[then]
-        if late is not None:
-            last += self.trust * late.past_change()
+        self._smoothed[-1, :n] += self.trust * added
 
     @property
     def smoothed(self) -> Floats:
@@ -524,24 +515,20 @@ class Observer:
 
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""
-        for each in (self._causal, self._late_one):
-            if each is not None:
-                each.state *= math.sqrt(share)
+        if self._estimate is not None:
+            self._estimate.scale(math.sqrt(share))
         for k in self._used:
             self.tracks[k].sensor.counts.clamped += 1
 
     def reset(self) -> None:
         """Forget the correction; what is known about the sensors stays."""
-        self._causal = self._late_one = self._designing = None
+        self._estimate = self._designing = None
         self._used = ()
         self.trust[:] = 0.0
         self._states[:] = 0.0
         self._eta[:] = 0.0
 
-    def _fade(self, causal: Estimate, n_periods: int) -> None:
-        decay = math.exp(-n_periods * self._dt / _FADE)
-        for each in (self._causal, self._late_one):
-            if each is not None:
-                each.move(n_periods)
-                each.state *= decay
-        self._moved[:] = causal.state
+    def _fade(self, estimate: Estimate, n_periods: int) -> None:
+        estimate.move(n_periods)
+        estimate.scale(math.exp(-n_periods * self._dt / _FADE))
+        self._moved[:] = estimate.calm

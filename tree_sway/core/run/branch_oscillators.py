@@ -125,7 +125,7 @@ class BranchOscillators(Branchwise):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step under a mean wind [m/s], with `drag_law.pressure` in [kg/m^3].
+        Advance one step under a mean wind [m/s], with `drag_law.drag_density` in [kg/m^3].
 
         Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """

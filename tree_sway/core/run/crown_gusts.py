@@ -86,7 +86,7 @@ def add_gusts(
     x, y, z, ax, ay, az
         The wind, and the mean of the winds of the limbs less the wind in [m/s].
     per_speed_squared
-        `drag_law.pressure` in [kg/m^3].
+        `drag_law.drag_density` in [kg/m^3].
 
     """
     table, whole, half = tables[0], time_steps[0].whole, time_steps[0].half
@@ -150,7 +150,7 @@ def add_gusts_in_numpy(
 
 @part
 def _load(table: Table, x: float, y: float, z: float, per_speed: float, out: Floats) -> None:
-    """Write the harmonics of a wind [m/s] times its dynamic pressure, by `drag_law.pressure`."""
+    """Write the harmonics of a wind [m/s] times its dynamic pressure."""
     speed = max(math.sqrt(x * x + y * y + z * z), 1e-12)
     pressure = min(per_speed * speed * speed, table.most_pressure)
     fill_harmonics(x / speed, y / speed, z / speed, out)

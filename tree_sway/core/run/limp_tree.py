@@ -3,8 +3,8 @@
 """
 Step of a limp tree: one whose twigs turn so far that neither load nor inertia is that of a table.
 
-Its coordinates are those of the model with a table. Their load is found branch by branch
-(`setup.branch_loads`), and their inertia and weight at the pose (`pose_inertia`):
+Its coordinates are those of the model with a table. Their load is that of every segment
+(`segment_drag`), and their inertia and weight are those of the pose (`pose_inertia`):
 
     M(q) q'' + C q' + K q = F(wind, q, q') - centrifugal force + weight beyond the linear.
 
@@ -24,7 +24,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
@@ -33,11 +33,14 @@ from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import (
+    AHEAD,
+    BEHIND,
     centrifugal_force,
     COLUMNS,
     columns_due,
     HERE,
     inertia_at_rest,
+    load_of_forces,
     PoseInertia,
     renew_columns,
     return_to_rest,
@@ -46,14 +49,19 @@ from tree_sway.core.run.pose_inertia import (
     twice_kinetic_energy,
     weight_potential,
 )
+from tree_sway.core.run.segment_drag import (
+    damping_at_rest,
+    fill_drag,
+    segment_drag,
+    SegmentDrag,
+)
 from tree_sway.core.run.table_model import WindBasisBank
-from tree_sway.core.setup.tree_motion import centre_motion
 from tree_sway.core.vector import Vector
 
 STRONG = 20.0, 25.0
 """
 Winds [m/s] between which the step goes over to that of the table: in storms twigs stream along the
-wind, and loads found branch by branch rattle.
+wind, and this step was not tried there.
 """
 
 LONGEST_STEP, MOST_TURN = 0.04, 1.0
@@ -80,8 +88,6 @@ class LimpMotion(NamedTuple):
     stiffness: Floats
     by_key: Floats
     """Shapes, (N, m)."""
-    by_coordinate: Floats
-    """Shapes, (m, N)."""
     eta: Floats
     """Coordinates, of the state."""
     rate: Floats
@@ -96,8 +102,6 @@ class LimpMotion(NamedTuple):
     """Coordinates and rates at the middle of the step, (2, m)."""
     rotations: Floats
     """Key rotations there and their rates, then those at the end of the step, (2, N)."""
-    moments: Floats
-    """Moments of the wind there on the key rotations, at 1 kg/m^3, (N,)."""
     by_wind: Floats
     """Force of the wind."""
     wanted: Floats
@@ -117,10 +121,9 @@ def motion_of(model: SwayModel, leading: int) -> LimpMotion:
     n_rotations, m = model.shapes.shape
     room = {name: np.zeros(m) for name in LimpMotion._fields}
     room |= {name: np.zeros((2, m)) for name in ('middle', 'new')}
-    room['rotations'], room['moments'] = np.zeros((2, n_rotations)), np.zeros(n_rotations)
+    room['rotations'] = np.zeros((2, n_rotations))
     room |= {name: np.zeros(leading) for name in ('across', 'momentum')}
     room['by_key'] = np.ascontiguousarray(model.shapes)
-    room['by_coordinate'] = np.ascontiguousarray(model.shapes.T)
     return LimpMotion(**room)
 
 
@@ -134,9 +137,12 @@ class LimpStep(WindBasisBank):
         self.middles = Middles(bank, mass, model.tree.length)
         self.pose = inertia_at_rest(self.middles, model.shapes, down, model.weight_slopes)
         self.limp_motion = motion_of(model, len(self.pose.change))
-        moved = centre_motion(self.branches, model.shapes).reshape(-1, model.n_coordinates)
-        drag = np.repeat(2.0 * self.branches['area'] * self.branches['speed'], 3)
-        self._drag = moved.T @ (drag[:, None] * moved)
+        self._segments = segment_drag(model, self.branches, self.middles.tangent)
+        damping = damping_at_rest(self._segments, self.pose.columns_at_rest)
+        q = len(self.pose.factor)
+        damping[:q] = self.pose.factor @ damping[:q]
+        damping[:, :q] = damping[:, :q] @ self.pose.factor.T
+        self._drag = damping
         """Damping of the coordinates by still air, per drag and speed, (m, m)."""
         self._law: CoupledStep | None = None
         self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
@@ -182,7 +188,6 @@ class LimpStep(WindBasisBank):
     def reset(self) -> None:
         """Return to rest."""
         super().reset()
-        self._wind_moments.reset()
         self._begin_anew()
 
     def _step_in_wind(
@@ -193,7 +198,7 @@ class LimpStep(WindBasisBank):
         if not is_refused:
             stored[:] = x, y, z
         wx, wy, wz = stored.tolist()
-        load = pressure(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
+        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
         return int(is_refused) + 2 * self._step_once(wx, wy, wz, load)
 
     def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -212,7 +217,7 @@ class LimpStep(WindBasisBank):
             self._forget()
             outside = int(self._step(wx, wy, wz, per_speed_squared))
         else:
-            instance['wind'], instance['pressure'] = (wx, wy, wz), per_speed_squared
+            instance['wind'], instance['drag_density'] = (wx, wy, wz), per_speed_squared
             instance['outside'], instance['diagonal'] = 0, 0.0
         self._take(share)
         return outside
@@ -246,15 +251,14 @@ class LimpStep(WindBasisBank):
         count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
         if is_disturbed:
             self._forget()
-        self._next_column = (first + count) % len(pose.change)
+        self._next_column = (first + count) % len(pose.columns)
         self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
-        rotations, rates = motion.rotations
-        self._wind_moments.fill(rotations, rates, wind, motion.moments)
         most = float(self.record[0]['most_energy'])
         load = per_speed_squared, per_speed_squared * speed
         is_possible: bool = self._run(
-            _step_from_middle, law, pose, motion, first, count, ahead, *load, most
-        )
+            _step_from_middle, law, pose, motion, self._segments, first, count, ahead, *wind,
+            *load, most,
+        )  # fmt: skip
         if is_possible:
             self.middles.fill(pose.turned, pose.placed, 1)
             self._allowed = self._run(_bound_energy, pose, motion, self._allowed)
@@ -320,21 +324,24 @@ def _turn_to_middle(
 
 @fused
 def _step_from_middle(
-    law: CoupledStep, pose: PoseInertia, motion: LimpMotion, first: int, count: int, ahead: float,
-    per_speed_squared: float, drag: float, most_energy: float,
+    law: CoupledStep, pose: PoseInertia, motion: LimpMotion, segments: SegmentDrag, first: int,
+    count: int, ahead: float, wx: float, wy: float, wz: float, per_speed_squared: float,
+    drag: float, most_energy: float,
 ) -> bool:  # fmt: skip
     """
-    Step under the load of the middle, where the tree is placed and the wind's moments are known.
+    Step under the load of the middle, where the tree is placed.
 
     Returns whether the step gives no more energy than any wind [J], and turns no branch too far.
     """
     eta, rate, new_eta, new_rate = motion.eta, motion.rate, motion.new[0], motion.new[1]
     strain = _strain_energy(motion, eta)
     copy(rate, new_rate)
+    per_time = 0.5 / ahead if ahead > 0.0 else 0.0
+    fill_drag(segments, pose.placed[AHEAD], pose.placed[BEHIND], per_time, wx, wy, wz)
     kinetic = renew_columns(pose, first, count, motion.middle[0], new_rate)
 
     wanted, by_wind = motion.wanted, motion.by_wind
-    multiply(motion.by_coordinate, motion.moments, by_wind)
+    load_of_forces(pose, segments.force, by_wind)
     by_wind *= per_speed_squared
     copy(by_wind, wanted)
     leading = wanted[: len(pose.weight)]

@@ -34,6 +34,8 @@ class Middles:
         self._bank = bank
         self._root_mass, self._half_length = np.sqrt(mass), 0.5 * length
         self._poses = np.zeros((len(mass), 7))
+        self.tangent = np.zeros(3 * len(mass))
+        """Directions of the segments at the first pose of the last `fill`, (3 n,)."""
 
     def at(self, rotations: Floats) -> Floats:
         """Return the middles at key rotations (N,), one after another, (3 n,)."""
@@ -55,23 +57,25 @@ class Middles:
         n_coordinates = int(bank.branches['n_coordinates'].sum())
         arrays = (
             *GIVEN, bank.segments, bank.blocks, bank.bases, room_for(n_coordinates),
-            self._root_mass, self._half_length, self._poses, np.zeros(3),
+            self._root_mass, self._half_length, self._poses, np.zeros(3), self.tangent,
         )  # fmt: skip
         given = np.zeros((1, 1)), np.zeros((1, 1)), 1
         return partial(entry_of(_fill, *arrays, *given), *arrays)
 
     def _fill_by_numpy(self, rotations: Floats, out: Floats, count: int) -> None:
-        for pose, middles in zip(rotations[:count], out, strict=False):
+        for k, (pose, middles) in enumerate(zip(rotations[:count], out, strict=False)):
             self._bank.place(pose, np.zeros(3), self._poses)
-            at = ends_of_poses(self._poses, self._half_length)[1]
+            start, at = ends_of_poses(self._poses, self._half_length)
             np.multiply(self._root_mass[:, None], at, out=middles.reshape(-1, 3))
+            if k == 0:
+                self.tangent[:] = ((at - start) / self._half_length[:, None]).ravel()
 
 
 @fused
 def _fill(
     instances: Instances, shapes: Singles, segments: Segments, blocks: Blocks, bases: Floats,
     room: Floats, root_mass: Floats, half_length: Floats, poses: Floats, origin: Floats,
-    rotations: Floats, out: Floats, count: int,
+    tangent: Floats, rotations: Floats, out: Floats, count: int,
 ) -> None:  # fmt: skip
     for k in range(count):
         place(
@@ -81,8 +85,12 @@ def _fill(
         middles = out[k]
         for i in range(len(half_length)):
             x, y, z, w = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
-            along = half_length[i]
-            twice = along + along
-            middles[3 * i] = root_mass[i] * (poses[i, 0] + along - twice * (y * y + z * z))
-            middles[3 * i + 1] = root_mass[i] * (poses[i, 1] + twice * (x * y + w * z))
-            middles[3 * i + 2] = root_mass[i] * (poses[i, 2] + twice * (x * z - w * y))
+            along = 1.0 - 2.0 * (y * y + z * z)
+            aside = 2.0 * (x * y + w * z)
+            up = 2.0 * (x * z - w * y)
+            half = half_length[i]
+            middles[3 * i] = root_mass[i] * (poses[i, 0] + half * along)
+            middles[3 * i + 1] = root_mass[i] * (poses[i, 1] + half * aside)
+            middles[3 * i + 2] = root_mass[i] * (poses[i, 2] + half * up)
+            if k == 0:
+                tangent[3 * i], tangent[3 * i + 1], tangent[3 * i + 2] = along, aside, up

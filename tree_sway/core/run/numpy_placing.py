@@ -46,9 +46,9 @@ class NumpyPlacing:
         # x turns about e2 and y about -e1.
         e1, e2 = branches['frame'][self._owner, 1], branches['frame'][self._owner, 2]
         self._pair = np.stack([e2, -e1], axis=1)
-        self._rotation_mode = self._segment['slope'][:, None, None] * self._pair
+        self._segment_turn = self._segment['slope'][:, None, None] * self._pair
         if branches['load_mode'].shape[1] > 2:
-            self._rotation_mode = segments['rotation_mode'][at, ..., slot]
+            self._segment_turn = segments['segment_turn'][at, ..., slot]
         place = np.zeros(int(self._rows.max()) + 1, dtype=np.int64)
         place[self._rows] = np.arange(len(self._rows))
         self._base_row = place[np.maximum(branches['base_segment'], 0)]
@@ -73,7 +73,7 @@ class NumpyPlacing:
         keys = angles.copy()
         keys[:, :2] *= stretch[:, None]
         difference = blend[owner] * (segment['tip_slope'] - segment['slope'])
-        bend = np.einsum('jc,jck->jk', keys[owner], self._rotation_mode)
+        bend = np.einsum('jc,jck->jk', keys[owner], self._segment_turn)
         bend += difference[:, None] * np.einsum('jc,jck->jk', keys[owner, :2], self._pair)
         bend = quaternions_of(bend)
 

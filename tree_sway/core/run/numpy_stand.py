@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.run.numpy_table import step_instance, Views, views_of
 
 _STATE = 'eta', 'rate', 'force', 'middle', 'middle_rate'
@@ -45,14 +45,14 @@ def step_stand(
 def _own_wind(
     here: np.void, wind: Floats, table: Views, drag_law: Floats
 ) -> tuple[tuple[float, float, float], float, bool]:
-    """Find the wind in the frame of a tree, its pressure per squared speed, if it is clamped."""
+    """Find the wind in the frame of a tree, its drag density, if it is clamped."""
     half_cosine, half_sine = float(here['cosine']), float(here['sine'])
     cosine = half_cosine * half_cosine - half_sine * half_sine
     sine = 2.0 * half_cosine * half_sine
     east, north, up = (float(here['speed']) * wind).tolist()
     x, y, z = cosine * east + sine * north, cosine * north - sine * east, up
     speed = math.sqrt(x * x + y * y + z * z)
-    load = pressure(speed, *drag_law.tolist())
+    load = drag_density(speed, *drag_law.tolist())
     most_pressure = float(table['most_pressure'])
     if not load * speed * speed > most_pressure:
         return (x, y, z), load, False

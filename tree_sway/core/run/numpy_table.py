@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.run.table_load import STEEP
@@ -213,7 +213,7 @@ def step_instance(
         table, direction, dynamic_pressure, per_speed_squared, middle, middle_rate, n_coupled
     )
     instance['wanted'][:], instance['diagonal'][:] = wanted, diagonal
-    instance['wind'][:], instance['pressure'][...] = wind, per_speed_squared
+    instance['wind'][:], instance['drag_density'][...] = wind, per_speed_squared
     # Implicit in all damping, with equal rates of the others: stable for any wind and step.
     own = diagonal * half[5]
     force[:] = (wanted - own * force) / (1.0 - own)
@@ -256,7 +256,7 @@ def step_in_wind(
     if not is_refused:
         stored[:] = x, y, z
     wx, wy, wz = stored.tolist()
-    load = pressure(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
+    load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
     with np.errstate(all='ignore'):
         outside = step_instance(table, time_step, instance, False, (wx, wy, wz), load)
     return int(is_refused) + 2 * outside

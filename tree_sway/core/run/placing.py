@@ -504,17 +504,17 @@ def _rotate_by_all(segment: Segment, scratch: Block, count: int) -> None:
     All rows of the record are summed: with a count known at compile time the slots are a vector.
     """
     rotation, blend = scratch.half_rotation, scratch.blend
-    mode, half_key = segment.rotation_mode, scratch.half_key
+    turn, half_key = segment.segment_turn, scratch.half_key
     for slot in range(count):
         slope = blend[slot] * (segment.tip_slope[slot] - segment.slope[slot])
         x = slope * rotation[0, slot]
         y = slope * rotation[1, slot]
         z = slope * rotation[2, slot]
-        for row in range(mode.shape[0]):
+        for row in range(turn.shape[0]):
             amount = half_key[row, slot]
-            x += amount * mode[row, 0, slot]
-            y += amount * mode[row, 1, slot]
-            z += amount * mode[row, 2, slot]
+            x += amount * turn[row, 0, slot]
+            y += amount * turn[row, 1, slot]
+            z += amount * turn[row, 2, slot]
         _rotate_by(scratch, slot, x, y, z)
 
 

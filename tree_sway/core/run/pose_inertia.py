@@ -10,7 +10,7 @@ tree are (Shabana 2020, *Dynamics of Multibody Systems*, chapter 3)
 
 All three are found by placing the tree: a column of J is the difference of two places of the
 segments, and the centrifugal force the second difference along the motion. **Columns are renewed
-in turn**, `RENEWED` a step or more, so that one is at most some tenths of a second old: M is a
+in turn**, an eighth of them a step or more: M is a
 product of a matrix with itself, and so is positive definite however old its columns are.
 
 **No energy comes of it.** In truth the change of M and the centrifugal force do no work together.
@@ -34,13 +34,13 @@ from tree_sway.core.kernel import part
 from tree_sway.core.run.dense import copy, dot, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 
-LEADING = 60
+LEADING = 120
 """Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
 
-RENEWED, OLDEST = 4, 0.3
+OLDEST, MOST_STEPS = 0.3, 8
 """
-Least number of columns that a step renews, and the largest rotation [rad] of a branch between two
-renewals of a column.
+The largest rotation [rad] of a branch, and the largest number of steps, between two renewals of a
+column.
 """
 
 HERE, AHEAD, BEHIND, COLUMNS = 0, 1, 2, 3
@@ -58,17 +58,19 @@ class PoseInertia(NamedTuple):
     """
 
     columns: Floats
-    """J of the leading coordinates, times the square roots of the masses, (q, 3 n)."""
+    """J of all coordinates, times the square roots of the masses, (m, 3 n)."""
     change: Floats
     """M less that at rest, which is 1, (q, q)."""
     weight: Floats
     """Force of the weight beyond that which is linear in the coordinates, (q,)."""
     directions: Floats
-    """Key rotations per unit of each leading coordinate, (q, N)."""
+    """Key rotations per unit of each coordinate, (m, N)."""
     steps: Floats
-    """Amount of each leading coordinate for the difference of its column, (q,)."""
+    """Amount of each coordinate for the difference of its column, (m,)."""
     columns_at_rest: Floats
-    """The columns at rest, (q, 3 n)."""
+    """The columns at rest, (m, 3 n)."""
+    factor: Floats
+    """Of the inertia of the middles at rest by Cholesky's decomposition, (q, q)."""
     weight_at_rest: Floats
     """Force of the weight at rest on the leading coordinates, (q,)."""
     slopes: Floats
@@ -82,11 +84,11 @@ class PoseInertia(NamedTuple):
     all_slopes: Floats
     """Derivative of this force by each coordinate, at rest, (m, m)."""
     turned: Floats
-    """Key rotations of the places of a step, (q + 3, N)."""
+    """Key rotations of the places of a step, (m + 3, N)."""
     placed: Floats
-    """Middles at these, (q + 3, 3 n)."""
+    """Middles at these, (m + 3, 3 n)."""
     products: Floats
-    """Of the columns with the bend of the motion, then with each new column, (q + 1, q)."""
+    """Of the columns with the bend of the motion, then with each new column, (m + 1, q)."""
     momentum: Floats
     """Scratch memory, (q,)."""
     sloped: Floats
@@ -115,9 +117,11 @@ def inertia_at_rest(
     q = min(LEADING, m)
     at_rest = _columns_at_rest(middles, shapes)
     # The model's coordinates have unit mass, that of its points to some percent.
-    unit = np.linalg.inv(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T))
-    directions = np.ascontiguousarray((shapes[:, :q] @ unit.T).T)
-    columns = unit @ at_rest[:q]
+    factor = np.asarray(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T), dtype=np.float64)
+    unit = np.linalg.inv(factor)
+    directions, columns = shapes.T.copy(), at_rest.copy()
+    directions[:q] = unit @ directions[:q]
+    columns[:q] = unit @ columns[:q]
     return PoseInertia(
         columns=columns.copy(),
         change=np.zeros((q, q)),
@@ -125,15 +129,16 @@ def inertia_at_rest(
         directions=directions,
         steps=_COLUMN_TURN / np.maximum(np.abs(directions).max(axis=1), 1e-300),
         columns_at_rest=columns,
-        weight_at_rest=columns @ gravity,
+        factor=factor,
+        weight_at_rest=columns[:q] @ gravity,
         slopes=unit @ weight_slopes[:q],
         gravity=gravity,
         place_at_rest=middles.at(np.zeros(n_rotations)),
         force_at_rest=at_rest @ gravity,
         all_slopes=np.ascontiguousarray(weight_slopes),
-        turned=np.zeros((q + COLUMNS, n_rotations)),
-        placed=np.zeros((q + COLUMNS, len(gravity))),
-        products=np.zeros((q + 1, q)),
+        turned=np.zeros((m + COLUMNS, n_rotations)),
+        placed=np.zeros((m + COLUMNS, len(gravity))),
+        products=np.zeros((m + 1, q)),
         momentum=np.zeros(q),
         sloped=np.zeros(m),
     )
@@ -159,17 +164,15 @@ def return_to_rest(pose: PoseInertia) -> None:
 @part
 def columns_due(pose: PoseInertia, turned: float) -> int:
     """Return how many columns to renew after a branch has rotated by an angle [rad]."""
-    q = len(pose.change)
-    if turned >= OLDEST:
-        return q
-    return min(q, max(RENEWED, math.ceil(q * turned / OLDEST)))
+    share = min(max(turned / OLDEST, 1.0 / MOST_STEPS), 1.0)
+    return math.ceil(share * len(pose.columns))
 
 
 @part
 def turn_for_columns(pose: PoseInertia, first: int, count: int) -> None:
-    """Turn the tree a little from here along each of the next leading coordinates."""
+    """Turn the tree a little from here along each of the next coordinates."""
     for k in range(count):
-        row = (first + k) % len(pose.change)
+        row = (first + k) % len(pose.columns)
         turned = pose.turned[COLUMNS + k]
         np.multiply(pose.directions[row], pose.steps[row], turned)
         turned += pose.turned[HERE]
@@ -240,21 +243,36 @@ def _take_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> Non
     bend -= here
     new = pose.placed[COLUMNS : COLUMNS + count]
     for k in range(count):
-        row = (first + k) % q
+        row = (first + k) % len(pose.columns)
         column = new[k]
         column -= here
         column /= pose.steps[row]
         copy(column, pose.columns[row])
-    multiply_rows(pose.placed[BEHIND : COLUMNS + count], pose.columns, pose.products[: 1 + count])
+    rows, products = pose.placed[BEHIND : COLUMNS + count], pose.products[: 1 + count]
+    multiply_rows(rows, pose.columns[:q], products)
     for k in range(count):
-        row = (first + k) % q
-        for j in range(q):
-            pose.change[row, j] = pose.change[j, row] = pose.products[1 + k, j]
+        row = (first + k) % len(pose.columns)
+        if row < q:
+            for j in range(q):
+                pose.change[row, j] = pose.change[j, row] = products[1 + k, j]
+            linear = pose.weight_at_rest[row] + dot(pose.slopes[row], eta)
+            pose.weight[row] = dot(new[k], pose.gravity) - linear
     for k in range(count):
-        row = (first + k) % q
-        pose.change[row, row] -= 1.0
-        linear = pose.weight_at_rest[row] + dot(pose.slopes[row], eta)
-        pose.weight[row] = dot(new[k], pose.gravity) - linear
+        row = (first + k) % len(pose.columns)
+        if row < q:
+            pose.change[row, row] -= 1.0
+
+
+@part
+def load_of_forces(pose: PoseInertia, force: Floats, load: Floats) -> None:
+    """
+    Write the work (m,) that forces do per unit of each coordinate.
+
+    Forces on the segments are over the square roots of their masses, (3 n,).
+    """
+    multiply(pose.columns, force, load)
+    for i in range(len(pose.factor) - 1, -1, -1):
+        load[i] = dot(pose.factor[i, : i + 1], load[: i + 1])
 
 
 @part

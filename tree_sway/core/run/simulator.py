@@ -20,7 +20,7 @@ from tree_sway.core.checks import (
     three_numbers,
     whole,
 )
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import (
@@ -296,7 +296,7 @@ class SwaySimulator:
             status = WIND_REFUSED
             counts.refused += 1
         wx, wy, wz = self._wind.tolist()
-        load = pressure(math.hypot(wx, wy, wz), *self._drag_law)
+        load = drag_density(math.hypot(wx, wy, wz), *self._drag_law)
         if self._gusts is None:
             outcome = self._advance(wx, wy, wz, load)
         else:

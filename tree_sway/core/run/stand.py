@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused, part
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.records import Blocks, Instance, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.run.placing import NONE, place
 from tree_sway.core.run.simd import settle, write_past_caches
@@ -78,7 +78,7 @@ def step_stand(
         x, y, z = _wind_in_frame(here, winds[number])
         speed = math.sqrt(x * x + y * y + z * z)
         law = drag_laws[here.kind]
-        load = pressure(speed, law[0], law[1], law[2])
+        load = drag_density(speed, law[0], law[1], law[2])
         here.is_clamped = load * speed * speed > table.most_pressure
         if here.is_clamped:
             fraction = math.sqrt(table.most_pressure / load) / speed

@@ -34,7 +34,7 @@ class UniformWind(NamedTuple):
     dynamic_pressure: float
     """``p U^2`` in [kg/m/s^2], U the speed."""
     per_speed_squared: float
-    """`drag_law.pressure` p in [kg/m^3]."""
+    """`drag_law.drag_density` p in [kg/m^3]."""
 
 
 class Corners(NamedTuple):

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import (
     Instance,
     instance_layout,
@@ -44,7 +44,7 @@ from tree_sway.core.run.table_load import UniformWind, wind_force
 if TYPE_CHECKING:
     from tree_sway.core.setup.static_responses import WindMoments
 
-STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
+STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'drag_density', 'outside', 'left_out')
 """Fields of an instance that are its state."""
 
 _BOUND = '_step', '_expand'
@@ -138,7 +138,7 @@ class WindBasisBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step under a mean wind [m/s], with `drag_law.pressure` in [kg/m^3].
+        Advance one step under a mean wind [m/s], with `drag_law.drag_density` in [kg/m^3].
 
         Returns 1 if the step was clamped to the limit of the table, -1 if the motion is not
         finite, else 0.
@@ -203,7 +203,7 @@ class WindBasisBank:
         """Force of the last step's wind on each branch as it is and moves now in [N], (b, 3)."""
         instance = self.instance[0]
         per_wind = self._wind_moments.forces(*self.motion(), instance['wind'])
-        return np.asarray(float(instance['pressure']) * per_wind)
+        return np.asarray(float(instance['drag_density']) * per_wind)
 
     @cached_property
     def _wind_moments(self) -> WindMoments:
@@ -236,7 +236,7 @@ def bent_too_far(instances: Records, most_pressure: Floats) -> NDArray[np.bool_]
     pressure [kg/m/s^2], (t,), a tree does not reach it but by growing motion, or by a pull.
     """
     wind = instances['wind']
-    dynamic_pressure = instances['pressure'] * np.einsum('ti,ti->t', wind, wind)
+    dynamic_pressure = instances['drag_density'] * np.einsum('ti,ti->t', wind, wind)
     return (instances['outside'] == 1) & (dynamic_pressure < 0.5 * most_pressure)
 
 
@@ -315,7 +315,7 @@ def step_instance(
     wx, wy, wz
         Mean wind over the step in [m/s].
     per_speed_squared
-        `drag_law.pressure` in [kg/m^3].
+        `drag_law.drag_density` in [kg/m^3].
 
     Returns
     -------
@@ -335,7 +335,7 @@ def step_instance(
     wind = UniformWind(ahead, aside, upwards, dynamic_pressure, per_speed_squared)
     wind_force(table, instance, wind, table.n_modes - instance.left_out)
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
-    instance.pressure = per_speed_squared
+    instance.drag_density = per_speed_squared
     energy = _step_coordinates(table, time_step, instance)
     # A pull may bend it more than any wind; no wind adds to that.
     most_energy = max(energy_before, table.most_energy)
@@ -428,7 +428,7 @@ def step_in_wind(
         stored[0], stored[1], stored[2] = x, y, z
     used_x, used_y, used_z = stored[0], stored[1], stored[2]
     speed = math.sqrt(used_x * used_x + used_y * used_y + used_z * used_z)
-    load = pressure(speed, limits[1], limits[2], limits[3])
+    load = drag_density(speed, limits[1], limits[2], limits[3])
     is_outside = step_instance(
         tables[0], time_steps[0], instances[0], False, used_x, used_y, used_z, load
     )

@@ -49,33 +49,41 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
         Slopes of the inertia, the last axis the coordinate that bends the tree, (q, q, q).
 
     """
-    lead, first, on = shapes[:, :LEADING], places.first[:-1], places.base_segment
-    parent, levels = np.maximum(places.parent, 0), levels_of(places.parent)
-    q, branch = lead.shape[1], tree.branch_of_segment
+    lead = shapes[:, :LEADING]
+    q = lead.shape[1]
+    first = places.first[:-1]
+    on = places.base_segment
+    parent = np.maximum(places.parent, 0)
+    levels = levels_of(places.parent)
+    branch = tree.branch_of_segment
     joint, base, own = turning_of(tree, places, lead)
+    below = base[parent]
+    here = base[branch]
+    whole = here + own
+    chord = places.chord
     arm = tree.start[first] - tree.start[on]
     arm[0] = 0.0
-    below, here = base[parent], base[branch]
-    whole = here + own
 
     def middles(chords: Floats, arms: Floats) -> Floats:
-        """Add up the motion of segments and of bases on them, (n, q, 3) and (b, q, 3)."""
-        before = np.cumsum(chords, axis=0) - chords
-        before -= before[first][branch]
-        joints = np.where(on[:, None, None] < 0, 0.0, before[on]) + arms
-        moved = sum_outward(parent, levels, joints)[branch] + before + 0.5 * chords
+        """Add up the motion of segments (n, q, 3) and of bases on them, (b, q, 3)."""
+        starts = np.cumsum(chords, axis=0) - chords
+        starts -= starts[first][branch]
+        on_parent = np.where(on[:, None, None] < 0, 0.0, starts[on])
+        bases = sum_outward(parent, levels, on_parent + arms)
+        moved = bases[branch] + starts + 0.5 * chords
         return moved.swapaxes(0, 1).reshape(q, 3 * len(branch))
 
-    at_rest = middles(cross(whole, places.chord[:, None]), cross(whole[on], arm[:, None]))
+    chords = cross(whole, chord[:, None])
+    arms = cross(whole[on], arm[:, None])
+    at_rest = middles(chords, arms)
     slopes = np.zeros((q, q, q))
     for k in range(q):
-        # Rotations one after another do not commute: half of their cross products remains.
-        order = cross(below, joint[:, k, None]) + cross(below[:, k, None], joint)
-        orders = sum_outward(parent, levels, order)[branch]
-        orders += cross(here, own[:, k, None]) + cross(here[:, k, None], own)
-        bent = middles(
-            _twice(whole, k, orders, places.chord), _twice(whole[on], k, orders[on], arm)
-        )
+        of_bases = _order(below, joint, k)
+        order = sum_outward(parent, levels, of_bases)[branch]
+        order += _order(here, own, k)
+        chords = _second_derivative(whole, order, chord, k)
+        arms = _second_derivative(whole[on], order[on], arm, k)
+        bent = middles(chords, arms)
         power = (bent * np.repeat(mass, 3)) @ at_rest.T
         slopes[:, :, k] = power + power.T
     return slopes
@@ -87,8 +95,27 @@ def inertia_change(slopes: Floats, at: Floats) -> Floats:
     return change * min(1.0, MOST_CHANGE / max(float(np.linalg.norm(change)), 1e-300))
 
 
-def _twice(turn: Floats, k: int, order: Floats, arm: Floats) -> Floats:
-    """Second derivative of arms (r, 3) by all coordinates and the one of number k, (r, q, 3)."""
-    one, arm = turn[:, k, None], arm[:, None]
-    both = cross(turn, cross(one, arm)) + cross(one, cross(turn, arm)) + cross(order, arm)
-    return np.asarray(0.5 * both)
+def _order(inner: Floats, outer: Floats, k: int) -> Floats:
+    """
+    Add up what remains of the order of two rotations (r, q, 3), by all coordinates and number k.
+
+    Rotations one after another do not commute: half of their cross products remains.
+    """
+    by_outer = cross(inner, outer[:, k, None])
+    by_inner = cross(inner[:, k, None], outer)
+    return np.asarray(by_outer + by_inner)
+
+
+def _second_derivative(rotation: Floats, order: Floats, arm: Floats, k: int) -> Floats:
+    """
+    Differentiate arms a (r, 3) by all coordinates i and the one of number k, (r, q, 3).
+
+    With rotations w (r, q, 3) and their `_order` o it is
+    ``[w_i x (w_k x a) + w_k x (w_i x a) + o_ik x a] / 2``.
+    """
+    by_k = rotation[:, k, None]
+    arm = arm[:, None]
+    twice = cross(rotation, cross(by_k, arm))
+    twice += cross(by_k, cross(rotation, arm))
+    twice += cross(order, arm)
+    return np.asarray(0.5 * twice)

@@ -129,7 +129,7 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
         motion of the bases, the wind (`set_air`) and the drag impulse of the last step; forces and
         drag impulse are written.
     per_speed_squared
-        `pressure` of the wind in [kg/m^3].
+        `drag_density` of the wind in [kg/m^3].
 
     """
     for block in range(len(loads)):

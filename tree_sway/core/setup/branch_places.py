@@ -47,7 +47,7 @@ def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Pl
         slope=slope,
         tip_slope=tip_slope,
         # A plain branch rotates by one slope about the axes across its chord.
-        rotation_mode=_rotation_modes(tree, models, slope, np.stack([e2, -e1], axis=1)),
+        segment_turn=_segment_turns(tree, models, slope, np.stack([e2, -e1], axis=1)),
     )
 
 
@@ -69,7 +69,7 @@ def _offsets(tree: Tree, base_segment: Ints) -> Floats:
     return np.where(is_joined, np.stack(in_frame, axis=1), 0.0)
 
 
-def _rotation_modes(
+def _segment_turns(
     tree: Tree, models: list[BranchModel], slope: Floats, key_axes: Floats
 ) -> Floats:
     """

@@ -27,7 +27,7 @@ def branch_records(
 
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
-    records = np.zeros(tree.n_branches, dtype=branch_layout(places.rotation_mode.shape[1]))
+    records = np.zeros(tree.n_branches, dtype=branch_layout(places.segment_turn.shape[1]))
     for alike in _of_one_shape(models):
         own = [models[branch] for branch in alike]
         segments = [tree.branch_first[b] + models[b].beam.segment for b in alike]

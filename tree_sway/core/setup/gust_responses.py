@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.setup.modes import Modes
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
@@ -58,7 +58,7 @@ def gust_responses(
     found = []
     for load, air in gust_slopes(branches, modes.shapes, *winds):
         for speed in _SPEEDS:
-            system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
+            system = 1j * swept[:, :, None] * (drag_density(speed, *law) * speed * air)
             system += free[:, :, None] * np.eye(len(circular))
             responses = gusts * np.linalg.solve(system, load)
             parts = np.concatenate([responses.real, responses.imag]).swapaxes(0, 1)

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.setup.load_table import direction, harmonics_at, SPEEDS
 
@@ -89,7 +89,7 @@ def leaning_responses(
     swept = swept[:, None, None]
     inertia = np.square(swept) * np.eye(m)
     for speed in speeds:
-        level, per_speed = SPEEDS.index(speed), pressure(speed, *law)
+        level, per_speed = SPEEDS.index(speed), drag_density(speed, *law)
         dynamic_pressure = per_speed * speed**2
         growth = _growth(speed, law)
         poses = table['equilibrium'][:, level]
@@ -115,7 +115,7 @@ def _growth(speed: float, law: DragLaw) -> float:
     It is 0 where there is no drag.
     """
     slow, fast = (1.0 - _TURN) * speed, (1.0 + _TURN) * speed
-    low, high = pressure(slow, *law) * slow**2, pressure(fast, *law) * fast**2
+    low, high = drag_density(slow, *law) * slow**2, drag_density(fast, *law) * fast**2
     return (high - low) / (_TURN * (high + low)) if high + low > 0.0 else 0.0
 
 

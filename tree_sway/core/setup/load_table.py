@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.model.table_record import arrays_of_record
@@ -141,7 +141,7 @@ class WindBasisTable:
         table['motion'][:m] = bank.mean_square_motion
         fitted, table['limit'][:m] = fit_harmonics(wind_moments, bank.shapes)
         table['harmonics'][:, :m] = fitted
-        pressures = [pressure(each, *drag_law) * each**2 for each in SPEEDS]
+        pressures = [drag_density(each, *drag_law) * each**2 for each in SPEEDS]
         self._fill_standing(table, pressures)
         self._fill_aslant(table)
         table['most_pressure'] = BEYOND * pressures[-1]

@@ -194,7 +194,7 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
         'segment_tip_slope': places.tip_slope[row],
         'segment_chord': places.chord[row],
         'segment_rest': places.rest[row],
-        'segment_turn': places.rotation_mode[row],
+        'segment_turn': places.segment_turn[row],
     }
 
 

@@ -28,7 +28,7 @@ class Turning(NamedTuple):
 def turning_of(tree: Tree, places: Places, shapes: Floats) -> Turning:
     """Find the small rotations of bases and segments by shapes (N, q)."""
     parent = np.maximum(places.parent, 0)
-    own = _rotations(places.rotation_mode, tree.branch_of_segment, places, shapes)
+    own = _rotations(places.segment_turn, tree.branch_of_segment, places, shapes)
     joint = _rotations(places.base_rotation, parent, places, shapes)
     joint[0] = 0.0
     return Turning(joint, sum_outward(parent, levels_of(places.parent), joint), own)

@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
@@ -21,10 +23,17 @@ _AZIMUTHS = np.arange(16) * np.pi / 8.0
 _EVERY = 3
 """Azimuths of steady winds from one with gusts to the next."""
 
-_TURNS, _SHARE = 30, 0.4
-"""Iterations for an equilibrium, and the share of the way that each goes."""
-_COUNT, _BEYOND = 10, 1.5
-"""Number of frequencies, and their range beyond those of the branches."""
+_TURNS = 30
+"""Iterations for an equilibrium."""
+
+_SHARE = 0.4
+"""Share of the way to the equilibrium that an iteration goes."""
+
+_COUNT = 10
+"""Number of frequencies of gusts."""
+
+_BEYOND = 1.5
+"""Range of these frequencies beyond those of the branches."""
 
 _STEADY = 4.0
 """Weight of steady over gust responses, root mean square, as in `stream_basis`."""
@@ -60,47 +69,95 @@ def uncoupled_responses(
         steady winds in [rad], (2 b, any).
 
     """
-    circular = np.sqrt(stiffness / inertia)
-    swept = np.geomspace(circular.min() / _BEYOND, _BEYOND * circular.max(), _COUNT)
-    spectrum = np.maximum(swept, circular.min()) ** (-1.0 / 3.0)
     passes = NumpyPasses(branches)
-    ways = np.stack([np.cos(_AZIMUTHS), np.sin(_AZIMUTHS), np.zeros(len(_AZIMUTHS))], axis=1)
-    load_mode, damping_mode = branches['load_mode'][:, :2], branches['damping_mode'][:, :2]
-    steady, gusts = np.zeros((2, 0, 2 * len(branches)))
+    oscillators = _Oscillators(inertia, damping, stiffness)
+    ways = np.zeros((len(_AZIMUTHS), 3))
+    ways[:, 0] = np.cos(_AZIMUTHS)
+    ways[:, 1] = np.sin(_AZIMUTHS)
+    with_gusts = ways[: len(ways) // 2 : _EVERY]  # the opposite ones have the same slopes
+    all_steady = []
+    all_gusts = []
     for speed in _SPEEDS:
-        per_speed = pressure(speed, *law)
-        still, swings = [], []
-        for ahead in ways:
-            still.append(_equilibrium(passes, stiffness, speed * ahead, per_speed))
-        for ahead in ways[: len(ways) // 2 : _EVERY]:  # the opposite ones have the same slopes
-            slope = drag_slopes(branches, ahead)
-            # By the wind at the anemometer, in each of its components.
-            by_wind = per_speed * speed * branches['speed'][:, None, None] * (load_mode @ slope)
-            own = np.einsum('bck,bkl,bcl->bc', load_mode, slope, damping_mode)
-            air = damping[:, None] + per_speed * speed * own
-            free = stiffness - np.square(swept)[:, None] * inertia
-            system = free[:, :, None] + 1j * swept[:, None, None] * air
-            response = spectrum[:, None, None, None] * by_wind / system[..., None]
-            rows = np.moveaxis(response, 3, 1).reshape(-1, 2 * len(branches))
-            swings += [rows.real, rows.imag]
-        steady = np.vstack([steady, _of_size(np.array(still), _STEADY)])
-        gusts = np.vstack([gusts, _of_size(np.vstack(swings), 1.0)])
-    return np.vstack([steady, gusts]).T, np.array(still).T
+        density = drag_density(speed, *law)
+        steady = np.array([_equilibrium(passes, stiffness, speed * way, density) for way in ways])
+        gusts = np.vstack(
+            [_gust_response(branches, oscillators, way, density * speed) for way in with_gusts]
+        )
+        all_steady.append(_of_size(steady, _STEADY))
+        all_gusts.append(_of_size(gusts, 1.0))
+    responses = np.vstack(all_steady + all_gusts)
+    return responses.T, steady.T
+
+
+class _Oscillators(NamedTuple):
+    """Inertia [kg m^2], damping [N m s] and stiffness [N m] of isolated branches, (b,)."""
+
+    inertia: Floats
+    damping: Floats
+    stiffness: Floats
+
+
+def _gust_response(
+    branches: Records, oscillators: _Oscillators, ahead: Floats, density_speed: float
+) -> Floats:
+    """
+    Find how branches swing in the gusts of a wind.
+
+    At each frequency w it is ``g (k - w^2 I + i w (d + d_air))^-1 dM/dU``, with the root g of the
+    spectrum ``w^(-5/3)`` over bands of width w, constant below the slowest branch.
+
+    Parameters
+    ----------
+    branches, oscillators
+        The branches.
+    ahead
+        Direction of the wind, (3,).
+    density_speed
+        `drag_density` times the speed, in [kg/m^2/s].
+
+    Returns
+    -------
+    Floats
+        Key rotations per speed of the gusts along each axis, (6 f, 2 b): the real parts of all f
+        frequencies, then the imaginary ones.
+
+    """
+    inertia, damping, stiffness = oscillators
+    circular = np.sqrt(stiffness / inertia)
+    slowest = circular.min()
+    swept = np.geomspace(slowest / _BEYOND, _BEYOND * circular.max(), _COUNT)
+    gusts = np.maximum(swept, slowest) ** (-1.0 / 3.0)
+    load_mode = branches['load_mode'][:, :2]
+    damping_mode = branches['damping_mode'][:, :2]
+    slope = drag_slopes(branches, ahead)
+    by_wind = density_speed * branches['speed'][:, None, None] * (load_mode @ slope)
+    by_rate = density_speed * np.einsum('bck,bkl,bcl->bc', load_mode, slope, damping_mode)
+    air = damping[:, None] + by_rate
+    free = stiffness - np.square(swept)[:, None] * inertia
+    system = free[:, :, None] + 1j * swept[:, None, None] * air
+    response = gusts[:, None, None, None] * by_wind / system[..., None]
+    rows = np.moveaxis(response, 3, 1).reshape(-1, 2 * len(branches))
+    return np.vstack([rows.real, rows.imag])
 
 
 def _equilibrium(passes: NumpyPasses, stiffness: Floats, wind: Floats, density: float) -> Floats:
     """Find the key rotations (2 b,) of branches at rest in a wind [m/s], (3,)."""
     n = len(stiffness)
-    x, still, at_rest = np.zeros((n, 2)), np.zeros((n, 2)), Bases.at_rest(n)
+    x = np.zeros((n, 2))
+    still = np.zeros((n, 2))
+    none = np.zeros(n)
+    at_rest = Bases.at_rest(n)
     for _ in range(_TURNS):
         impulse = np.zeros((n, 3))
-        force = passes.wind_forces(at_rest, x, still, wind, density, np.zeros(n), impulse)
+        force = passes.wind_forces(at_rest, x, still, wind, density, none, impulse)
         load = passes.own_loads(passes.at_bases(x, force))
-        moment = two_axis_moment(x, still, load, np.zeros(n), np.inf)
-        x = within_guard(x + _SHARE * (moment / stiffness[:, None] - x))
+        moment = two_axis_moment(x, still, load, none, np.inf)
+        sprung = moment / stiffness[:, None]
+        x = within_guard(x + _SHARE * (sprung - x))
     return np.asarray(x.ravel())
 
 
 def _of_size(rows: Floats, size: float) -> Floats:
     """Scale rows to a root of the sum of their squares."""
-    return np.asarray(size / max(float(np.linalg.norm(rows)), 1e-300) * rows)
+    norm = max(float(np.linalg.norm(rows)), 1e-300)
+    return np.asarray(size / norm * rows)

@@ -22,7 +22,7 @@ from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import AIR_DENSITY, pressure, SHARED_AT
+from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density, SHARED_AT
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
@@ -156,7 +156,7 @@ def _drag_area(simulator: SwaySimulator) -> Floats:
     reductions = TreeReductions(tree, model.species, simulator.settings)
     mean_diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
     area = (mean_diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
-    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *model.drag_law) * area
+    return 2.0 / AIR_DENSITY * drag_density(SHARED_AT, *model.drag_law) * area
 
 
 class _Points(NamedTuple):

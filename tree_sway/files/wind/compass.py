@@ -17,16 +17,21 @@ _POINTS = (
     'S', 'SSW', 'SW', 'WSW', 'W', 'WNW', 'NW', 'NNW',
 )  # fmt: skip
 _DEGREES = {point: 22.5 * number for number, point in enumerate(_POINTS)}
-_WORDS = {'north': 'N', 'east': 'E', 'south': 'S', 'west': 'W'}
-_WORD = re.compile('|'.join(_WORDS))
+_WORDS = {
+    **dict.fromkeys(('north', 'nord', 'norte', 'nor'), 'N'),
+    **dict.fromkeys(('east', 'est', 'este', 'leste', 'ost'), 'E'),
+    **dict.fromkeys(('south', 'sud', 'süd', 'sur', 'sul'), 'S'),
+    **dict.fromkeys(('west', 'ouest', 'oeste', 'ovest'), 'W'),
+}
+_WORD = re.compile('|'.join(sorted(_WORDS, key=len, reverse=True)))
 
 
 def degrees_of(cells: Sequence[str]) -> Floats:
     """
     Return the directions of texts in degrees, (n,), NaN for another text.
 
-    A point is such as ``WNW`` or ``West``. ``O`` is east where others have a W, as in German, and
-    west where others have an E, as in French and Spanish.
+    A point is such as ``WNW``, ``West`` or ``Noroeste``. ``O`` is east where others have a W, as
+    in German, and west where others have an E, as in French and Spanish.
     """
     numbers = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
     if all(number is not None for number in numbers):

@@ -47,6 +47,7 @@ PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
     (('fecha', 'hora'), _date_and_time),
     (('date', 'heure'), _date_and_time),
     (('date', 'timeutc'), _date_and_time),
+    (('data', 'horautc'), _date_and_time),
     (('date', 'hour'), _date_and_hour),
     (('date', 'mst'), _date_and_time),
     (('date', 'est'), _date_and_time),

@@ -42,7 +42,7 @@ WIND_FORMATS = (
         read_netcdf_wind,
     ),
     FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
-    FileFormat('csv', ('.csv', '.tsv', '.txt', '.json'), looks_like_wind, read_table_wind),
+    FileFormat('csv', ('.csv', '.tsv', '.txt', '.json', '.epw'), looks_like_wind, read_table_wind),
 )
 
 EXAMPLES = ('canopy',)

@@ -94,7 +94,7 @@ export class Table {
   }
 
   /** Drag per area and speed squared [kg/m^3]. @param {number} speed [m/s] */
-  pressure(speed) {
+  dragDensity(speed) {
     const [coefficient, exponent, steady] = this.law;
     if (exponent === 0) return HALF_AIR_DENSITY * (coefficient + steady);
     const streamlined = Math.min(Math.max(speed, STREAMLINING_FROM), STREAMLINING_TO);
@@ -174,7 +174,7 @@ export class TreeState {
     const { m, mostPressure, mostEnergy, arrays: { stiffness } } = table;
     const [midEta, midRate, wanted, diagonal] = table.scratch;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
-    const drag = table.pressure(speed);
+    const drag = table.dragDensity(speed);
     let isOutside = drag * speed * speed > mostPressure;
     let before = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
@@ -59,7 +59,7 @@ def _loaded(case: tuple[str, float]) -> tuple[float, float, float]:
         crown = TreeReductions(tree, wood, Settings(in_leaf=in_leaf))
         leaves = crown.leaf_load_area if in_leaf else None
         total = area + (0.0 if leaves is None else float(leaves.sum()))
-        per_area = np.array([pressure(speed, *crown.drag_law) for speed in SPEEDS])
+        per_area = np.array([drag_density(speed, *crown.drag_law) for speed in SPEEDS])
         loads.append(per_area * SPEEDS**2 * total)
     power = float(np.polyfit(np.log(SPEEDS), np.log(loads[0]), 1)[0])
     low, high = np.interp([6.0, 20.0], SPEEDS, loads[0] / loads[1]).tolist()

@@ -26,6 +26,10 @@ _MOST_LONGITUDE, _MOST_LATITUDE = 180.0, 90.0
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
 
+_FEW_DIGITS = 3
+_CLOSEST = 0.1
+"""Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
+
 
 @dataclass(frozen=True)
 class Places:
@@ -65,25 +69,43 @@ def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
     """Read columns of x and y, which may be degrees for all that."""
     x, _ = columns.numbers(east.index)
     y, _ = columns.numbers(north.index)
-    if _has_degrees(columns, east.index, _MOST_LONGITUDE) and _has_degrees(
-        columns, north.index, _MOST_LATITUDE
-    ):
-        names = f'{columns.table.columns[east.index]} and {columns.table.columns[north.index]}'
-        columns.note(f'{names} are taken as longitude and latitude, by their many digits')
-        return _of_degrees(columns, y, x)
+    digits = min(_digits(columns, east.index), _digits(columns, north.index))
+    if _in_range(x, _MOST_LONGITUDE) and _in_range(y, _MOST_LATITUDE):
+        reason = ''
+        if digits >= _DEGREE_DIGITS:
+            reason = 'by their many digits'
+        elif digits >= _FEW_DIGITS and _distance(x, y) < _CLOSEST:
+            reason = 'as the trees would touch in metres'
+        if reason:
+            names = f'{columns.table.columns[east.index]} and {columns.table.columns[north.index]}'
+            columns.note(f'{names} are taken as longitude and latitude, {reason}')
+            return _of_degrees(columns, y, x)
     return _near_origin(columns, x * east.factor, y * north.factor)
 
 
-def _has_degrees(columns: InventoryColumns, index: int, most: float) -> bool:
-    """Whether a column has degrees: within their range, with digits that metres need not have."""
-    values, unit_in_cells = columns.numbers(index)
-    if unit_in_cells or columns.table.unit_of(index, 'x'):
-        return False
+def _in_range(values: Floats, most: float) -> bool:
+    """Whether all known values, of which there is one, are at most some size."""
     known = np.abs(values[np.isfinite(values)])
-    if not len(known) or known.max() > most:
-        return False
+    return len(known) > 0 and float(known.max()) <= most
+
+
+def _digits(columns: InventoryColumns, index: int) -> float:
+    """Digits after the point of the middle cell of a column; 0 where it has a unit."""
+    _, unit_in_cells = columns.numbers(index)
+    if unit_in_cells or columns.table.unit_of(index, 'x'):
+        return 0.0
     digits = [len(cell.partition('.')[2].strip()) for cell in columns.texts(index) if cell]
-    return float(np.median(digits)) >= _DEGREE_DIGITS
+    return float(np.median(digits)) if digits else 0.0
+
+
+def _distance(x: Floats, y: Floats) -> float:
+    """Mean distance of places, each of which has its share of their rectangle."""
+    is_known = np.isfinite(x) & np.isfinite(y)
+    count = int(is_known.sum())
+    if count < 2:
+        return math.inf
+    wide = max(float(np.ptp(x[is_known])), float(np.ptp(y[is_known])))
+    return wide / math.sqrt(count)
 
 
 def _of_geometries(columns: InventoryColumns, index: int) -> Places:

@@ -14,7 +14,12 @@ from tree_sway.files.scenes.inventory.species_codes import has_codes, list_of, n
 
 UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
+_NO_EPITHETS = ('sp', 'sp.', 'spp', 'spp.', 'species')
+"""Cells that say that the epithet is not known, and would else be read as abbreviations."""
 _MOST_NOTES = 20
+_SHORTEST_NAME = 3
+_TRIED = 50
+"""Cells of a column that are tried as names of species, where no column is called so."""
 
 
 def species_of_rows(
@@ -36,6 +41,9 @@ def species_of_rows(
         first = columns.texts(genus.index)
         second = columns.texts(epithet.index) if epithet else [''] * len(first)
         tables.append([_joined(a, b) for a, b in zip(first, second, strict=True)])
+    if not tables and (index := _column_of_names(columns)) is not None:
+        tables.append(columns.texts(index))
+        columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
     rows = list(zip(*tables, strict=True)) if tables else [('',)] * columns.n_rows
     chosen = {each: _chosen(each, given) for each in dict.fromkeys(rows)}
     names = [chosen[each] for each in rows]
@@ -51,6 +59,29 @@ def species_of_rows(
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
     columns.note(*[note for note in notes if note][:_MOST_NOTES])
     return names, known
+
+
+def _column_of_names(columns: InventoryColumns) -> int | None:
+    """Column most of whose first cells are names of species; None without one."""
+    shares = list[tuple[float, int]]()
+    for index in range(len(columns.table.columns)):
+        cells = columns.table.cells(index, range(min(_TRIED, columns.n_rows)))
+        filled = [cell for cell in cells if cell]
+        if filled:
+            shares.append((sum(map(_is_species, filled)) / len(filled), index))
+    share, index = max(shares, default=(0.0, 0), key=lambda each: each[0])
+    return index if share > 0.5 else None
+
+
+def _is_species(cell: str) -> bool:
+    """Whether a cell is the name of a species, longer than the foresters' abbreviations."""
+    if len(cell) < _SHORTEST_NAME or not cell[0].isalpha():
+        return False
+    try:
+        species_named(cell)
+    except SpeciesError:
+        return False
+    return True
 
 
 def _decoded(
@@ -82,6 +113,7 @@ def _joined(genus: str, epithet: str) -> str:
 def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
     """First name that is known, else the first that is not empty."""
     parts = [part.strip() for cell in cells for part in cell.split('::') if part.strip()]
+    parts = [part for part in parts if part.lower() not in _NO_EPITHETS]
     for name in parts:
         if name in given:
             return name

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tree_sway.files.wind.layouts.badc_csv import BADC_CSV
+from tree_sway.files.wind.layouts.cumulus import CUMULUS_LOG, CUMULUS_REALTIME
+from tree_sway.files.wind.layouts.energyplus import EPW
 from tree_sway.files.wind.layouts.isd import ISD_CSV, ISD_LITE
 from tree_sway.files.wind.layouts.json_tables import JSON
 from tree_sway.files.wind.layouts.layout import Layout
@@ -16,7 +18,12 @@ from tree_sway.files.wind.layouts.spaced import SPACED
 from tree_sway.files.wind.layouts.toa5 import TOA5
 from tree_sway.files.wind.layouts.weatherlink_text import WEATHERLINK_TEXT
 
-LAYOUTS = (TOA5, JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, ISD_LITE, BADC_CSV, *LONG, PLAIN)
+LAYOUTS = (
+    *(TOA5, JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, ISD_LITE, BADC_CSV),
+    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW),
+    *LONG,
+    PLAIN,
+)
 
 
 def layout_of(lines: Sequence[str]) -> Layout | None:

@@ -12,14 +12,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 import re
 
-from tree_sway.files.column_names import rank_of, unit_known
+from tree_sway.files.column_names import name_and_unit, rank_of, unit_known
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _HEAD = 40
 _CELL = re.compile(r'[,;\t](?=(?:[^"]*"[^"]*")*[^"]*$)')
 _NUMBER = re.compile(r'[-+\d.,:]+')
-_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum')
+_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc')
 _WIND = ('wind_speed', 'wind_direction', 'wind_x', 'gust')
 
 
@@ -68,8 +68,12 @@ def _read(lines: list[str], source: str) -> TextTable:
 
 
 def _with_units_below(table: TextTable) -> TextTable:
-    """Return a table without its row of units, as Synoptic has one; itself without such a row."""
-    cells = table.split(table.texts[0])
+    """
+    Return a table without its row of units, as Synoptic has one; itself without such a row.
+
+    The row may have names too, as in ``風速(m/s)`` below ``WS``.
+    """
+    cells = [_unit_below(cell) for cell in table.split(table.texts[0])]
     pairs = zip(table.columns, cells, strict=False)
     speeds = [cell for name, cell in pairs if rank_of(name, 'wind_speed') is not None]
     if not any(unit_known('speed', cell) for cell in speeds):
@@ -81,6 +85,14 @@ def _with_units_below(table: TextTable) -> TextTable:
         units=tuple(cells),
         unit_line=table.numbers[0],
     )
+
+
+def _unit_below(cell: str) -> str:
+    """Return a wind's unit in brackets behind a name; a cell without brackets as it is."""
+    name, unit = name_and_unit(cell, 'speed')
+    if name == cell:
+        return cell
+    return unit if unit_known('speed', unit) or unit_known('angle', unit) else ''
 
 
 PLAIN = Layout('table', _is_table, _read)

@@ -1,0 +1,44 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Weather files of EnergyPlus (.epw), in which a place's typical year is given by the hour.
+
+Eight lines stand above the rows, which have no names: year, month, day, the hour that ends at the
+row's time, and from the twenty-first field on the direction in degrees, with 999 for a missing
+one, and the speed in [m/s] (EnergyPlus, "Auxiliary Programs": EPW data dictionary). The months of
+a typical year are of several years: the first row's year counts for all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.wind.layouts.layout import Layout
+
+_NAMES = ('time', 'wind direction', 'wind speed')
+_UNITS = ('', 'deg', 'm/s')
+_HEADER = 8
+_DIRECTION, _SPEED = 20, 21
+_MISSING = '999'
+
+
+def _is_epw(lines: Sequence[str]) -> bool:
+    return len(lines) > _HEADER and lines[0].startswith('LOCATION,')
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    numbers, rows = list[int](), list[list[str]]()
+    year = lines[_HEADER].partition(',')[0].strip()
+    for number, line in enumerate(lines[_HEADER:], start=_HEADER + 1):
+        cells = [cell.strip() for cell in line.split(',')]
+        if len(cells) > _SPEED:
+            month, day, hour = (cell.zfill(2) for cell in cells[1:4])
+            wind = ['' if cell == _MISSING else cell for cell in cells[_DIRECTION : _SPEED + 1]]
+            numbers.append(number)
+            rows.append([f'{year}-{month}-{day} {hour}:00', *wind])
+    return table_of_cells(_NAMES, rows, source, numbers, _UNITS)
+
+
+EPW = Layout('epw', _is_epw, _read)
