@@ -63,7 +63,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
   const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
   const lowest = look.is_potted ? -Infinity : rest[2] + browsed;
-  const soil = look.is_potted ? -Infinity : rest[2] + LEAST_BROWSED;
+  const soil = look.is_potted ? -Infinity : rest[2] + 0.6 * browsed;
   const values = [];
   for (const shoot of shoots) {
     const p = STRIDE * hung[shoot.segment];

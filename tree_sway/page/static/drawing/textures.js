@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which it is one of a clump rather than of a shoot; and how many times they would
  * cover it. */
-const [CLUMP, CLUMP_FILLED] = [12, 0.9];
+const [CLUMP, CLUMP_FILLED] = [3, 0.9];
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
