@@ -14,7 +14,9 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which it is one of a clump rather than of a shoot; and how many times they would
  * cover it. */
-const [CLUMP, CLUMP_FILLED] = [3, 0.9];
+const [CLUMP, CLUMP_FILLED] = [3, 1.7];
+/** Length of a shoot that is clad in long needles, over theirs. */
+const BRUSH = 1.5;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
@@ -45,7 +47,7 @@ export function leafPicture(look, along, isAutumn, size = along > 1 || look.form
   const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
   if (share < 1 && !isAutumn) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 14);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   else if (along >= CLUMP) brush.clump(1 / along);
@@ -283,15 +285,16 @@ class Brush {
     this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
     for (const isUpper of [false, true]) {
       for (let i = 0; i < count; i++) {
-        const before = 0.9 * long * random();
+        // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
+        const before = BRUSH * long * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + 2.9 * ((i + random()) / count - 0.5);
+        const turn = heading + (i % 2 ? 1 : -1) * (0.15 + 0.75 * random());
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.022, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
       }
     }
   }
