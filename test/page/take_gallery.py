@@ -55,6 +55,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _CLOSE = 'treeSway.scene.camera.zoom(0.9);'
+_MAY = 'treeSway.scene.flower(5.5);'
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -104,7 +105,7 @@ VIEWS = (
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('lime', 'lime', script=_CLOSE, size=SQUARE),
     View('beech', 'beech', script=_CLOSE, size=SQUARE),
-    View('horse_chestnut', 'horse_chestnut', script=_CLOSE, size=SQUARE),
+    View('horse_chestnut', 'horse_chestnut', script=_CLOSE + _MAY, size=SQUARE),
     View('willow', 'willow', script=_CLOSE, size=SQUARE),
     View('willow_sways', 'willow', is_film=True, size=FILM_SIZE),
     View('walnut', 'walnut', script=_CLOSE, size=SQUARE),

@@ -44,9 +44,9 @@ const BOW = 0.1;
  * of them is a thinner crown. Per vertex: place (3), how it moves with the flutter (3), normal (3), where
  * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
- * cards of the whole crown, whose area fewer have as well
+ * cards of the whole crown, whose area fewer have as well @param {boolean} isFlowering
  * @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
-export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most) {
+export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1 };
   const random = seeded();
@@ -57,7 +57,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  const share = leafShare(look, along);
+  const share = leafShare(look, along, isFlowering);
   const uneven = look.has_needles ? 0.07 : 0.14;
   const candle = candleCorners(CANDLE * wholeLeaf(look));
   // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.

@@ -47,6 +47,8 @@ const PAINTED = 260;
 const GLOSS = 0.2;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
+/** When a horse chestnut flowers, in months from 1. */
+const FLOWERING = [5.2, 6.2];
 /** Of a tree in its own colours. */
 const UNPAINTED = [0, 0, 0, 0];
 
@@ -62,6 +64,7 @@ export class Scene {
     this.quality = new Quality();
     this.day = DAYLIGHT.light;
     this.isAutumn = false;
+    this.isFlowering = false;
     this.leavesShown = true;
     this.hasPerson = true;
     /** Whether an arrow shows the wind. */
@@ -131,6 +134,14 @@ export class Scene {
   dress(leaves) {
     Object.assign(this, leaves);
     if (this.description) this.describe(this.description);
+  }
+
+  /** Put flowers on what flowers in a month. @param {number} month from 1, with its part that has passed */
+  flower(month) {
+    const isFlowering = month >= FLOWERING[0] && month < FLOWERING[1];
+    if (isFlowering === this.isFlowering) return;
+    this.isFlowering = isFlowering;
+    this.dress({});
   }
 
   /** Take another tree. @param {Description} description */
@@ -291,11 +302,12 @@ export class Scene {
     const look = lookOf(shape.kind);
     const { bark: barkColor, twig: twigColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
-    const { mesh, along } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
+    const isFlowering = this.isFlowering && !this.isAutumn;
+    const { mesh, along } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
     const name = `${number} ${along}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn), this.isSlow));
+      pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn, undefined, isFlowering), this.isSlow));
     }
     const relief = look.bark_pattern;
     const foot = feet[relief] ?? { color: barkColor, height: 0 };

@@ -29,8 +29,9 @@ export const pictureWidth = ({ form, slenderness, spray }, along) =>
   along > 1 ? spray.width : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Share of the width of a picture that leaves have; the flowers of a horse chestnut stand beside them.
- * @param {Look} look @param {number} along as in `leafPicture` */
-export const leafShare = ({ form }, along) => (form === "digitate" && along === 1 ? LEAF_SHARE : 1);
+ * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
+export const leafShare = ({ form }, along, isFlowering) =>
+  (isFlowering && form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
 /** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
  * @param {Look} look @param {number} long length of a card [m] */
@@ -41,11 +42,11 @@ export function leavesAlong(look, long) {
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {boolean} isAutumn @param {number} [size] of the picture [px] */
-export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128) {
-  const share = leafShare(look, along);
+ * @param {boolean} isAutumn @param {number} [size] of the picture [px] @param {boolean} [isFlowering] */
+export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128, isFlowering = false) {
+  const share = leafShare(look, along, isFlowering);
   const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
-  if (share < 1 && !isAutumn) brush.candle();
+  if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
   else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
   else if (look.form === "tufts") brush.tufts();
