@@ -45,10 +45,11 @@ const BOW = 0.1;
  * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
  * cards of the whole crown, whose area fewer have as well @param {boolean} isFlowering
- * @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
+ * @returns {{mesh: Mesh, along: number, isSpread: boolean}} and how many leaves the picture is long, and whether
+ * its cards are small ones */
 export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
-  if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1 };
+  if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1, isSpread: false };
   const random = seeded();
   const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
   const look = lookOf(kind);
@@ -99,7 +100,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
     }
   }
   const firsts = mixed(Array.from({ length: values.length / (4 * PER_CORNER) }, (_, card) => 4 * card), random);
-  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along };
+  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along, isSpread };
 }
 
 /** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes

@@ -303,11 +303,11 @@ export class Scene {
     const { bark: barkColor, twig: twigColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
     const isFlowering = this.isFlowering && !this.isAutumn;
-    const { mesh, along } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
+    const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
-    const name = `${number} ${along}`;
+    const name = `${number} ${along} ${isSpread}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn, undefined, isFlowering), this.isSlow));
+      pictures.set(name, pictureTexture(gl, leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isSpread }), this.isSlow));
     }
     const relief = look.bark_pattern;
     const foot = feet[relief] ?? { color: barkColor, height: 0 };

@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which it is one of a clump rather than of a shoot; and how many times they would
  * cover it. */
-const [CLUMP, CLUMP_FILLED] = [3, 1.7];
+const [CLUMP, CLUMP_FILLED] = [12, 1.7];
 /** Length of a shoot that is clad in long needles, over theirs. */
 const BRUSH = 1.5;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
@@ -42,16 +42,19 @@ export function leavesAlong(look, long) {
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {boolean} isAutumn @param {number} [size] of the picture [px] @param {boolean} [isFlowering] */
-export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128, isFlowering = false) {
+ * @param {{isAutumn?: boolean, isFlowering?: boolean, isSpread?: boolean, size?: number}} [options] whether the
+ * picture is on small cards that are spread over a cluster; its size [px] */
+export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
-  const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
+  const hasLeaflets = look.form in IN_LEAFLETS;
+  const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
+  const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
   else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else if (along >= CLUMP) brush.clump(1 / along);
+  else if (along >= CLUMP || (isSpread && !hasLeaflets)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
@@ -287,7 +290,7 @@ class Brush {
     for (const isUpper of [false, true]) {
       for (let i = 0; i < count; i++) {
         // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
-        const before = BRUSH * long * random();
+        const before = Math.min(BRUSH * long, 0.8 * x) * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
         const turn = heading + (i % 2 ? 1 : -1) * (0.15 + 0.75 * random());
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
