@@ -18,7 +18,7 @@ import { barkMesh, boxOf, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
-import { barkPicture, leafPicture } from "./textures.js";
+import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 
 /** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
@@ -305,9 +305,10 @@ export class Scene {
     const isFlowering = this.isFlowering && !this.isAutumn;
     const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
-    const name = `${number} ${along} ${isSpread}`;
+    const isClump = isSpread || along >= CLUMP;
+    const name = `${number} ${along} ${isClump}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isSpread }), this.isSlow));
+      pictures.set(name, pictureTexture(gl, leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump }), this.isSlow));
     }
     const relief = look.bark_pattern;
     const foot = feet[relief] ?? { color: barkColor, height: 0 };

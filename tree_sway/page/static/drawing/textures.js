@@ -12,9 +12,9 @@ const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Share of a picture beside a candle. */
 const LEAF_SHARE = 0.75;
-/** Leaves along a picture from which it is one of a clump rather than of a shoot; and how many times they would
- * cover it. */
-const [CLUMP, CLUMP_FILLED] = [12, 1.7];
+/** Leaves along a picture from which it is one of a clump rather than of a shoot, whatever the cards; and how many
+ * times they would cover it. */
+export const [CLUMP, CLUMP_FILLED] = [12, 1.7];
 /** Length of a shoot that is clad in long needles, over theirs. */
 const BRUSH = 1.5;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
@@ -42,9 +42,9 @@ export function leavesAlong(look, long) {
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {{isAutumn?: boolean, isFlowering?: boolean, isSpread?: boolean, size?: number}} [options] whether the
- * picture is on small cards that are spread over a cluster; its size [px] */
-export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
+ * @param {{isAutumn?: boolean, isFlowering?: boolean, isClump?: boolean, size?: number}} [options] whether it
+ * shows a clump of leaves seen from afar, and its size [px] */
+export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isClump = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
   const hasLeaflets = look.form in IN_LEAFLETS;
   const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
@@ -54,7 +54,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else if (along >= CLUMP || (isSpread && !hasLeaflets)) brush.clump(1 / along);
+  else if (isClump && (along >= CLUMP || !hasLeaflets)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
