@@ -169,6 +169,14 @@ class Run:
         expected = self._seconds(newest) + self._wind.lateness + _EARLIEST * period
         return self._seconds(to) - delay >= expected
 
+    def behind(self, delay: float) -> float:
+        """
+        Time in [s] by which the wind of a step was measured before the end of the step.
+
+        A sample acts after the delay of the wind in [s] and a period more, when the next is known.
+        """
+        return delay + self._wind.lateness + (self._wind.period or 0.0)
+
     def request(
         self, action: Callable[[], object], refused: Refused = lambda reason: None
     ) -> None:
@@ -293,9 +301,7 @@ class Run:
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
-            # A sample acts a period after its time, when the next one is known.
-            behind = delay + self._wind.lateness + (self._wind.period or 0.0)
-            self._starting(end * 1e-9 - behind)
+            self._starting(end * 1e-9 - self.behind(delay))
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:
