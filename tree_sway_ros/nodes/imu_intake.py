@@ -20,6 +20,9 @@ from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
 
+UNHEARD = -1
+"""In place of the stamp of a topic's newest sample, before any: no stamp is negative."""
+
 
 def places_of(text: str) -> dict[str, str]:
     """
@@ -101,8 +104,9 @@ class ImuIntake:
         """
         # A step averages the samples within half a period about its time.
         read = end - round(1e9 * self._run.behind(delay)) + self._run.period // 2
-        for topic, newest in list(self._newest.items()):
-            if newest <= read:
+        for topic in self._twin.sensors:
+            newest = self._newest.get(topic, UNHEARD)
+            if newest <= read and (newest != UNHEARD or self._node.count_publishers(topic)):
                 yield topic, newest
 
     def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:

@@ -32,7 +32,7 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of
+from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
@@ -298,7 +298,8 @@ class SolverNode(TreeSwayNode):
         if self.pacer.is_simulated:  # in a replay every frame is published, however late
             for later in range(tick.periods - 1, -1, -1):
                 to = tick.time - later * self.pacer.period
-                self._await_samples(to)
+                if not tick.restarted:  # before the record begins its clock stands
+                    self._await_samples(to)
                 self._frame(to, 1, may_join=False)
         else:
             self._frame(tick.time, tick.periods, may_join=True)
@@ -320,7 +321,9 @@ class SolverNode(TreeSwayNode):
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
         delay, newest = self.values['wind_delay'], self._run.newest
-        if newest is not None and self._run.lacks_wind(to, delay=delay):
+        if newest is None and self.count_publishers(self._topic):
+            yield self._topic, UNHEARD
+        elif newest is not None and self._run.lacks_wind(to, delay=delay):
             yield self._topic, newest
         if self._imu is not None:
             yield from self._imu.lacking(to, delay)

@@ -153,7 +153,9 @@ class Run:
 
     def lacks_wind(self, to: int, *, delay: float = 0.0) -> bool:
         """
-        Whether the next sample of a regular sensor acts before a time, and has not arrived.
+        Whether the next sample of a sensor acts before a time, and has not arrived.
+
+        It is expected a period of the sensor after the last one, where that is known.
 
         Parameters
         ----------
@@ -163,10 +165,10 @@ class Run:
             Delay of the wind in [s], as for `advance`.
 
         """
-        period, newest = self._wind.period, self.newest
-        if newest is None or period is None:
+        if self.newest is None:
             return False
-        expected = self._seconds(newest) + self._wind.lateness + _EARLIEST * period
+        period = self._wind.period or 0.0
+        expected = self._seconds(self.newest) + self._wind.lateness + _EARLIEST * period
         return self._seconds(to) - delay >= expected
 
     def behind(self, delay: float) -> float:
