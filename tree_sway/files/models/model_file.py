@@ -26,7 +26,7 @@ from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import FormatError, inside, ParameterError, TreeError
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 from tree_sway.files.whole_file import whole_file
 
 SUFFIX = '.npz'

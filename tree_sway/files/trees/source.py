@@ -24,7 +24,8 @@ from tree_sway.files.scenes.stand_table import (
     read_stand_table,
     why_no_stand,
 )
-from tree_sway.files.text_file import path_of, read_head
+from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 from tree_sway.files.trees.tree_options import same
