@@ -10,7 +10,6 @@ huge one gives the same short error for each format.
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 import re
 
@@ -24,36 +23,6 @@ MAX_LINES = 4_000_000
 # Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
-
-
-def path_of(name: str | Path) -> Path:
-    """
-    Return a path from text: ``~`` is the home folder.
-
-    Raises a `FormatError` for a user that does not exist, or an impossible path.
-    """
-    text = str(name)
-    try:
-        path = Path(text).expanduser()
-        os.stat(path)
-    except (FileNotFoundError, NotADirectoryError, PermissionError):
-        return path
-    except RuntimeError:
-        raise FormatError(
-            f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
-        ) from None
-    except (OSError, ValueError) as error:  # such as a name that is too long, or has a zero byte
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
-    return path
-
-
-def is_file(path: Path) -> bool:
-    """Whether a path is that of a file; impossible paths, as too long ones, are not."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def read_bytes(path: Path, at_most: int = -1) -> bytes:

@@ -93,16 +93,6 @@ def fill_places(places: Places, records: Records) -> None:
     records['steepest'][:, 0] = np.maximum(records['steepest'][:, 0], tips)
 
 
-def segment_turns_of(branch: np.void, segments: Records) -> Floats:
-    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
-    first, count = int(branch['first_record']), int(branch['n_coordinates'])
-    rows = slice(first, first + int(branch['end'] - branch['first']))
-    if branch['load_mode'].shape[0] > 2:
-        return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])
-    slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
-    return np.multiply.outer(slope, np.stack([e2, -e1]))
-
-
 def block_records(branches: Records, segments: Records) -> Records:
     """
     Lay the fields for placing out in blocks, from `Branch` records whose coordinates are set.

@@ -16,7 +16,8 @@ from __future__ import annotations
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.drag_law import drag
-from tree_sway.core.model.records import Branch, Branches, Load, Loads, WIDTH, Work, Works
+from tree_sway.core.model.load_layouts import Load, Loads, Work, Works
+from tree_sway.core.model.records import Branch, Branches, WIDTH
 from tree_sway.core.rotation import product, quaternion, rotated
 from tree_sway.core.vector import (
     column,

@@ -18,8 +18,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.model.load_layouts import WORK
 from tree_sway.core.model.load_records import load_records
-from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
 from tree_sway.core.setup.load_derivatives import LoadSlopes, SYMMETRIC
 from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
