@@ -34,7 +34,7 @@ for (row in 1:6) {  # the seventh has wood and snow of its own
 rotation <- df_rou_mechanical[!duplicated(df_rou_mechanical[, c("mean_ht", "new_edge")]), ]
 for (row in seq_len(nrow(rotation))) {
   stand <- rotation[row, ]
-  given <- as.list(stand[c("soil_group", "rooting", "moe", "mor", "stem_density")])
+  given <- as.list(stand[c("soil_group", "rooting", "moe", "mor", "stem_density")])  # codespell:ignore mor
   gap <- if (stand$new_edge == 1) stand$gap_size else NA
   write_row("rotation", "SS", stand$mean_ht, stand$mean_dbh, stand$spacing, gap, given)
 }
