@@ -5,7 +5,7 @@ Files of the Japan Meteorological Agency: "past weather data, download", hourly 
 
 The first line tells the time of the download, the third the stations, the fourth the elements.
 Lines below name the further columns of an element, such as its direction (風向) and its quality
-(品質情報): 8 is good, 5 and 4 are of incomplete data, below that it is doubtful or missing. Times are
+(品質情報): 8 is good, 5 and 4 are of incomplete data, below that it is doubtful. Times are
 those of Japan, directions points of the compass (JMA, "format of the CSV file").
 """
 
