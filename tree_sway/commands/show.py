@@ -179,7 +179,8 @@ def build_scene(
         in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
     if places and is_first and count == 1:
-        return scene.observed(replace(settings, model=model_of(choices.model)), places, RATE)
+        settings = replace(settings, model=model_of(choices.model))
+        return scene.observed(settings, places, RATE, has_band=True)
     return scene.simulator(settings, model=choices.model)
 
 

@@ -45,6 +45,9 @@ RATE = 60.0
 _MOST_LATE = 0.25
 _NEWEST = 0.05
 _BUSY = 0.2
+_BAND_EVERY = 15
+"""Steps after which it is found anew how sure the motion is."""
+
 """Share of a period above which only every second step is sent."""
 
 
@@ -138,6 +141,7 @@ class Session:
         self._stop = threading.Event()
         self._is_paused = self._resets = False
         self._ticks, self._steps = 0, 0
+        self._band: list[float] | None = None
         self._work, self._spacing = 0.0, self._period
         self._last = time.perf_counter()
         self._builder = Newest(self._build_wanted, 'builder')
@@ -250,7 +254,8 @@ class Session:
             }
             for each in sensor_reports(simulator)
         ]
-        return {'sensors': sensors, 'explained': round(simulator.explained, 3)}
+        told = {'sensors': sensors, 'explained': round(simulator.explained, 3)}
+        return told if self._band is None else {**told, 'band': self._band}
 
     def written(self, suffix: str) -> bytes:
         """
@@ -314,6 +319,14 @@ class Session:
         except Exception as error:
             self.failure = error
 
+    def _note_band(self) -> None:
+        """Find how sure the motion of the highest tip is [m], now and then."""
+        simulator = self._scene.simulator
+        if not isinstance(simulator, ObservedTree) or simulator.members is None:
+            self._band = None
+        elif self._ticks % _BAND_EVERY == 0:
+            self._band = [round(each, 4) for each in simulator.sway_band().tolist()]
+
     def _step(self, begin: float) -> None:
         assert self._server is not None
         has_restarted, self._resets = self._resets, False
@@ -327,6 +340,7 @@ class Session:
             self._ticks += 1
             self._motion.feed(self._scene.simulator, self._now)
             blow(self._runtime, self.wind, self._ticks * self._runtime.period)
+            self._note_band()
         self._steps += 1
         if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
             frame = self._scene.frame(

@@ -147,6 +147,8 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert told['name'] == f'phone at segment:{SEGMENT}'
     assert told['in_use']
     assert told['problem'] == ''
+    low, high = status['band']
+    assert low < 0.0 < high < 0.5
     assert told['rate'] == pytest.approx(100.0, rel=0.1)
     assert 0.1 < told['residual'] < 3.0
     assert 0.3 < status['explained'] < 0.95

@@ -195,6 +195,7 @@ function showFacts() {
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
     sensors: motionSensors(status.motion),
+    "band-of": status.motion?.band && shown.value === "motion" && scene.picked < 0 ? word("band") : "",
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
@@ -248,7 +249,8 @@ function draw(now) {
     const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
       traces.wind.add(now / 1000, speed);
-      traces.tip.add(now / 1000, value);
+      const isSure = shown.value === "motion" && scene.picked < 0;
+      traces.tip.add(now / 1000, value, isSure ? status.motion?.band : undefined);
     }
     const { factor, unit, digits } = unitOf(shown.value, value);
     write({ "tip-now": `${(factor * value).toFixed(digits && digits + 1)} ${unit}` });
