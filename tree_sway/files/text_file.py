@@ -22,6 +22,8 @@ MAX_LINES = 4_000_000
 
 # Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
+# Two kana of code page 932; in 1252 these are low quotation marks and florins.
+_KANA = re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}')
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
 
@@ -61,9 +63,10 @@ def read_head(path: Path) -> str:
 
 def decoded(data: bytes, errors: str = 'strict') -> str:
     """
-    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else Windows' code page 1252.
+    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else a code page of Windows.
 
-    A spreadsheet writes CSV in the latter two. ``errors`` is for bytes that are none of these.
+    That is 932 where kana stand in the text, else 1252; a spreadsheet writes CSV in these.
+    ``errors`` is for bytes that are none of them.
     """
     if data.startswith((b'\xff\xfe', b'\xfe\xff')):
         return data.decode('utf-16', errors)
@@ -73,6 +76,11 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         is_cut = errors == 'replace' and error.start > len(data) - 4
         if is_cut or b'\0' in data:
             return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
+    if _KANA.search(data):
+        try:
+            return data.decode('cp932', errors)
+        except UnicodeDecodeError:
+            pass
     return data.decode('cp1252', errors)
 
 

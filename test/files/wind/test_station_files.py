@@ -8,7 +8,7 @@ Each is made anew from the maker's public pages, with the wind of `SPEEDS` from 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 import json
 from pathlib import Path
@@ -479,3 +479,42 @@ def test_rows_may_be_newest_first(tmp_path: Path) -> None:
     forward = tmp_path / 'forward.csv'
     forward.write_text('\n'.join(['time,speed [m/s],direction', *lines[::-1]]) + '\n')
     assert record.epoch == read_wind(forward, turbulence=False).epoch
+
+
+JMA_HEAD = (
+    'ダウンロードした時刻：2024/03/05 10:20:49\n\n{stations}\n'
+    '年月日時,気温(℃),気温(℃),気温(℃),風速(m/s),風速(m/s),風速(m/s),風速(m/s),風速(m/s)\n'
+    ',,,,,,風向,風向,\n,,品質情報,均質番号,,品質情報,,品質情報,均質番号\n'
+)
+
+
+def jma(tmp_path: Path, rows: Sequence[str], *stations: str) -> Path:
+    """Write hours of JMA in its code page."""
+    path = tmp_path / 'data.csv'
+    cells = [each for each in stations or ('東京',) for _ in range(8 // len(stations or ('',)))]
+    text = JMA_HEAD.format(stations=',' + ','.join(cells)) + '\n'.join(rows) + '\n'
+    path.write_bytes(text.replace('\n', '\r\n').encode('cp932'))
+    return path
+
+
+def test_hours_of_japan_are_read_in_their_code_page(tmp_path: Path) -> None:
+    """The quality of the second row says that it is missing, a calm has no direction."""
+    rows = [
+        '2024/3/1 23:00:00,9.1,8,1,4.0,8,西,8,1',
+        '2024/3/2 0:00:00,9.0,8,1,7.7,1,西,1,1',
+        '2024/3/2 1:00:00,8.8,8,1,3.0,8,北北西,8,1',
+        '2024/3/2 2:00:00,8.8,8,1,0.0,8,静穏,8,1',
+    ]
+    record = read_wind(jma(tmp_path, rows), turbulence=False)
+    np.testing.assert_allclose(record.time, [0.0, 7200.0, 10800.0])
+    assert record.epoch == seconds(datetime(2024, 3, 1, 14, 0))
+    angle = np.radians(337.5)
+    expected = [[4.0, 0.0], [-3.0 * np.sin(angle), -3.0 * np.cos(angle)], [0.0, 0.0]]
+    np.testing.assert_allclose(record.velocity[:, :2], expected, atol=1e-9)
+    assert record.refused == 1
+
+
+def test_several_stations_of_japan_are_told(tmp_path: Path) -> None:
+    row = '2024/3/1 23:00:00,9.1,8,1,4.0,8,西,8,1'
+    with pytest.raises(FormatError, match=r'several stations: 東京, 横浜; download one at a time'):
+        read_wind(jma(tmp_path, [row], '東京', '横浜'))
