@@ -35,7 +35,8 @@ LIMITS = {'breaks': (0.8, 1.25), 'overturns': (0.67, 1.5)}
 _TEXT = (
     'ForestGALES is the model that foresters of Britain and France use. Stands: examples of its R '
     'package fgr (`df_rou`, and `rotation` with wood, soil and an edge of its own) and those of '
-    'a page of 1997 (Gardiner; Sitka spruce on podzol; the height of the wind is not stated). '
+    'a page of 1997 (Gardiner; Sitka spruce on podzol), whose winds stand in the column of '
+    '`fg_rou`; their height is not stated. '
     'Sample: 1,000 trees of four conifers, 10 to 30 m high with 55 to 95 diameters, spaced by '
     '0.18 of their height, by fgr and by `tree-sway risk --exposure stand` as one inventory. '
     'Winds are means at the top, of an hour there and of ten minutes here. Spread is the standard '
