@@ -575,6 +575,21 @@ def test_the_band_is_shaded_about_the_line(visit: Visit) -> None:
     visit(script)
 
 
+def test_a_control_of_text_takes_what_is_typed(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        sent = await browser.run(
+            "import('/static/panel.js').then(({Panel}) => {"
+            " const form = document.createElement('form'), sent = [];"
+            ' const panel = new Panel(form, (...change) => sent.push(change));'
+            " panel.build([{name: 'sensor_at', label: '', value: '3.2', choices: []}]);"
+            " const input = form.querySelector('input'); sent.push(input.value);"
+            " input.value = 'b12:0.5'; input.dispatchEvent(new Event('change')); return sent; })"
+        )
+        assert sent == ['3.2', ['sensor_at', 'b12:0.5']]
+
+    visit(script)
+
+
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 

@@ -72,6 +72,8 @@ class Choices:
         Which of the trees of that species and height, a whole number as text.
     month
         Time of the year of a tree that is grown, in months from 1: `leaf_share`.
+    sensor_at
+        Place of the motion sensor on the tree, as `place_on` takes it; as it began if empty.
 
     """
 
@@ -82,6 +84,7 @@ class Choices:
     height: float = 12.0
     individual: str = '0'
     month: float = SUMMER
+    sensor_at: str = ''
 
     @property
     def is_grown(self) -> bool:
@@ -241,12 +244,12 @@ class Session:
         """Return what the sensors tell; of a tree without them, that they are not in use."""
         if not isinstance(simulator, ObservedTree):
             return {'sensors': []}
-        lines = {name: each.live.problem for name, each in self._motion.sensors.items()}
+        live = {name: each.live for name, each in self._motion.sensors.items()}
         sensors = [
             {
-                'name': each.name,
+                'name': f'{live[each.name].name} at {simulator.at[each.name]}',
                 'in_use': each.in_use,
-                'problem': lines.get(each.name) or each.problem,
+                'problem': live[each.name].problem or each.problem,
                 'residual': round(each.residual, 2),
                 'rate': round(each.rate, 1),
                 'refused': each.refused,

@@ -299,7 +299,7 @@ class ObservedTree(SwaySimulator):
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""
-        energy, own = self.observer.energies[2:].tolist()
+        energy, own = self.observer.energies.tolist()
         if energy <= self._limit:
             return
         self.observer.limit(self._limit / max(energy, 1e-300))

@@ -55,6 +55,8 @@ let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
 const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 let day = days[0];
+/** Segment of the branch that was clicked; -1 if it was picked otherwise. */
+let pointedAt = -1;
 let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
@@ -274,11 +276,13 @@ function showButtons() {
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
-/** @param {number} branch to follow; the highest if -1 */
-function pick(branch) {
+/** @param {number} branch to follow; the highest if -1 @param {number} [segment] of it that was pointed at */
+function pick(branch, segment = -1) {
   const names = scene.watched.kind?.branch_names ?? [];
   scene.picked = names[branch] === undefined ? -1 : branch;
   write({ branch: names[branch] ?? word("tallest") });
+  pointedAt = segment;
+  element("sensor-here").hidden = segment < 0 || !controls.some(({ name }) => name === "sensor_at");
   traces.tip.show(shown.value);
 }
 
@@ -329,6 +333,7 @@ const actions = {
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
+  "sensor-here": () => stream.set("sensor_at", `segment:${pointedAt}`),
   pull: async () => (hands.drag ??= new (await import("./drag.js")).Drag(scene, stream)).toggle(),
   sound: async () => (hands.sound ??= new (await import("./sound.js")).Sound()).toggle(),
   headset: async () => {
@@ -364,7 +369,9 @@ let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
   if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
-  if (scene.description) pick(scene.under(event).branch);
+  if (!scene.description) return;
+  const { branch, segment } = scene.under(event);
+  pick(branch, segment);
 });
 shown.addEventListener("change", () => pick(scene.picked));
 timeLine.addEventListener("input", () => {
