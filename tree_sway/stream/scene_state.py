@@ -156,7 +156,7 @@ def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
         return None
     rng, species = np.random.default_rng(0), simulator.models[0].species
     traits, look = species.leaves, species.look
-    # No cluster is smaller than a leaf: a seedling has no room for more of them than it has leaves.
+    # No cluster is smaller than a leaf: a seedling has at most one a leaf.
     area = float(foliage_of(simulator.tree, traits=traits).area.sum())
     count = min(count, math.ceil(area / (_BLADE * traits.size**2)))
     return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)
