@@ -9,6 +9,7 @@ huge one gives the same short error for each format.
 
 from __future__ import annotations
 
+from contextlib import suppress
 import math
 from pathlib import Path
 import re
@@ -22,8 +23,11 @@ MAX_LINES = 4_000_000
 
 # Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
-# Two kana of code page 932; in 1252 these are low quotation marks and florins.
-_KANA = re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}')
+# Two kana, two syllables of Hangul; in code page 1252 these are rows of signs, such as low quotes.
+_ASIAN = (
+    (re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}'), 'cp932'),
+    (re.compile(rb'(?:[\xb0-\xc8][\xa1-\xfe]){2}'), 'cp949'),
+)
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
 
@@ -65,7 +69,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
     """
     Return bytes as text: UTF-16 by its byte order mark, UTF-8, else a code page of Windows.
 
-    That is 932 where kana stand in the text, else 1252; a spreadsheet writes CSV in these.
+    That is 932 where kana stand in the text, 949 where Hangul does, else 1252; a spreadsheet
+    writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
     if data.startswith((b'\xff\xfe', b'\xfe\xff')):
@@ -76,11 +81,10 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         is_cut = errors == 'replace' and error.start > len(data) - 4
         if is_cut or b'\0' in data:
             return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
-    if _KANA.search(data):
-        try:
-            return data.decode('cp932', errors)
-        except UnicodeDecodeError:
-            pass
+    for letters, page in _ASIAN:
+        if letters.search(data):
+            with suppress(UnicodeDecodeError):
+                return data.decode(page, errors)
     return data.decode('cp1252', errors)
 
 

@@ -14,6 +14,7 @@ from tree_sway.files.wind.layouts.jma import JMA
 from tree_sway.files.wind.layouts.json_tables import JSON
 from tree_sway.files.wind.layouts.layout import Layout
 from tree_sway.files.wind.layouts.long import LONG
+from tree_sway.files.wind.layouts.meteoblue import METEOBLUE
 from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.layouts.spaced import SPACED
 from tree_sway.files.wind.layouts.toa5 import TOA5
@@ -21,7 +22,7 @@ from tree_sway.files.wind.layouts.weatherlink_text import WEATHERLINK_TEXT
 
 LAYOUTS = (
     *(TOA5, JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, ISD_LITE, BADC_CSV),
-    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW, JMA),
+    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW, JMA, METEOBLUE),
     *LONG,
     PLAIN,
 )
