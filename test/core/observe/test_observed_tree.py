@@ -136,7 +136,7 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, _ = good()
+    twin, tips, late, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
     smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
@@ -148,7 +148,7 @@ def test_a_sensor_takes_most_of_the_error_away() -> None:
 
 
 def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, _ = good()
+    _twin, tips, late, *_ = good()
     true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
     rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
     assert np.sqrt(rough[1]) < 1.5
