@@ -10,6 +10,7 @@ import numpy as np
 
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.relative_damping import relative_damping
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
@@ -25,14 +26,17 @@ def mode_table(
     """
     whole = TreeReductions(tree, species, settings)
     modes = whole.natural_modes(min(count, whole.with_subtrees.reduction.n_coordinates))
+    damping_ratios = whole.damping_ratio * relative_damping(whole, modes)
     reduced = whole.with_subtrees
     owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])
     rows = [
         {
             'frequency': frequency,
-            'damping_ratio': whole.damping_ratio,
+            'damping_ratio': damping_ratio,
             'branch': tree.branch_names[int(owner[np.argmax(np.abs(shape))])],
         }
-        for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True)
+        for frequency, damping_ratio, shape in zip(
+            modes.frequencies.tolist(), damping_ratios.tolist(), modes.shapes.T, strict=True
+        )
     ]
     return rows, float(reduced.mass.sum())
