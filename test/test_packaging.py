@@ -5,15 +5,19 @@
 from __future__ import annotations
 
 import ast
+import asyncio
 import os
 from pathlib import Path
 import re
 import runpy
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
+import time
 from typing import Any
+from urllib.parse import urljoin
 import venv
 from xml.etree import ElementTree
 import zipfile
@@ -171,6 +175,49 @@ def wheel_of(folder: Path) -> Path:
     return wheel
 
 
+def megabytes(folder: Path) -> float:
+    """Size of the files of a folder, links counted once [MB]."""
+    sizes = {
+        (each.st_dev, each.st_ino): each.st_size
+        for each in (path.lstat() for path in folder.rglob('*'))
+        if stat.S_ISREG(each.st_mode)
+    }
+    return sum(sizes.values()) / 1e6
+
+
+def first_picture(line: list[str], folder: Path, environment: dict[str, str]) -> float:
+    """Show a tree, open its page, and return the time until its first frame is there [s]."""
+    show = [*line, 'show', 'goldcrest', '--seconds', '5', '--port', '0']
+    began = time.monotonic()
+    with subprocess.Popen(
+        show, cwd=folder, env=environment, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    ) as process:  # fmt: skip
+        assert process.stdout is not None
+        found = (re.search(r'open (http://\S+)', text) for text in process.stdout)
+        address = next((match[1] for match in found if match), None)
+        if address is not None:
+            asyncio.run(first_frame(address))
+        spent = time.monotonic() - began
+        said = process.communicate(timeout=280)[1]
+    assert process.returncode == 0, said
+    assert address is not None, said
+    return spent
+
+
+async def first_frame(address: str) -> None:
+    """Get a page and wait for the first frame of its stream, after the description."""
+    aiohttp = pytest.importorskip('aiohttp')
+    async with aiohttp.ClientSession() as session:
+        async with session.get(address) as page:
+            assert '<canvas' in await page.text()
+        async with session.ws_connect(urljoin(address, 'stream')) as stream:
+            await stream.send_json({'credit': 2})
+            message = await asyncio.wait_for(stream.receive(), 60.0)
+            while message.type is not aiohttp.WSMsgType.BINARY or message.data[:4] == b'TSWD':
+                message = await asyncio.wait_for(stream.receive(), 60.0)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize('installer', ['pip', 'uvx'])
 def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer: str) -> None:
@@ -178,34 +225,32 @@ def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer
     wheel = wheel_of(tmp_path)
     venv.create(tmp_path / 'fresh', with_pip=True)
     programs = tmp_path / 'fresh' / ('Scripts' if os.name == 'nt' else 'bin')
-    wanted = str(wheel) if installer == 'pip' else 'uv'
-    got = subprocess.run(
-        [programs / 'pip', 'install', '-q', wanted], capture_output=True, text=True, check=False
-    )
-    if got.returncode != 0 and installer == 'uvx':
-        pytest.skip('uv is not to be had here')
-    assert got.returncode == 0, got.stderr
-    line = [str(programs / 'tree-sway')]
-    if installer == 'uvx':
-        line = [
-            str(programs / 'uvx'),
-            '--python',
-            sys.executable,
-            '--from',
-            str(wheel),
-            'tree-sway',
-        ]
     environment = {**os.environ, 'TREE_SWAY_CACHE': str(tmp_path / 'kernels')}
     environment['UV_CACHE_DIR'] = str(tmp_path / 'uv')
-    shown = subprocess.run(
-        [*line, 'show', 'goldcrest', '--seconds', '2', '--port', '0'],
-        capture_output=True, text=True, check=False, cwd=tmp_path, env=environment, timeout=280,
-    )  # fmt: skip
-    if installer == 'uvx' and 'error sending request' in shown.stderr:
+    line = [str(programs / 'tree-sway')]
+    installed = tmp_path / 'fresh'
+    install = [str(programs / 'pip'), 'install', '-q', str(wheel)]
+    if installer == 'uvx':
+        got = subprocess.run([programs / 'pip', 'install', '-q', 'uv'], check=False)
+        if got.returncode != 0:
+            pytest.skip('uv is not to be had here')
+        uvx = [str(programs / 'uvx'), '--python', sys.executable, '--from', str(wheel)]
+        line = [*uvx, 'tree-sway']
+        installed = tmp_path / 'uv'
+        install = [*line, '--version']
+    began = time.monotonic()
+    got = subprocess.run(install, capture_output=True, text=True, check=False, env=environment)
+    seconds = time.monotonic() - began
+    if 'error sending request' in got.stderr:
         pytest.skip('uv reaches no package index here')
-    assert shown.returncode == 0, shown.stderr
-    assert 'open http://127.0.0.1:' in shown.stdout
+    assert got.returncode == 0, got.stderr
+    first = first_picture(line, tmp_path, environment)
     assert list((tmp_path / 'kernels').rglob('*.kernel')), 'numba compiled nothing'
+    again = first_picture(line, tmp_path, environment)
+    sizes = f'{wheel.stat().st_size / 1e6:.1f} | {seconds:.0f} | {megabytes(installed):.0f}'
+    print('\n| way | wheel [MB] | install [s] | environment [MB] | picture [s] | next start [s] |')
+    print('|---|---|---|---|---|---|')
+    print(f'| {installer} | {sizes} | {first:.1f} | {again:.1f} |')
 
 
 def test_a_release_is_tested_before_it_is_published_without_a_token() -> None:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tree_sway.errors import TreeSwayError as TreeSwayError
     from tree_sway.files.export.tree_export import write_tree as write_tree
     from tree_sway.files.models.model_file import read_model as read_model
-    from tree_sway.files.models.model_file import write_model as write_model
+    from tree_sway.files.models.model_writer import write_model as write_model
     from tree_sway.files.trees.source import open_scene as open_scene
     from tree_sway.files.trees.source import open_tree as open_tree
     from tree_sway.files.wind.wind_file import read_wind as read_wind
@@ -57,7 +57,7 @@ _HOMES = {
     'WindAverage': 'core.wind.averaging', 'calibrate': 'core.identification.calibration',
     'grow': 'core.growth.grow', 'make_simulator': 'core.scene.make',
     'prepare': 'core.setup.prepare', 'read_model': 'files.models.model_file',
-    'write_model': 'files.models.model_file', 'open_scene': 'files.trees.source',
+    'write_model': 'files.models.model_writer', 'open_scene': 'files.trees.source',
     'open_tree': 'files.trees.source',
     'read_wind': 'files.wind.wind_file', 'simulate': 'core.scene.simulate',
     'simulate_turbulence': 'core.wind.simulated.turbulence', 'species_named': 'core.tree.species',

@@ -7,6 +7,7 @@ import pytest
 from tree_sway.errors import FormatError
 from tree_sway.files import text_file
 from tree_sway.files.text_file import (
+    decoded,
     finite,
     read_bytes,
     read_head,
@@ -39,6 +40,19 @@ def test_plain_numbers(text, value):
 )
 def test_all_else_is_none(text):
     assert finite(text) is None
+
+
+@pytest.mark.parametrize(
+    ('text', 'page'),
+    [
+        ('Baumhöhe;Größe;„Straße‚ ƒ“ – ÄÖÜ ßßß', 'cp1252'),
+        ('Ulice;ÀÁÂÃ;È±°¿ Ærø à côté', 'cp1252'),
+        ('番号,樹種\n1,ケヤキ\n', 'cp932'),
+        ('지점,풍속(m/s)\n', 'cp949'),
+    ],
+)
+def test_the_code_page_is_told_by_the_text(text, page):
+    assert decoded(text.encode(page)) == text
 
 
 def test_line_ends(tmp_path):

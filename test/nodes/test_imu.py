@@ -24,7 +24,7 @@ from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.core.wind.intake import WindIntake  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of  # noqa: E402
+from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
@@ -110,14 +110,40 @@ class IntakeNode:
 
     stamp_limits = {'lead': 10**12, 'lag': 10**12}  # noqa: RUF012
 
-    def __init__(self):
+    def __init__(self, publishers=1):
         self.receive = None
+        self._publishers = publishers
+
+    def count_publishers(self, topic):
+        return self._publishers
 
     def subscription(self, topic, receive):
         self.receive = receive
 
     def get_clock(self):
         return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=BEGIN))
+
+
+def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():
+    twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
+    arrived = []
+    node, run = IntakeNode(), Run(twin, 60.0)
+    intake = ImuIntake(node, run, twin, arrived=lambda: arrived.append(True))
+    assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', UNHEARD)]
+    node.receive(imu(BEGIN * 1e-9))
+    assert arrived
+    # Samples within half a period about the time are averaged.
+    assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', BEGIN)]
+    assert not list(intake.lacking(BEGIN, 0.01))
+    node.receive(imu((BEGIN + PERIOD) * 1e-9))
+    assert not list(intake.lacking(BEGIN, 0.0))
+    assert list(intake.lacking(BEGIN + PERIOD, 0.0)) == [('tree/imu', BEGIN + PERIOD)]
+
+
+def test_a_topic_that_nobody_publishes_is_not_waited_for():
+    twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
+    intake = ImuIntake(IntakeNode(publishers=0), Run(twin, 60.0), twin, arrived=lambda: None)
+    assert not list(intake.lacking(BEGIN, 0.0))
 
 
 def test_messages_move_a_tree_as_a_recording_does():
@@ -143,7 +169,7 @@ def test_messages_move_a_tree_as_a_recording_does():
         stepped=lambda end, mean: tips.append(twin.tip_displacement.copy()),
     )  # fmt: skip
     node = IntakeNode()
-    ImuIntake(node, run, twin)
+    ImuIntake(node, run, twin, arrived=lambda: None)
     for stamp, force, rate in zip(motion.time, motion.acceleration, motion.rate, strict=True):
         message = imu(BEGIN * 1e-9 + stamp)
         for vector, values in (

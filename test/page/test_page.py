@@ -553,6 +553,43 @@ def test_the_head_names_the_sensors_on_the_tree(visit: Visit, motion: Any, text:
     visit(script)
 
 
+def test_the_band_is_shaded_about_the_line(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        shade = "document.querySelector('#tip-trace polygon').getAttribute('points')"
+        drawn = (
+            "import('/static/trace.js').then(({Trace}) => {"
+            " const made = new Trace(document.getElementById('tip-trace'), 'motion');"
+            f' made.add(0, 0.1); made.draw(); const without = {shade};'
+            ' [1, 2].forEach((time) => made.add(time, 0.1, [-0.2, 0.05])); made.draw();'
+            f' return [without, {shade}]; }})'
+        )
+        without, points = await browser.run(drawn)
+        assert without == ''
+        corners = np.array([float(each) for each in points.replace(',', ' ').split()]).reshape(
+            -1, 2
+        )
+        # Of 0.2 m: up to 0.15 m where the band is known, and no lower than at rest.
+        known = corners[corners[:, 0] > 18.5]
+        np.testing.assert_allclose(np.unique(known[:, 1]), [0.25, 1.0])
+
+    visit(script)
+
+
+def test_a_control_of_text_takes_what_is_typed(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        sent = await browser.run(
+            "import('/static/panel.js').then(({Panel}) => {"
+            " const form = document.createElement('form'), sent = [];"
+            ' const panel = new Panel(form, (...change) => sent.push(change));'
+            " panel.build([{name: 'sensor_at', label: '', value: '3.2', choices: []}]);"
+            " const input = form.querySelector('input'); sent.push(input.value);"
+            " input.value = 'b12:0.5'; input.dispatchEvent(new Event('change')); return sent; })"
+        )
+        assert sent == ['3.2', ['sensor_at', 'b12:0.5']]
+
+    visit(script)
+
+
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 

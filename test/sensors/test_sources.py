@@ -276,7 +276,7 @@ def test_a_station_of_cumulus_sways_a_tree(hear, serve, sways):
     assert asked[0] == '/wx/realtime.txt'
     assert newest.speed == pytest.approx(24.2 * MPH)
     assert newest.gust == pytest.approx(36.0 * MPH)
-    assert any('a mean over 10 min: gusts' in text for text in heard.said)
+    heard.until(lambda: any('a mean over 10 min: gusts' in text for text in heard.said))
 
 
 def open_meteo(unit: str = 'm/s', speed: float = 6.4) -> bytes:

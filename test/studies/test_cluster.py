@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import ExitStack
 import multiprocessing
 import os
 from pathlib import Path
@@ -19,6 +18,7 @@ import time
 
 import pytest
 
+from test.studies.conftest import SeparateCluster, StartCluster
 from tree_sway.commands import cli
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.studies import cluster
@@ -45,47 +45,14 @@ def cases(folder: Path, seeds: int = 6) -> list[Case]:
     return [Case({'file': str(tree)}, each, **given) for each in winds]
 
 
-class Apart:
-    """A scheduler and workers as processes of their own, each in a folder of its own."""
-
-    def __init__(self, folder: Path) -> None:
-        self._stack = ExitStack()
-        self._folder = folder
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            port = free.getsockname()[1]
-        self.address = f'tcp://127.0.0.1:{port}'
-        self.workers: list[subprocess.Popen[bytes]] = []
-        words = ('--host', '127.0.0.1', '--port', str(port), '--no-dashboard')
-        self._start('scheduler', 'dask_scheduler', *words)
-
-    def start_worker(self) -> subprocess.Popen[bytes]:
-        number = len(self.workers)
-        words = (self.address, '--nthreads', '1', '--no-nanny', '--no-dashboard')
-        self.workers.append(self._start(f'worker{number}', 'dask_worker', *words))
-        return self.workers[-1]
-
-    def _start(self, name: str, module: str, *words: str) -> subprocess.Popen[bytes]:
-        place = self._folder / name
-        place.mkdir()
-        command = [sys.executable, '-m', f'distributed.cli.{module}', *words]
-        quiet = subprocess.DEVNULL
-        process = subprocess.Popen(command, cwd=place, stdout=quiet, stderr=quiet)
-        self._stack.callback(process.wait, 20.0)
-        self._stack.callback(process.kill)
-        return process
-
-    def close(self) -> None:
-        self._stack.close()
-
-
 @pytest.fixture(scope='module')
-def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Apart]:
-    started = Apart(tmp_path_factory.mktemp('apart'))
-    started.start_worker()
-    started.start_worker()
-    yield started
-    started.close()
+def apart(start_cluster: StartCluster) -> SeparateCluster:
+    return start_cluster(2)
+
+
+@pytest.fixture
+def empty(start_cluster: StartCluster) -> SeparateCluster:
+    return start_cluster(0)
 
 
 def alone(asked: list[Case]) -> list[object]:
@@ -93,7 +60,9 @@ def alone(asked: list[Case]) -> list[object]:
     return [row for _, row in compute_batch(asked, files_of(asked, {}))]
 
 
-def test_workers_elsewhere_give_the_same_rows_bit_for_bit(apart: Apart, tmp_path: Path) -> None:
+def test_workers_elsewhere_give_the_same_rows_bit_for_bit(
+    apart: SeparateCluster, tmp_path: Path
+) -> None:
     asked = cases(tmp_path)
     files_of_asked = files_of(asked, {})
     assert len(files_of_asked) == 2
@@ -101,7 +70,9 @@ def test_workers_elsewhere_give_the_same_rows_bit_for_bit(apart: Apart, tmp_path
     assert rows == alone(asked)
 
 
-def test_a_killed_worker_loses_nothing(apart: Apart, tmp_path: Path, monkeypatch) -> None:
+def test_a_killed_worker_loses_nothing(
+    apart: SeparateCluster, tmp_path: Path, monkeypatch
+) -> None:
     asked = cases(tmp_path, 8)
     doomed = apart.start_worker()
     began = threading.Event()
@@ -121,7 +92,7 @@ def test_a_killed_worker_loses_nothing(apart: Apart, tmp_path: Path, monkeypatch
 
 
 def test_the_command_computes_there_and_again_only_what_is_missing(
-    apart: Apart, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    apart: SeparateCluster, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
     study.write_text(
@@ -137,7 +108,7 @@ def test_the_command_computes_there_and_again_only_what_is_missing(
     assert table.read_bytes() == first
 
 
-def test_a_case_that_cannot_be_leaves_the_others(apart: Apart, tmp_path: Path) -> None:
+def test_a_case_that_cannot_be_leaves_the_others(apart: SeparateCluster, tmp_path: Path) -> None:
     asked = cases(tmp_path, 3)
     wrong = Case({'file': str(tmp_path / 'nowhere.yaml')}, asked[0].wind, seconds=1.0)
     with pytest.raises(Exception, match=r'no such file|no tree'):
@@ -146,7 +117,7 @@ def test_a_case_that_cannot_be_leaves_the_others(apart: Apart, tmp_path: Path) -
 
 
 def test_other_versions_are_refused_by_a_sentence(
-    apart: Apart, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    apart: SeparateCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = {**own_version(), 'tree_sway_ros': '9.9'}
 
@@ -171,7 +142,7 @@ def test_a_wrong_address_is_refused_at_once(address: str) -> None:
 
 
 def test_no_scheduler_and_no_workers_are_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    empty: SeparateCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster, '_PATIENCE', 3.0)
     with socket.socket() as nobody:
@@ -179,16 +150,12 @@ def test_no_scheduler_and_no_workers_are_told(
         address = f'tcp://127.0.0.1:{nobody.getsockname()[1]}'
     with pytest.raises(TransportError, match=rf'{re.escape(address)}: no scheduler answers'):
         run_study(cases(tmp_path, 2), tmp_path / 'cases', scheduler=address)
-    empty = Apart(tmp_path)
-    try:
-        monkeypatch.setattr(cluster, '_PATIENCE', 10.0)
-        with pytest.raises(TransportError, match='a scheduler without workers; start some'):
-            run_study(cases(tmp_path, 2), tmp_path / 'cases', scheduler=empty.address)
-    finally:
-        empty.close()
+    monkeypatch.setattr(cluster, '_PATIENCE', 10.0)
+    with pytest.raises(TransportError, match='a scheduler without workers; start some'):
+        run_study(cases(tmp_path, 2), tmp_path / 'cases', scheduler=empty.address)
 
 
-def test_results_come_as_they_are_done(apart: Apart) -> None:
+def test_results_come_as_they_are_done(apart: SeparateCluster) -> None:
     with cluster.cluster(1, apart.address) as (distributed, client):
         work = [(f'piece {k}', (k,)) for k in range(5)]
         assert sorted(run_all(distributed, client, abs, work)) == [0, 1, 2, 3, 4]
@@ -226,7 +193,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-def test_ctrl_c_ends_at_once_and_frees_the_workers(apart: Apart, tmp_path: Path) -> None:
+def test_ctrl_c_ends_at_once_and_frees_the_workers(apart: SeparateCluster, tmp_path: Path) -> None:
     import distributed
 
     study = tmp_path / 'study.yaml'

@@ -28,7 +28,7 @@ from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.plausibility import sway_oddity
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import inside, ParameterError, TransportError
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 from tree_sway.files.wind.phone import read_phone_sway
 from tree_sway.files.wind.sway_table import read_csv_sway, SwayRecord
 

@@ -38,7 +38,7 @@ from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_writing import write_usd
 from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
-from tree_sway.files.models.model_file import write_model
+from tree_sway.files.models.model_writer import write_model
 from tree_sway.files.whole_file import write_text_whole
 
 

@@ -37,7 +37,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.text_file import is_file, path_of
+from tree_sway.files.paths import is_file, path_of
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind

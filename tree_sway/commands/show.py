@@ -108,6 +108,8 @@ def _serve(
     """Serve the page of a wind and of the sensors on the tree."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
+    if len(motion.places) == 1:
+        choices = replace(choices, sensor_at=next(iter(motion.places.values())))
     session = Session(
         lambda wanted: build_scene(wanted, arguments, motion.places),
         choices,
@@ -119,6 +121,8 @@ def _serve(
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = _controls(choices, wind, is_one_tree=is_one_tree)
+        if len(motion.places) == 1:
+            controls = (_sensor_place(choices), *controls)
         panel = ControlPanel(controls, session.apply, session.pull)
         panel.update(session.values())
     pages = PageServer(settings, panel, session.status, session.written, critical_winds)
@@ -179,7 +183,10 @@ def build_scene(
         in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
     if places and is_first and count == 1:
-        return scene.observed(replace(settings, model=model_of(choices.model)), places, RATE)
+        if choices.sensor_at:
+            places = dict.fromkeys(places, choices.sensor_at)
+        settings = replace(settings, model=model_of(choices.model))
+        return scene.observed(settings, places, RATE, has_band=True)
     return scene.simulator(settings, model=choices.model)
 
 
@@ -210,6 +217,12 @@ def stand(scene: Scene, count: int, model: str) -> Scene:
         for i in range(count)
     ]
     return Scene(trees, f'{count} of {tree.name}', scene.source)
+
+
+def _sensor_place(choices: Choices) -> Control:
+    """Make the control of where the motion sensor sits."""
+    what = "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
+    return Control('sensor_at', 'Sensor at', choices.sensor_at, what)
 
 
 def _controls(

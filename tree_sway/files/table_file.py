@@ -239,7 +239,8 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     separator = max(('\t', ';', ','), key=texts[0].count)
-    first = '\n'.join(texts[1:50])
+    # A line of one cell is a remark, with numbers of its own.
+    first = '\n'.join(text for text in texts[1:50] if separator in text.rstrip(separator))
     if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):
         texts[1:] = [text.replace(',', '.') for text in texts[1:]]  # decimal commas
     split = partial(split_row, separator=separator)

@@ -9,8 +9,8 @@ huge one gives the same short error for each format.
 
 from __future__ import annotations
 
+from contextlib import suppress
 import math
-import os
 from pathlib import Path
 import re
 
@@ -23,37 +23,12 @@ MAX_LINES = 4_000_000
 
 # Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
+# Two kana, two syllables of Hangul; in code page 1252 these are rows of signs, such as low quotes.
+_ASIAN = (
+    (re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}'), 'cp932'),
+    (re.compile(rb'(?:[\xb0-\xc8][\xa1-\xfe]){2}'), 'cp949'),
+)
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
-
-
-def path_of(name: str | Path) -> Path:
-    """
-    Return a path from text: ``~`` is the home folder.
-
-    Raises a `FormatError` for a user that does not exist, or an impossible path.
-    """
-    text = str(name)
-    try:
-        path = Path(text).expanduser()
-        os.stat(path)
-    except (FileNotFoundError, NotADirectoryError, PermissionError):
-        return path
-    except RuntimeError:
-        raise FormatError(
-            f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
-        ) from None
-    except (OSError, ValueError) as error:  # such as a name that is too long, or has a zero byte
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
-    return path
-
-
-def is_file(path: Path) -> bool:
-    """Whether a path is that of a file; impossible paths, as too long ones, are not."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def read_bytes(path: Path, at_most: int = -1) -> bytes:
@@ -92,9 +67,11 @@ def read_head(path: Path) -> str:
 
 def decoded(data: bytes, errors: str = 'strict') -> str:
     """
-    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else Windows' code page 1252.
+    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else a code page of Windows.
 
-    A spreadsheet writes CSV in the latter two. ``errors`` is for bytes that are none of these.
+    That is 932 where kana stand in the text, 949 where Hangul does, else 1252; a spreadsheet
+    writes CSV in these.
+    ``errors`` is for bytes that are none of them.
     """
     if data.startswith((b'\xff\xfe', b'\xfe\xff')):
         return data.decode('utf-16', errors)
@@ -104,6 +81,10 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         is_cut = errors == 'replace' and error.start > len(data) - 4
         if is_cut or b'\0' in data:
             return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
+    for letters, page in _ASIAN:
+        if letters.search(data):
+            with suppress(UnicodeDecodeError):
+                return data.decode(page, errors)
     return data.decode('cp1252', errors)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from tree_sway.errors import FormatError
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 
 _CURE = 'give an existing folder that you may write to, with room for the file'
 

@@ -45,6 +45,9 @@ RATE = 60.0
 _MOST_LATE = 0.25
 _NEWEST = 0.05
 _BUSY = 0.2
+_BAND_EVERY = 15
+"""Steps after which it is found anew how sure the motion is."""
+
 """Share of a period above which only every second step is sent."""
 
 
@@ -69,6 +72,8 @@ class Choices:
         Which of the trees of that species and height, a whole number as text.
     month
         Time of the year of a tree that is grown, in months from 1: `leaf_share`.
+    sensor_at
+        Place of the motion sensor on the tree, as `place_on` takes it; as it began if empty.
 
     """
 
@@ -79,6 +84,7 @@ class Choices:
     height: float = 12.0
     individual: str = '0'
     month: float = SUMMER
+    sensor_at: str = ''
 
     @property
     def is_grown(self) -> bool:
@@ -138,6 +144,7 @@ class Session:
         self._stop = threading.Event()
         self._is_paused = self._resets = False
         self._ticks, self._steps = 0, 0
+        self._band: list[float] | None = None
         self._work, self._spacing = 0.0, self._period
         self._last = time.perf_counter()
         self._builder = Newest(self._build_wanted, 'builder')
@@ -237,12 +244,12 @@ class Session:
         """Return what the sensors tell; of a tree without them, that they are not in use."""
         if not isinstance(simulator, ObservedTree):
             return {'sensors': []}
-        lines = {name: each.live.problem for name, each in self._motion.sensors.items()}
+        live = {name: each.live for name, each in self._motion.sensors.items()}
         sensors = [
             {
-                'name': each.name,
+                'name': f'{live[each.name].name} at {simulator.at[each.name]}',
                 'in_use': each.in_use,
-                'problem': lines.get(each.name) or each.problem,
+                'problem': live[each.name].problem or each.problem,
                 'residual': round(each.residual, 2),
                 'rate': round(each.rate, 1),
                 'refused': each.refused,
@@ -250,7 +257,8 @@ class Session:
             }
             for each in sensor_reports(simulator)
         ]
-        return {'sensors': sensors, 'explained': round(simulator.explained, 3)}
+        told = {'sensors': sensors, 'explained': round(simulator.explained, 3)}
+        return told if self._band is None else {**told, 'band': self._band}
 
     def written(self, suffix: str) -> bytes:
         """
@@ -314,6 +322,14 @@ class Session:
         except Exception as error:
             self.failure = error
 
+    def _note_band(self) -> None:
+        """Find how sure the motion of the highest tip is [m], now and then."""
+        simulator = self._scene.simulator
+        if not isinstance(simulator, ObservedTree) or simulator.members is None:
+            self._band = None
+        elif self._ticks % _BAND_EVERY == 0:
+            self._band = [round(each, 4) for each in simulator.sway_band().tolist()]
+
     def _step(self, begin: float) -> None:
         assert self._server is not None
         has_restarted, self._resets = self._resets, False
@@ -327,6 +343,7 @@ class Session:
             self._ticks += 1
             self._motion.feed(self._scene.simulator, self._now)
             blow(self._runtime, self.wind, self._ticks * self._runtime.period)
+            self._note_band()
         self._steps += 1
         if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
             frame = self._scene.frame(

@@ -19,7 +19,6 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.model.fill_records import segment_turns_of
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description
@@ -116,7 +115,7 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            turns.append(segment_turns_of(record, segments).reshape(-1, 3))
+            turns.append(_segment_turns(record, segments).reshape(-1, 3))
             count += len(turns[-1])
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)
@@ -172,3 +171,13 @@ def _names(simulator: SwaySimulator) -> list[str]:
 
 def _float32(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float32)
+
+
+def _segment_turns(branch: np.void, segments: Records) -> Floats:
+    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
+    first, count = int(branch['first_record']), int(branch['n_coordinates'])
+    rows = slice(first, first + int(branch['end'] - branch['first']))
+    if branch['load_mode'].shape[0] > 2:
+        return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])
+    slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
+    return np.multiply.outer(slope, np.stack([e2, -e1]))

@@ -11,7 +11,7 @@ import time
 from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.core.checks import within
 from tree_sway.files.export.table_writing import refuse_no_table
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 from tree_sway.studies.cluster import refuse_wrong_address
 from tree_sway.studies.plan import read_study
 from tree_sway.studies.runner import cores, estimated_time, missing_cases, run_study

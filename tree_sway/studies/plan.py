@@ -24,7 +24,8 @@ from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.simulate import refuse_too_many_steps
 from tree_sway.errors import FormatError, inside, nearest, ParameterError
-from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
+from tree_sway.files.paths import is_file, path_of
+from tree_sway.files.text_file import read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
 from tree_sway.studies.cluster import ROOMS

@@ -15,7 +15,7 @@ from tree_sway.core.growth.grow import refuse_height
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import FormatError, TreeSwayError
-from tree_sway.files.text_file import is_file, path_of
+from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.trees.source import unknown_tree
 from tree_sway.files.yaml_document import YamlDocument
 

@@ -18,9 +18,10 @@ from tree_sway.commands.progress import bar
 from tree_sway.commands.row_file import RowFile
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
+from tree_sway.files.paths import path_of
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import inventory_of
-from tree_sway.files.text_file import path_of, read_head
+from tree_sway.files.text_file import read_head
 from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
 from tree_sway.studies.cluster import refuse_wrong_address
 from tree_sway.studies.command import add_scheduler_argument

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +19,9 @@ from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
+
+UNHEARD = -1
+"""In place of the stamp of a topic's newest sample, before any: no stamp is negative."""
 
 
 def places_of(text: str) -> dict[str, str]:
@@ -42,11 +46,26 @@ class ImuIntake:
     Subscriptions of the sensors of an observed tree.
 
     Samples are handed to the thread of the steps, so that no callback waits for a step.
+
+    Parameters
+    ----------
+    node
+        The node that subscribes.
+    run
+        What steps the tree.
+    twin
+        The tree.
+    arrived
+        Function called after each sample.
+
     """
 
-    def __init__(self, node: TreeSwayNode, run: Run, twin: ObservedTree) -> None:
-        self._node, self._run, self._twin = node, run, twin
+    def __init__(
+        self, node: TreeSwayNode, run: Run, twin: ObservedTree, arrived: Callable[[], object]
+    ) -> None:
+        self._node, self._run, self._twin, self._arrived = node, run, twin, arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
+        self._newest: dict[str, int] = {}
         for topic in twin.sensors:
             node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
@@ -61,8 +80,34 @@ class ImuIntake:
                 self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
                 return
             self._run.request(lambda: self._offer(topic, stamp, sample))
+            self._newest[topic] = stamp
+            self._arrived()
 
         return receive
+
+    def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
+        """
+        Tell which sensors have not yet sent what a step reads of them.
+
+        Parameters
+        ----------
+        end
+            End of the step in [ns].
+        delay
+            Delay of the wind in [s], as for `Run.advance`.
+
+        Yields
+        ------
+        tuple[str, int]
+            Topic, and the stamp of its newest sample in [ns].
+
+        """
+        # A step averages the samples within half a period about its time.
+        read = end - round(1e9 * self._run.behind(delay)) + self._run.period // 2
+        for topic in self._twin.sensors:
+            newest = self._newest.get(topic, UNHEARD)
+            if newest <= read and (newest != UNHEARD or self._node.count_publishers(topic)):
+                yield topic, newest
 
     def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:
         """Offer a sample, in the thread of the steps."""

@@ -51,6 +51,7 @@ class PlayerNode(TreeSwayNode):
         self._playback = Playback(
             self._rows.time, self._publish,
             may_start=lambda: self._wind.get_subscription_count() > 0, on_end=self._end,
+            has_all=lambda: all(each.get_subscription_count() for each in self._imu),
             on_error=self.fail, start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
             **self.values.subset('rate', 'loop'),
         )  # fmt: skip

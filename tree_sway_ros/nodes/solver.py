@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 import json
 import math
 import threading
@@ -32,7 +32,7 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of
+from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
@@ -62,11 +62,8 @@ _STRONGEST_PUSH = 1e5
 _PUSH_LASTS = 0.5
 """Time [s] after which a push ends if it is not repeated."""
 
-_PATIENCE = 0.5
+_PATIENCE = 1.0
 """Time [s] of the machine for which a replay waits for a sample."""
-
-_NO_WAIT = -1
-"""In place of the newest sample of a wait in vain, before any such wait: no stamp is negative."""
 
 _STOP_CHECK = 0.05
 """Interval [s] of checks whether the node is ended while it waits."""
@@ -131,7 +128,7 @@ class SolverNode(TreeSwayNode):
         self._camera: tuple[float, float, float] | None = None
         self._tuned: dict[str, float] = {}
         self._arrived = threading.Event()
-        self._missed: int | None = _NO_WAIT
+        self._missed: set[tuple[str, int]] = set()
         places = places_of(self.values['imu'])
         settings = self._settings()
         self.simulator: Simulator = (
@@ -165,7 +162,7 @@ class SolverNode(TreeSwayNode):
         self.subscription(CAMERA, self._see)
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):
-            self._imu = ImuIntake(self, self._run, self.simulator)
+            self._imu = ImuIntake(self, self._run, self.simulator, self._arrived.set)
         self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
         self.subscription(PULL, self._take_pull)
@@ -301,26 +298,35 @@ class SolverNode(TreeSwayNode):
         if self.pacer.is_simulated:  # in a replay every frame is published, however late
             for later in range(tick.periods - 1, -1, -1):
                 to = tick.time - later * self.pacer.period
-                self._await_wind(to)
+                if not tick.restarted:  # before the record begins its clock stands
+                    self._await_samples(to)
                 self._frame(to, 1, may_join=False)
         else:
             self._frame(tick.time, tick.periods, may_join=True)
 
-    def _await_wind(self, to: int) -> None:
-        """Wait for a sample that acts before a time in [ns], once for each that does not come."""
-        delay = self.values['wind_delay']
-        if self._run.newest == self._missed:
-            return
+    def _await_samples(self, to: int) -> None:
+        """Wait for the samples that act before a time in [ns], once for each that is lost."""
         end = time.monotonic() + _PATIENCE
         while not self.pacer.is_stopping:
             self._arrived.clear()
-            if not self._run.lacks_wind(to, delay=delay):
+            lacking = set(self._lacking(to))
+            if lacking <= self._missed:
                 return
             left = end - time.monotonic()
             if left <= 0.0:
-                self._missed = self._run.newest
+                self._missed = lacking
                 return
             self._arrived.wait(min(left, _STOP_CHECK))
+
+    def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
+        """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
+        delay, newest = self.values['wind_delay'], self._run.newest
+        if newest is None and self.count_publishers(self._topic):
+            yield self._topic, UNHEARD
+        elif newest is not None and self._run.lacks_wind(to, delay=delay):
+            yield self._topic, newest
+        if self._imu is not None:
+            yield from self._imu.lacking(to, delay)
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish due messages."""

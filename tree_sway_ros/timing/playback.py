@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 import heapq
 import itertools
+import math
 import time
 
 import numpy as np
@@ -34,7 +35,13 @@ _MARGIN = 86_400.0
 """Pause between two loops of a record [s]."""
 
 _SECOND = 1_000_000_000
-_SETTLING, _LATEST, _POLL = 0.5, 0.5, 0.02
+_LATEST, _POLL = 0.5, 0.02
+
+_SETTLING = 0.5
+"""Time [s] from the last subscriber to the first sample."""
+
+_LONGEST_WAIT = 5.0
+"""Longest time [s] from the first subscriber to the last."""
 
 
 def is_ros_time(epoch: float | None, time: Floats) -> bool:
@@ -58,6 +65,8 @@ class Playback(Worker):
         the record's own time with a clock, else the wall time at which the sample is due.
     may_start
         Function that returns whether there is a subscriber; called until true.
+    has_all
+        Function that returns whether all that is played has subscribers; waited for a while.
     on_end, on_error
         Functions called at the end of the record, and with an exception of `publish`.
     rate
@@ -83,6 +92,7 @@ class Playback(Worker):
     may_start: Callable[[], bool]
     on_end: Callable[[], None]
     on_error: Callable[[Exception], None]
+    has_all: Callable[[], bool] = lambda: True
     rate: float = 1.0
     epoch: float | None = None
     start_at: float = 0.0
@@ -137,18 +147,25 @@ class Playback(Worker):
 
     def _run(self) -> None:
         try:
-            heard = None
-            while heard is None or time.monotonic() < heard + _SETTLING:
-                if self.has_clock:
-                    self.publish(-1, self.begin)  # time stops for later subscribers
-                if heard is None and self.may_start():
-                    heard = time.monotonic()
-                if self._stopping.wait(_POLL):
-                    return
-            self._play()
+            if self._await_subscribers():
+                self._play()
         except Exception as error:
             if not self._stopping.is_set():
                 self.on_error(error)
+
+    def _await_subscribers(self) -> bool:
+        """Wait for subscribers, with a clock that stands; False if the thread is stopped."""
+        latest = settled = math.inf
+        while (now := time.monotonic()) < settled:
+            if self.has_clock:
+                self.publish(-1, self.begin)
+            if latest == math.inf and self.may_start():
+                latest = now + _LONGEST_WAIT
+            if settled == math.inf and (now > latest or (latest < math.inf and self.has_all())):
+                settled = now + _SETTLING
+            if self._stopping.wait(_POLL):
+                return False
+        return True
 
     def _play(self) -> None:
         begin, wall = time.monotonic(), time.time_ns()

@@ -24,6 +24,7 @@ from tree_sway_lab.bench.forest import forest_table
 from tree_sway_lab.bench.latency import time_latency
 from tree_sway_lab.bench.measured import as_json, draw, Measured, read_baseline, table
 from tree_sway_lab.bench.page import time_page
+from tree_sway_lab.bench.risk import N_TREES, time_risk
 from tree_sway_lab.bench.setup_time import setup_table
 from tree_sway_lab.bench.shards import time_shards
 from tree_sway_lab.bench.sizes import time_sizes
@@ -46,7 +47,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'stamp of a wind to its pose, from the vane through all nodes to a page; engines: beside '
         'MuJoCo, DART and Newton; '
         'shards: a stand on two hosts, cut apart and with a shard killed; page: frames per second '
-        'of the page without a graphics unit, and its memory',
+        'of the page without a graphics unit, and its memory; risk: critical winds of 1,000 and '
+        '20,000 street trees, time and memory',
     )
     parser.add_argument('--rounds', type=int, default=20, help='of 200 steps each (%(default)s)')
     parser.add_argument('--segments', type=int, default=6, help='a branch, for step (%(default)s)')
@@ -61,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--size',
         type=int,
         metavar='N',
-        help='trees of stand, shards and page, poses of stream, segments of engines, about',
+        help='trees of stand, shards, page and risk, poses of stream, segments of engines, about',
     )
     parser.add_argument(
         '--seconds', type=float, metavar='S', help='how long stream, latency, engines and page run'
@@ -115,7 +117,7 @@ def _measure(arguments: argparse.Namespace) -> int:
         )
     baseline = None if arguments.baseline is None else read_baseline(arguments.baseline)
     rows = _FIGURES[arguments.what](arguments)
-    title = f'{arguments.what}, one core of {core_name()}'
+    title = f'{arguments.what}, on {core_name()}'
     if arguments.json:
         print(as_json(rows, what=arguments.what, core=core_name()), end='')
     else:
@@ -173,6 +175,7 @@ _FIGURES: dict[str, Callable[[argparse.Namespace], list[Measured]]] = {
     'latency': _latency,
     'engines': _engines,
     'page': _page,
+    'risk': lambda arguments: time_risk([arguments.size] if arguments.size else N_TREES),
     'shards': lambda arguments: time_shards(**_given(n_trees=arguments.size)),
 }
 

@@ -19,9 +19,9 @@ from tree_sway.commands.progress import bar
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor
+from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.pictures.animation import write_pictures

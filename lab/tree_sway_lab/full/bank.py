@@ -26,8 +26,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.load_layouts import Loads, WORK, Works
 from tree_sway.core.model.load_records import load_records
-from tree_sway.core.model.records import Branches, Loads, WIDTH, WORK, Works
+from tree_sway.core.model.records import Branches, WIDTH
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise

@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor
+from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import tips_of_poses, Tree

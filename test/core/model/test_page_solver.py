@@ -16,7 +16,8 @@ from tree_sway.core.model.sway_model import MEANINGS
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.files.models.model_file import read_model, write_model
+from tree_sway.files.models.model_file import read_model
+from tree_sway.files.models.model_writer import write_model
 
 HERE = Path(__file__).parent
 PAGE = (HERE.parents[2] / 'doc' / 'sway_model.md').read_text(encoding='utf-8')

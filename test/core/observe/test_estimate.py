@@ -33,7 +33,7 @@ def test_compiled_and_in_numpy_it_is_the_same(gains: SteadyFilter) -> None:
         beyond = rng.normal(size=P) * (50.0 if k % 5 == 0 else 1.0)
         for each in (one, other):
             each.advance(beyond, is_known, 1 + k % 3)
-        for name in ('state', 'calm', 'innovation', 'innovations'):
+        for name in ('state', 'calm', 'innovation', 'innovations', 'sizes'):
             np.testing.assert_allclose(getattr(one, name), getattr(other, name), atol=1e-11)
         np.testing.assert_allclose(one.past_change(), other.past_change(), atol=1e-11)
 

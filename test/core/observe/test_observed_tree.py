@@ -15,9 +15,9 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
+from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import species_named
@@ -73,12 +73,17 @@ def measured(gravity: bool = True) -> SensedMotion:
 
 
 class Replay(NamedTuple):
-    """A tree after a record, its tips, its late, smoothed tips, (n, b, 3), and its band."""
+    """
+    A tree after a record.
+
+    Its tips, its late, smoothed tips, (n, b, 3), its band, and that of the highest tip's distance.
+    """
 
     twin: ObservedTree
     tips: Floats
     late: Floats
     band: Floats
+    sway_band: Floats
 
 
 def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
@@ -89,6 +94,7 @@ def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
     wind, block = truth().wind, np.empty((TREE.n_segments, 7))
     tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
     band = np.empty((len(wind), 2, len(BANDED), 3))
+    sway_band = np.empty((len(wind), 2))
     first = 0
     for k, each in enumerate(wind):
         while motion is not None and first < len(motion.time):
@@ -103,7 +109,8 @@ def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
         tips[k] = tips_of_poses(TREE, twin.place(block))
         late[k] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
         band[k] = twin.band(BANDED)
-    return Replay(twin, tips, late, band)
+        sway_band[k] = twin.sway_band()
+    return Replay(twin, tips, late, band, sway_band)
 
 
 def dynamic_error(tips: Floats, late: int = 0) -> float:
@@ -249,6 +256,21 @@ def test_the_band_holds_the_real_tree_and_a_sensor_narrows_it() -> None:
     # A sensor does not tell how far the tree leans in its mean, along the wind.
     assert along < 1.0
     assert across < 0.7
+
+
+def test_the_band_of_the_sway_holds_that_of_the_real_tree() -> None:
+    highest = TREE.branch_of_segment[int(np.argmax(TREE.end[:, 2]))]
+    rest = tips_of_poses(TREE, make_simulator(TREE, SPECIES).place())[highest]
+    widths = []
+    for each in (alone(), good()):
+        true, found = (
+            np.linalg.norm(tips[SCORED, highest] - rest, axis=1)
+            for tips in (truth().tips, each.tips)
+        )
+        low, high = each.sway_band[SCORED].T
+        assert np.mean((low <= true - found) & (true - found <= high)) > 0.75
+        widths.append(np.median(high - low))
+    assert widths[1] < widths[0]
 
 
 def test_without_a_sensor_the_band_grows_with_the_wind() -> None:

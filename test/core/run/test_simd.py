@@ -6,14 +6,8 @@ import numpy as np
 import pytest
 
 from tree_sway.core.kernel import fused
-from tree_sway.core.run.simd import (
-    add_shapes,
-    put_four,
-    settle,
-    shapes_together,
-    take_four,
-    write_past_caches,
-)
+from tree_sway.core.run.past_caches import settle, write_past_caches
+from tree_sway.core.run.simd import add_shapes, put_four, shapes_together, take_four
 
 
 @fused

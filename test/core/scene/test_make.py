@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+import importlib.util
+from pathlib import Path
 import subprocess
 import sys
 
@@ -12,13 +14,15 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
+from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError
-from tree_sway.files.models.model_file import write_model
+from tree_sway.files.models.model_writer import write_model
 
+ROOT = Path(__file__).resolve().parents[3]
 DT = 1.0 / 60.0
 WOOD = Species('example', 'example', 8e9, 900.0, damping_bare=0.1)
 
@@ -98,10 +102,27 @@ import tree_sway
 
 simulator = tree_sway.make_simulator(tree_sway.read_model(sys.argv[1]))
 simulator.step((5.0, 0.0, 0.0), 1 / 60)
+simulator.place()
+stepped = {name for name in sys.modules if name.partition('.')[0] == 'tree_sway'}
 simulator.push(0, (1.0, 0.0, 0.0), 0.1)
 simulator.place()
-print(*sorted(name for name in sys.modules if name.startswith('tree_sway.core.setup.')))
+after = {name for name in sys.modules if name.startswith('tree_sway.core.setup.')}
+print(*(sys.modules[name].__file__ for name in stepped))
+print(*after)
 """
+
+MOST_MODULES, MOST_TOKENS = 38, 32_700
+"""Modules that are loaded to step a model of a file, and their tokens by ``.ci/count.py``."""
+
+
+def tokens_of(path: str) -> int:
+    spec = importlib.util.spec_from_file_location('count', ROOT / '.ci' / 'count.py')
+    assert spec is not None
+    assert spec.loader is not None
+    count = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = count  # where its dataclass looks for the types of its fields
+    spec.loader.exec_module(count)
+    return int(count.count_of(Path(path)).tokens)
 
 
 def test_a_model_of_a_file_is_stepped_without_loading_the_set_up(stem, tmp_path):
@@ -111,8 +132,17 @@ def test_a_model_of_a_file_is_stepped_without_loading_the_set_up(stem, tmp_path)
         [sys.executable, '-c', STEPS_A_MODEL_OF_A_FILE, str(path)],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
+    stepped, setup = (line.split() for line in done.stdout.splitlines())
+    tokens = {name: tokens_of(name) for name in stepped}
+    modules = sorted(name for name in stepped if tokens[name])
+    for name in modules:
+        print(f'{tokens[name]:>6}  {Path(name).relative_to(ROOT)}')
+    print(f'{sum(tokens.values()):>6}  tokens of {len(modules)} modules')
     # Without a compiler branches are placed level by level, as the set-up moves them.
-    assert set(done.stdout.split()) <= {
+    assert set(setup) <= {
         'tree_sway.core.setup.numpy_branch_loads',
         'tree_sway.core.setup.tree_motion',
     }
+    if not WHY_PLAIN:
+        assert len(modules) <= MOST_MODULES
+        assert sum(tokens.values()) <= MOST_TOKENS

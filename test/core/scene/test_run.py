@@ -269,8 +269,16 @@ def test_a_sample_that_is_due_is_missed_until_it_arrives():
 def test_nothing_is_missed_of_a_sensor_that_nobody_has_heard():
     made = running(Recorder())
     assert not made.lacks_wind(START + 10 * SECOND)
+
+
+def test_before_the_period_is_known_any_sample_is_the_next():
+    made = running(Recorder())
     sampled(made, (0,))
-    assert not made.lacks_wind(START + 10 * SECOND)
+    assert not made.lacks_wind(START - 1)
+    assert made.lacks_wind(START)
+    assert not made.lacks_wind(START, delay=0.1)
+    sampled(made, (1,))
+    assert not made.lacks_wind(START)
 
 
 def test_samples_after_the_step_of_their_time_are_counted():

@@ -20,7 +20,8 @@ from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.models import model_file
-from tree_sway.files.models.model_file import read_model, VERSION, write_model
+from tree_sway.files.models.model_file import read_model, VERSION
+from tree_sway.files.models.model_writer import write_model
 from tree_sway.files.trees.source import open_scene, open_tree
 
 
@@ -36,6 +37,14 @@ def rewritten(path, **changes):
     with np.load(path) as file:
         arrays = dict(file) | changes
     np.savez(path, **{name: each for name, each in arrays.items() if each is not None})
+
+
+def edited(path, name, index, value):
+    """Change one element of an array of a file."""
+    with np.load(path) as file:
+        array = file[name].copy()
+    array[index] = value
+    rewritten(path, **{name: array})
 
 
 def with_about(path, **changes):
@@ -96,6 +105,15 @@ def test_another_species_is_set_up_anew(file):
         (lambda path: rewritten(path, stiffness=None), "'stiffness': missing"),
         (lambda path: rewritten(path, tree_start=None), 'tree_start'),
         (lambda path: rewritten(path, tree_branch_first=np.array([0, 3])), 'without segments'),
+        (lambda path: edited(path, 'tree_branch_first', 1, 0), 'without segments'),
+        (lambda path: edited(path, 'tree_start', 2, np.nan), 'tree_start has a number'),
+        (lambda path: edited(path, 'tree_end', slice(None), 0.0), 'segments without length'),
+        (lambda path: edited(path, 'tree_tip_diameter', 0, 0.0), 'tree_tip_diameter has a number'),
+        (lambda path: edited(path, 'tree_segment_parent', 0, 1), 'segments .* depth-first order'),
+        (lambda path: edited(path, 'tree_segment_parent', 2, 3), 'segments .* depth-first order'),
+        (lambda path: edited(path, 'tree_segment_parent', -1, -2), 'segments .* depth-first'),
+        (lambda path: rewritten(path, tree_segment_parent=np.zeros(3)), 'segment_parent is float'),
+        (lambda path: rewritten(path, tree_branch_first=np.zeros(0, dtype=int)), 'out of bounds'),
         (lambda path: rewritten(path, stiffness=np.ones(25)), 'not those that were written'),
         (lambda path: rewritten(path, extra=np.array([{}], dtype=object)), 'no prepared model'),
     ],
@@ -104,6 +122,18 @@ def test_a_damaged_file_is_refused(file, damage, named):
     damage(file)
     with pytest.raises(FormatError, match=named):
         read_model(file)
+
+
+def test_branches_in_another_order_are_refused(tmp_path):
+    path = tmp_path / 'goldcrest.npz'
+    tree = open_tree('goldcrest').tree
+    write_model(path, prepare(tree, model=0))
+    last = tree.n_branches - 1
+    # The last branch is put on one whose subtree ends before it.
+    far = next(b for b in range(1, last) if tree.subtree_end[b] < last)
+    edited(path, 'tree_segment_parent', tree.branch_first[last], tree.branch_first[far])
+    with pytest.raises(FormatError, match='branches that are not in depth-first order'):
+        read_model(path)
 
 
 def test_a_file_that_would_fill_the_memory_is_refused(tmp_path, monkeypatch, little_effort):

@@ -213,6 +213,67 @@ READ = {
         'Micocoulier;93;11;3;Celtis;australis;4,8502;45,7502\n',
         [('plane', 17.0, 0.595), ('hackberry', 11.0, 0.296)],
     ),
+    'Cologne of 2017, trunks of one or of several stems': (
+        'PFLEGEOBJE;Objekttyp;Baum-Nr.;X_Koordina;Y_Koordina;STAMMVON;STAMMBIS;KRONE;HöHE;'
+        'Gattung;Art;Sorte;DeutscherN\n'
+        '900;6;20U;360450,2;5645800,1;0;45;8;14;Platanus;x acerifolia;;Platane\n'
+        '901;6;21U;360460,2;5645805,1;30;60;10;18;Tilia;cordata;;Winterlinde\n',
+        [('plane', 14.0, 0.45), ('lime', 18.0, 0.6)],
+    ),
+    'Cologne of 2020, a height without its umlaut': (
+        'objekttyp;Baum_Nr;X_KOORDINA;Y_KOORDINA;STAMMVON;STAMMBIS;KRONE;H_HE;Gattung;Art\n'
+        '6;20U;360450.2;5645800.1;0;45;8;14;Platanus;x acerifolia\n'
+        '6;21U;360460.2;5645805.1;0;0;10;18;Tilia;cordata\n',
+        [('plane', 14.0, 0.45), ('lime', 18.0, None)],
+    ),
+    'Heilbronn, girths in metres, a type of trees before their species': (
+        'BAUM_NR,ORT,TYP,DEU_TEXT,WIS_TEXT,ST_UMFANG,KRONE_DM,X,Y\n'
+        '1,Heilbronn,Laubbaum,Winterlinde,Tilia cordata,1.1,8,515000,5443000\n'
+        '2,Heilbronn,Nadelbaum,Waldkiefer,Pinus sylvestris,0.9,5,515010,5443004\n',
+        [('lime', None, 0.35), ('pine', None, 0.286)],
+    ),
+    'a type of trees before a column of species with a name of its own': (
+        'TYP,Bezeichnung,BHD,H,X,Y\n'
+        'Laubbaum,Winterlinde,35,14,515000,5443000\nNadelbaum,Kiefer,29,16,515010,5443004\n',
+        [('lime', 14.0, 0.35), ('pine', 16.0, 0.29)],
+    ),
+    'Lisbon, PAP': (
+        'OBJECTID,COD_SIG,ESPECIE_VA,NOME_VULGA,PAP,ALTURA,X,Y\n'
+        '1,A1,Celtis australis,Lodão-bastardo,120,12,-9.1412,38.7112\n'
+        '2,A2,Platanus x hispanica,Plátano,200,18,-9.1414,38.7113\n',
+        [('hackberry', 12.0, 0.382), ('plane', 18.0, 0.637)],
+    ),
+    'The Hague, classes of height and diameter': (
+        'BOOMSOORT_WETENSCHAPPELIJ,BOOMSOORT_NEDERLANDS,STAMDIAMETERKLASSE,'
+        'BOOMHOOGTEKLASSE_ACTUEEL,LEEFTIJD,X,Y\n'
+        'Tilia europaea,Hollandse linde,"0,3 tot 0,4 m.",12 tot 15 m.,40,81000,455000\n'
+        'Quercus robur,Zomereik,"0,5 tot 1,0 m.",18 tot 24 m.,80,81010,455003\n',
+        [('lime', 13.5, 0.35), ('oak', 21.0, 0.75)],
+    ),
+    'Divonne-les-Bains, a shapefile': (
+        'id,genre,espece,classe_hau,circonfere,x,y\n'
+        '1,Tilia,cordata,10 à 15 m,110,2490000,1135000\n'
+        '2,Acer,platanoides,5 à 10 m,70,2490010,1135004\n',
+        [('lime', 12.5, 0.35), ('maple', 7.5, 0.223)],
+    ),
+    'Prospect': (
+        'Tree Number,Common Name,Tree Species,Tree Circumference,Tree Height,Latitude,Longitude\n'
+        '1,Jacaranda,Jacaranda mimosifolia,95,8,-34.8812,138.5912\n'
+        '2,White Ash,Fraxinus americana,70,6,-34.8813,138.5913\n',
+        [('broadleaf', 8.0, 0.302), ('ash', 6.0, 0.223)],
+    ),
+    'Launceston, a shapefile': (
+        'genusspeci,name,diametr_c,height_m,age,longitude,latitude\n'
+        'Quercus robur,English oak,60,18,Mature,147.1234,-41.4321\n'
+        'Ulmus procera,English elm,45,15,Mature,147.1236,-41.4322\n',
+        [('oak', 18.0, 0.6), ('elm', 15.0, 0.45)],
+    ),
+    'Issy-les-Moulineaux': (
+        'geo_point_2d;essence_com;essence_sci;circonferen;hauteur;classe_age\n'
+        '48.8243,2.2701;Platane;Platanus x acerifolia;150;16;adulte\n'
+        '48.8244,2.2703;Tilleul;Tilia tomentosa;90;10;adulte\n',
+        [('plane', 16.0, 0.477), ('lime', 10.0, 0.286)],
+    ),
     'a plot in metres with few digits stays one': (
         'x,y,species,height,dbh\n12.250,3.500,oak,18,45\n30.500,8.750,oak,20,50\n',
         [('oak', 18.0, 0.45), ('oak', 20.0, 0.5)],
@@ -259,6 +320,11 @@ def test_degrees_in_x_and_y_are_said(tmp_path: Path) -> None:
         (
             'CN,PLOT,SUBP,TREE,AZIMUTH,DIST,SPCD,DIA,HT\n1,10,1,1,45,12.3,131,8.1,55\n',
             'no column for the place (x and y, or latitude and longitude)',
+        ),
+        (
+            'objid,strasse,baumnamelat,baumnamedeu,baumnummer,kronendurchmesser,geometry\n'
+            '1,Allee,Acer platanoides,Spitzahorn,AL-1,8,POINT (2679000.1 1248000.2)\n',
+            'no column for the size (height, dbh or girth) among objid',
         ),
         ('Name;Straße;Baujahr\na;b;1990\n', 'no column of an inventory'),
     ],

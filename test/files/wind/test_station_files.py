@@ -8,7 +8,7 @@ Each is made anew from the maker's public pages, with the wind of `SPEEDS` from 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 import json
 from pathlib import Path
@@ -479,3 +479,111 @@ def test_rows_may_be_newest_first(tmp_path: Path) -> None:
     forward = tmp_path / 'forward.csv'
     forward.write_text('\n'.join(['time,speed [m/s],direction', *lines[::-1]]) + '\n')
     assert record.epoch == read_wind(forward, turbulence=False).epoch
+
+
+#: Hours of 4, 4.5 and 5 m/s from the west, from `BEGIN` on.
+HOURS = {
+    'Korea': (
+        '지점,지점명,일시,기온(°C),풍속(m/s),풍향(16방위)\n108,서울,2024-03-01 22:00,3.1,4.0,270\n'
+        '108,서울,2024-03-01 23:00,3.0,4.5,270\n108,서울,2024-03-02 00:00,3.0,5.0,270\n'
+    ),
+    'Finland': (
+        'Havaintoasema,Vuosi,Kuukausi,Päivä,Aika [Paikallinen aika],Keskituulen nopeus [m/s],'
+        'Tuulen suunnan keskiarvo [°]\nHelsinki Kaisaniemi,2024,3,1,22:00,4.0,270\n'
+        'Helsinki Kaisaniemi,2024,3,1,23:00,4.5,270\nHelsinki Kaisaniemi,2024,3,2,00:00,5.0,270\n'
+    ),
+    'Norway, with a remark below': (
+        'Navn;Stasjon;Tid(norsk normaltid);Middelvind;Vindretning\n'
+        'Oslo - Blindern;SN18700;01.03.2024 22:00;4,0;270\n'
+        'Oslo - Blindern;SN18700;01.03.2024 23:00;4,5;270\n'
+        'Oslo - Blindern;SN18700;02.03.2024 00:00;5,0;270\n'
+        'Data er gyldig per 05.03.2024 (CC BY 4.0), Meteorologisk institutt (MET);;;;\n'
+    ),
+    'New Zealand, CliFlo': (
+        'Station information:\nName,Agent Number,Latitude (dec.deg),Longitude (dec.deg)\n'
+        'Wellington Aero,3445,-41.322,174.804\n\nSurface Wind: Hourly\n'
+        'Station,Date(NZST),Dir(DegT),Speed(m/s),Dir StdDev,Spd StdDev,Period(Hrs),Freq\n'
+        'Wellington Aero,20240301:2200,270,4.0,10,1.0,1,H\n'
+        'Wellington Aero,20240301:2300,270,4.5,10,1.0,1,H\n'
+        'Wellington Aero,20240302:0000,270,5.0,10,1.0,1,H\n\nUserName is = x\n'
+    ),
+    'Spain, SIAR': (
+        'IdProvincia;IdEstacion;Fecha;HoraMin;VelViento (m/s);DirViento (º)\n'
+        '28;1;01/03/2024;2200;4,0;270\n28;1;01/03/2024;2300;4,5;270\n28;1;02/03/2024;0;5,0;270\n'
+    ),
+    'meteoblue, in km/h': (
+        'location,Basel,Basel,Basel\nlat,47.56,47.56,47.56\nvariable,Wind Speed,Wind Direction,'
+        'Wind Gust\nunit,km/h,°,km/h\nlevel,10 m,10 m,sfc\nresolution,hourly,hourly,hourly\n'
+        'timestamp,Basel Wind Speed [10 m],Basel Wind Direction [10 m],Basel Wind Gust\n'
+        '20240301T2200,14.4,270,30\n20240301T2300,16.2,270,33\n20240302T0000,18.0,270,36\n'
+    ),
+    'Kestrel': (
+        'FORMATTED DATE_TIME,Temperature,Wind Speed,Compass Magnetic Direction,'
+        'Compass True Direction,Crosswind\nyyyy-mm-dd hh:mm:ss,°C,km/h,Deg,Deg,km/h\n'
+        '2024-03-01 10:00:00 PM,3,14.4,266,270,0\n2024-03-01 11:00:00 PM,3,16.2,266,270,0\n'
+        '2024-03-02 12:00:00 AM,3,18.0,266,270,0\n'
+    ),
+    'METER ZL6': (
+        'z6-1234,ATMOS 41,ATMOS 41,ATMOS 41\n'
+        'Timestamp, m/s Wind Speed,° Wind Direction, m/s Gust Speed\n'
+        '2024-03-01 22:00:00,4.0,270,8\n'
+        '2024-03-01 23:00:00,4.5,270,8\n2024-03-02 00:00:00,5.0,270,8\n'
+    ),
+}
+
+
+@pytest.mark.parametrize('name', HOURS)
+def test_hours_of_more_services_are_read(name: str, tmp_path: Path) -> None:
+    path = tmp_path / 'a.csv'
+    path.write_text(HOURS[name], encoding='utf-8')
+    record = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(record.time, [0.0, 3600.0, 7200.0])
+    assert record.epoch == seconds(BEGIN)
+    expected = [[4.0, 0.0], [4.5, 0.0], [5.0, 0.0]]
+    np.testing.assert_allclose(record.velocity[:, :2], expected, atol=1e-9)
+    assert record.refused <= 1
+
+
+def test_hours_of_korea_are_read_in_their_code_page(tmp_path: Path) -> None:
+    path = tmp_path / 'a.csv'
+    path.write_bytes(HOURS['Korea'].encode('cp949'))
+    assert read_wind(path, turbulence=False).velocity[:, 0].tolist() == [4.0, 4.5, 5.0]
+
+
+JMA_HEAD = (
+    'ダウンロードした時刻：2024/03/05 10:20:49\n\n{stations}\n'
+    '年月日時,気温(℃),気温(℃),気温(℃),風速(m/s),風速(m/s),風速(m/s),風速(m/s),風速(m/s)\n'
+    ',,,,,,風向,風向,\n,,品質情報,均質番号,,品質情報,,品質情報,均質番号\n'
+)
+
+
+def jma(tmp_path: Path, rows: Sequence[str], *stations: str) -> Path:
+    """Write hours of JMA in its code page."""
+    path = tmp_path / 'data.csv'
+    cells = [each for each in stations or ('東京',) for _ in range(8 // len(stations or ('',)))]
+    text = JMA_HEAD.format(stations=',' + ','.join(cells)) + '\n'.join(rows) + '\n'
+    path.write_bytes(text.replace('\n', '\r\n').encode('cp932'))
+    return path
+
+
+def test_hours_of_japan_are_read_in_their_code_page(tmp_path: Path) -> None:
+    """The quality of the second row says that it is missing, a calm has no direction."""
+    rows = [
+        '2024/3/1 23:00:00,9.1,8,1,4.0,8,西,8,1',
+        '2024/3/2 0:00:00,9.0,8,1,7.7,1,西,1,1',
+        '2024/3/2 1:00:00,8.8,8,1,3.0,8,北北西,8,1',
+        '2024/3/2 2:00:00,8.8,8,1,0.0,8,静穏,8,1',
+    ]
+    record = read_wind(jma(tmp_path, rows), turbulence=False)
+    np.testing.assert_allclose(record.time, [0.0, 7200.0, 10800.0])
+    assert record.epoch == seconds(datetime(2024, 3, 1, 14, 0))
+    angle = np.radians(337.5)
+    expected = [[4.0, 0.0], [-3.0 * np.sin(angle), -3.0 * np.cos(angle)], [0.0, 0.0]]
+    np.testing.assert_allclose(record.velocity[:, :2], expected, atol=1e-9)
+    assert record.refused == 1
+
+
+def test_several_stations_of_japan_are_told(tmp_path: Path) -> None:
+    row = '2024/3/1 23:00:00,9.1,8,1,4.0,8,西,8,1'
+    with pytest.raises(FormatError, match=r'several stations: 東京, 横浜; download one at a time'):
+        read_wind(jma(tmp_path, [row], '東京', '横浜'))

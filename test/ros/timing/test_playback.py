@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
+from tree_sway_ros.timing import playback as playing
 from tree_sway_ros.timing.playback import LONGEST_CLOCK_STEP, Playback
 
 TIME = np.array([0.0, 0.1, 0.2, 0.4])
@@ -108,6 +109,29 @@ def test_it_waits_until_it_may_start():
     published, made = play(0, may_start=may.is_set)
     assert published == []
     assert not made._thread.is_alive()
+
+
+def test_it_waits_for_the_subscribers_of_all_that_it_plays():
+    asked, begun = [], threading.Event()
+
+    def has_all():
+        asked.append(begun.is_set())
+        return len(asked) > 5
+
+    made = playback(publish=lambda row, stamp: begun.set(), has_all=has_all)
+    made.start()
+    assert begun.wait(10.0)
+    made.stop()
+    assert asked == [False] * 6
+
+
+def test_it_does_not_wait_for_ever_for_the_last_subscriber(monkeypatch):
+    monkeypatch.setattr(playing, '_LONGEST_WAIT', 0.1)
+    begun = threading.Event()
+    made = playback(publish=lambda row, stamp: begun.set(), has_all=lambda: False)
+    made.start()
+    assert begun.wait(10.0)
+    made.stop()
 
 
 def test_an_error_is_handed_on():

@@ -7,6 +7,8 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from functools import cache
+import threading
+import time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -91,8 +93,12 @@ class Sink:
     def publish(self, _: bytes) -> None:
         """Take a frame."""
 
-    def announce(self, *_: Any) -> None:
+    def __init__(self) -> None:
+        self.messages: list[Any] = []
+
+    def announce(self, message: Any, *_: Any) -> None:
         """Take a message."""
+        self.messages.append(message)
 
 
 @pytest.fixture
@@ -147,10 +153,37 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert told['name'] == f'phone at segment:{SEGMENT}'
     assert told['in_use']
     assert told['problem'] == ''
+    low, high = status['band']
+    assert low < 0.0 < high < 0.5
     assert told['rate'] == pytest.approx(100.0, rel=0.1)
     assert 0.1 < told['residual'] < 3.0
     assert 0.3 < status['explained'] < 0.95
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
+
+
+def test_a_viewer_moves_the_sensor_and_a_place_that_is_none_is_refused(sensor: Sensor) -> None:
+    session, _ = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')], until=1)  # type: ignore[arg-type]
+
+    def choose(place: str) -> None:
+        session.apply('sensor_at', place)
+        end = time.monotonic_ns() + 60 * 10**9
+        while session._builder.wanted is not None:
+            assert time.monotonic_ns() < end
+            threading.Event().wait(0.01)
+        sensor.now += DT
+        session._step(0.0)
+
+    choose('segment:5')
+    (told,) = session.status()['motion']['sensors']
+    assert told['name'] == 'phone at segment:5'
+    for _ in range(30):
+        sensor.now += DT
+        session._step(0.0)
+    twin = session._scene.simulator
+    assert next(iter(twin.sensors.values())).counts.accepted > 40  # at 100 Hz
+    choose('99')
+    assert 'the stem has no height' in session._server.messages[-1]['refused']['reason']
+    assert session.status()['motion']['sensors'][0]['name'] == 'phone at segment:5'
 
 
 def test_a_sensor_that_falls_silent_leaves_the_wind(sensor: Sensor) -> None:

@@ -22,7 +22,11 @@ def test_every_sample_comes_once_and_in_step(phone: Any, sense: Any) -> None:
     sensed = sense(server.url)
     sensed.until(lambda: len(sensed.samples) > 200)
     times = np.array([each.time for each in sensed.samples])
-    assert np.diff(times) == pytest.approx(0.01, abs=4e-3)
+    # A step is shorter where a faster message tells more of the phone's clock, never longer.
+    steps = np.diff(times)
+    assert np.median(steps) == pytest.approx(0.01)
+    assert 0.0 < steps.min()
+    assert steps.max() < 0.0101
     assert sensed.samples[0].rate is None
     # The phase is that of the phone: its clock is known to some hundredths of a second.
     at = times[100:] - server.began

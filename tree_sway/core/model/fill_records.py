@@ -55,52 +55,48 @@ class Places(NamedTuple):
     """Rotation vector of each segment per unit of its branch's coordinates, (n, k, 3)."""
 
 
+_OF_PLACES = (
+    'parent', 'base_segment', 'coordinate', 'n_coordinates', 'frame', 'offset', 'skew',
+    'tip_skew',
+)  # fmt: skip
+"""Fields of a branch's record that are those of `Places`."""
+
+
 def segment_records(places: Places) -> Records:
     """Fill the segments for placing: records of `segment_layout`, in blocks."""
     block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
-    is_plain = places.segment_turn.shape[1] == 2
-    records = zeros_in_lines(n_records, segment_layout(places.segment_turn.shape[1]))
+    n_modes = places.segment_turn.shape[1]
+    records = zeros_in_lines(n_records, segment_layout(n_modes))
     records['rest'][:, 0] = 1.0
     size = np.diff(places.first)
     rows = np.arange(len(places.slope)) + np.repeat(block - places.first[:-1], size)
     own = np.repeat(slot, size)
-    records['chord'][rows, :, own] = places.chord
-    records['rest'][rows, :, own] = places.rest
-    records['slope'][rows, own], records['tip_slope'][rows, own] = places.slope, places.tip_slope
+    for name in ('chord', 'rest', 'slope', 'tip_slope'):
+        records[name][rows, ..., own] = getattr(places, name)
     np.maximum.at(records['n_slots'], rows, own + 1)
-    if not is_plain:
-        n_modes = places.segment_turn.shape[1]
+    if n_modes > 2:
         records['segment_turn'][rows, :n_modes, :, own] = places.segment_turn
     return records
 
 
 def fill_places(places: Places, records: Records) -> None:
     """Fill the fields for placing in records of `branch_layout`, (b,)."""
-    records['first_record'], records['slot'], _ = assign_slots(
-        places.first, places.parent, places.n_coordinates
-    )
-    records['parent'], records['base_segment'] = places.parent, places.base_segment
-    records['first'], records['end'] = places.first[:-1], places.first[1:]
-    records['coordinate'], records['n_coordinates'] = places.coordinate, places.n_coordinates
-    records['frame'], records['offset'] = places.frame, places.offset
-    records['skew'], records['tip_skew'] = places.skew, places.tip_skew
+    block, slot, _ = assign_slots(places.first, places.parent, places.n_coordinates)
+    records['first_record'] = block
+    records['slot'] = slot
+    records['first'] = places.first[:-1]
+    records['end'] = places.first[1:]
+    for name in _OF_PLACES:
+        records[name] = getattr(places, name)
     k = min(places.base_rotation.shape[1], records['twist'].shape[1])
     records['twist'][:, :k, 3:] = places.base_rotation[:, :k]
     begin = places.first[:-1]
-    steepest = np.maximum.reduceat(np.square(places.segment_turn).sum(axis=2), begin)
-    tips = np.maximum.reduceat(np.square(places.tip_slope), begin)
+    per_segment = np.square(places.segment_turn).sum(axis=2)
+    steepest = np.maximum.reduceat(per_segment, begin)
+    steepest[:, 0] = np.maximum(
+        steepest[:, 0], np.maximum.reduceat(np.square(places.tip_slope), begin)
+    )
     records['steepest'][:, : steepest.shape[1]] = steepest
-    records['steepest'][:, 0] = np.maximum(records['steepest'][:, 0], tips)
-
-
-def segment_turns_of(branch: np.void, segments: Records) -> Floats:
-    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
-    first, count = int(branch['first_record']), int(branch['n_coordinates'])
-    rows = slice(first, first + int(branch['end'] - branch['first']))
-    if branch['load_mode'].shape[0] > 2:
-        return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])
-    slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
-    return np.multiply.outer(slope, np.stack([e2, -e1]))
 
 
 def block_records(branches: Records, segments: Records) -> Records:
@@ -110,27 +106,35 @@ def block_records(branches: Records, segments: Records) -> Records:
     Records are of `block_layout`, one per block of `assign_slots` and one of scratch memory.
     """
     first, block = np.unique(branches['first_record'], return_inverse=True)
-    slot, parent = branches['slot'], branches['parent']
+    slot = branches['slot']
+    parent = branches['parent']
+    count = branches['n_coordinates']
     blocks = zeros_in_lines(len(first) + 1, block_layout(branches.dtype['load_mode'].shape[0]))
     blocks['first_record'] = [*first, len(segments)]
     blocks['n_records'][:-1] = np.diff(blocks['first_record'])
     blocks['n_slots'][:-1] = segments['n_slots'][first]
     blocks['n_eights'] = -(-blocks['n_slots'] // 8)
-    np.maximum.at(blocks['n_parents'], block[parent[1:]], slot[parent[1:]] + 1)
-    np.maximum.at(blocks['n_rows'], block, branches['n_coordinates'])
-    blocks['branch'][block, slot] = np.arange(len(branches))
     blocks['is_joined'][:-1] = np.logical_and.reduceat(_joined(segments), first)
-    np.maximum.at(blocks['n_parent_rows'], block, branches['n_coordinates'][parent])
-    for name in ('parent', 'coordinate', 'base_segment', 'first'):
-        blocks[name][block, slot] = branches[name]
-    for name in ('frame', 'skew', 'tip_skew', 'offset', 'steepest'):
+    np.maximum.at(blocks['n_parents'], block[parent[1:]], slot[parent[1:]] + 1)
+    np.maximum.at(blocks['n_rows'], block, count)
+    np.maximum.at(blocks['n_parent_rows'], block, count[parent])
+    blocks['branch'][block, slot] = np.arange(len(branches))
+    for name in _OF_BRANCHES:
         blocks[name][block, ..., slot] = branches[name]
-    blocks['bound_factor'][block, slot] = branches['n_coordinates'] - 1
-    blocks['parent_coordinate'][block, slot] = branches['coordinate'][parent]
-    ahead, beside = blocks['offset'][:, :1], np.abs(blocks['offset'][:, 1:])
-    blocks['is_at_axes'] = (beside <= _AS_ONE * ahead).all(axis=(1, 2))
     blocks['base_rotation'][block, ..., slot] = branches['twist'][..., 3:]
+    blocks['bound_factor'][block, slot] = count - 1
+    blocks['parent_coordinate'][block, slot] = branches['coordinate'][parent]
+    ahead = blocks['offset'][:, :1]
+    beside = np.abs(blocks['offset'][:, 1:])
+    blocks['is_at_axes'] = (beside <= _AS_ONE * ahead).all(axis=(1, 2))
     return blocks
+
+
+_OF_BRANCHES = (
+    'parent', 'coordinate', 'base_segment', 'first', 'frame', 'skew', 'tip_skew', 'offset',
+    'steepest',
+)  # fmt: skip
+"""Fields of a block that are those of its branches."""
 
 
 _rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
@@ -162,24 +166,33 @@ def assign_slots(
         First record (b,) and slot (b,) of each branch; number of records.
 
     """
-    size = np.diff(first)
+    size = np.diff(first).tolist()
+    count = len(size)
     children: list[list[int]] = [[] for _ in size]
-    carried = np.ones(len(size), dtype=np.int64)
-    for branch in range(len(size) - 1, 0, -1):
-        children[branch_parent[branch]].insert(0, branch)
-        carried[branch_parent[branch]] += carried[branch]
-    block, slot = np.zeros((2, len(size)), dtype=np.int64)
+    carried = [1] * count
+    parents = branch_parent.tolist()
+    for branch in range(count - 1, 0, -1):
+        children[parents[branch]].insert(0, branch)
+        carried[parents[branch]] += carried[branch]
     # The time to place sixteen branches is that of the one with most fields.
-    rich = (-fields if fields is not None else 0 * size).tolist()
-    begin, ready = 0, [(rich[0], -int(size[0]), 0, -int(carried[0]), 0)]
+    n_fields = [0] * count if fields is None else fields.tolist()
+
+    def rank(branch: int, below: int) -> tuple[int, ...]:
+        """Sort the richest and longest first, then children of the richest."""
+        return -n_fields[branch], -size[branch], -n_fields[below], -carried[branch], branch
+
+    block = np.zeros(count, dtype=np.int64)
+    slot = np.zeros(count, dtype=np.int64)
+    begin = 0
+    ready = [rank(0, 0)]
     while ready:
         together = [heappop(ready)[-1] for _ in range(min(WIDTH, len(ready)))]
         # Records have segments of the first slots only.
-        together.sort(key=lambda branch: -int(size[branch]))
-        block[together], slot[together] = begin, np.arange(len(together))
-        begin += int(size[together[0]])
+        together.sort(key=lambda branch: -size[branch])
+        block[together] = begin
+        slot[together] = np.arange(len(together))
+        begin += size[together[0]]
         for branch in together:
             for child in children[branch]:
-                last = rich[branch], -int(carried[child]), child
-                heappush(ready, (rich[child], -int(size[child]), *last))
+                heappush(ready, rank(child, branch))
     return block, slot, begin

@@ -8,7 +8,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.beams.beam import cross
-from tree_sway.core.model.records import load_layout, WIDTH, zeros_in_lines
+from tree_sway.core.model.load_layouts import load_layout
+from tree_sway.core.model.records import WIDTH, zeros_in_lines
 
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:

@@ -13,7 +13,6 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
@@ -137,11 +136,16 @@ class Settings:
 
     def __eq__(self, other: object) -> bool:
         """Compare every field, arrays by their numbers."""
-        return isinstance(other, Settings) and digest_of(self) == digest_of(other)
+        return isinstance(other, Settings) and self._digest() == other._digest()
 
     def __hash__(self) -> int:
         """Hash the fields that `__eq__` compares."""
-        return hash(digest_of(self))
+        return hash(self._digest())
+
+    def _digest(self) -> str:
+        from tree_sway.core.model.tree_state import digest_of
+
+        return digest_of(self)
 
 
 def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:

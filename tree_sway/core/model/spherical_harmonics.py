@@ -16,30 +16,62 @@ from tree_sway.core.kernel import part
 N_HARMONICS = 21
 """Number of functions up to the highest degree, 5."""
 
-_A3, _B3, _C3, _D3 = (35.0 / 8.0) ** 0.5, 105.0**0.5, (21.0 / 8.0) ** 0.5, 7.0**0.5 / 2.0
-_A5, _B5, _C5, _D5, _E5, _F5 = (
-    3.0 * (77.0 / 128.0) ** 0.5, 3.0 * (385.0 / 16.0) ** 0.5 / 2.0, (385.0 / 128.0) ** 0.5,
-    (1155.0 / 16.0) ** 0.5, (165.0 / 64.0) ** 0.5, 11.0**0.5 / 8.0,
-)  # fmt: skip
+# Scales by degree and order.
+_SCALE_1 = 3.0**0.5
+_SCALE_30 = 0.5 * 7.0**0.5
+_SCALE_31 = (21.0 / 8.0) ** 0.5
+_SCALE_32 = 0.5 * 105.0**0.5
+_SCALE_33 = (35.0 / 8.0) ** 0.5
+_SCALE_50 = 0.125 * 11.0**0.5
+_SCALE_51 = (165.0 / 64.0) ** 0.5
+_SCALE_52 = (1155.0 / 16.0) ** 0.5
+_SCALE_53 = (385.0 / 128.0) ** 0.5
+_SCALE_54 = 1.5 * (385.0 / 16.0) ** 0.5
+_SCALE_55 = 3.0 * (77.0 / 128.0) ** 0.5
 
 
 @part
 def fill_harmonics(x: float, y: float, z: float, out: Floats) -> None:
-    """Write the functions (`N_HARMONICS`,) at a direction, a unit vector."""
-    xx, yy, zz, xy = x * x, y * y, z * z, x * y
-    u, v = xx - yy, 2.0 * xy
-    s3, c3 = y * (3.0 * xx - yy), x * (xx - 3.0 * yy)
-    s4, c4 = 2.0 * u * v, u * u - v * v
-    s5, c5 = x * s4 + y * c4, x * c4 - y * s4
-    ring = 21.0 * zz * zz - 14.0 * zz + 1.0
-    out[0], out[1], out[2] = 3.0**0.5 * y, 3.0**0.5 * z, 3.0**0.5 * x
-    out[3], out[9] = _A3 * s3, _A3 * c3
-    out[4], out[8] = 0.5 * _B3 * v * z, 0.5 * _B3 * u * z
-    out[5], out[7] = _C3 * y * (5.0 * zz - 1.0), _C3 * x * (5.0 * zz - 1.0)
-    out[6] = _D3 * z * (5.0 * zz - 3.0)
-    out[10], out[20] = _A5 * s5, _A5 * c5
-    out[11], out[19] = _B5 * z * s4, _B5 * z * c4
-    out[12], out[18] = _C5 * s3 * (9.0 * zz - 1.0), _C5 * c3 * (9.0 * zz - 1.0)
-    out[13], out[17] = _D5 * z * v * (3.0 * zz - 1.0), _D5 * z * u * (3.0 * zz - 1.0)
-    out[14], out[16] = _E5 * y * ring, _E5 * x * ring
-    out[15] = _F5 * z * (63.0 * zz * zz - 70.0 * zz + 15.0)
+    """
+    Write the functions (`N_HARMONICS`,) at a direction, a unit vector.
+
+    Those of degree n are ``out[c - n] .. out[c + n]`` about a centre c: of order m after the
+    centre with the cosine of the azimuth, before it with the sine.
+    """
+    # Cosine and sine of m times the azimuth, times the m-th power of the horizontal part.
+    cosine_2 = x * x - y * y
+    sine_2 = 2.0 * x * y
+    cosine_3 = x * cosine_2 - y * sine_2
+    sine_3 = x * sine_2 + y * cosine_2
+    cosine_4 = x * cosine_3 - y * sine_3
+    sine_4 = x * sine_3 + y * cosine_3
+    cosine_5 = x * cosine_4 - y * sine_4
+    sine_5 = x * sine_4 + y * cosine_4
+    zz = z * z
+
+    degree_1 = 1
+    out[degree_1] = _SCALE_1 * z
+    _put_pair(out, degree_1, 1, _SCALE_1, x, y)
+
+    degree_3 = 6
+    out[degree_3] = _SCALE_30 * z * (5.0 * zz - 3.0)
+    _put_pair(out, degree_3, 1, _SCALE_31 * (5.0 * zz - 1.0), x, y)
+    _put_pair(out, degree_3, 2, _SCALE_32 * z, cosine_2, sine_2)
+    _put_pair(out, degree_3, 3, _SCALE_33, cosine_3, sine_3)
+
+    degree_5 = 15
+    out[degree_5] = _SCALE_50 * z * (63.0 * zz * zz - 70.0 * zz + 15.0)
+    _put_pair(out, degree_5, 1, _SCALE_51 * (21.0 * zz * zz - 14.0 * zz + 1.0), x, y)
+    _put_pair(out, degree_5, 2, _SCALE_52 * z * (3.0 * zz - 1.0), cosine_2, sine_2)
+    _put_pair(out, degree_5, 3, _SCALE_53 * (9.0 * zz - 1.0), cosine_3, sine_3)
+    _put_pair(out, degree_5, 4, _SCALE_54 * z, cosine_4, sine_4)
+    _put_pair(out, degree_5, 5, _SCALE_55, cosine_5, sine_5)
+
+
+@part
+def _put_pair(
+    out: Floats, centre: int, order: int, amount: float, cosine: float, sine: float
+) -> None:
+    """Write the two functions of an order above 0: an amount times cosine and sine."""
+    out[centre + order] = amount * cosine
+    out[centre - order] = amount * sine

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, MISSING
 from functools import cached_property
 import hashlib
-from typing import Annotated, Any, get_args, get_type_hints, NamedTuple
+from typing import Annotated, Any, get_args, get_type_hints, NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,10 +29,12 @@ from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.spherical_harmonics import N_HARMONICS
-from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import FormatError
+
+if TYPE_CHECKING:
+    from tree_sway.core.model.state_basis import StateBasis
 
 PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS, LIMP = (
     'placing', 'loads of branches', 'coordinates', 'stream', 'table', 'isolated branches', 'limbs',
@@ -347,6 +349,8 @@ class SwayModel:
     @cached_property
     def basis(self) -> StateBasis:
         """Return the basis in which the motion is streamed; isolated branches have none here."""
+        from tree_sway.core.model.state_basis import StateBasis
+
         return StateBasis(
             self.shapes @ self.stream_shapes,
             self.stream_projection @ self.projection,

@@ -57,14 +57,13 @@ class Estimate:
         """Those of the last steps, limited, the oldest first, (l, p)."""
         self._backward = gains.backward.reshape(len(gains.backward), -1)
         self._past = np.zeros(shape[1])
-        self._scaled = np.zeros(n_measurements)
-        self._squares = self._scaled.reshape(-1, 3)
-        self._sizes = np.zeros(len(self._squares))
-        law, limit = np.ascontiguousarray(gains.law.step), _CLIPPED * gains.deviation
+        self.sizes = np.zeros(n_measurements // 3)
+        """Mean square of the last innovations over that expected, of each three, (p / 3,)."""
+        law, deviation = np.ascontiguousarray(gains.law.step), gains.deviation
         sensed, gain = (np.ascontiguousarray(each) for each in (gains.sensed, gains.gain))
-        states = self.state, self.calm, self.innovation, self.innovations
+        states = self.state, self.calm, self.innovation, self.innovations, self.sizes
         given = np.zeros(n_measurements), np.zeros(n_measurements, dtype=np.bool_)
-        steps = law, sensed, gain, limit, *states
+        steps = law, sensed, gain, deviation, *states
         self._advance = partial(advance_in_numpy, *steps)
         if not plain:
             self._advance = partial(entry_of(advance, *steps, *given, 1), *steps)
@@ -84,13 +83,6 @@ class Estimate:
         self.state *= share
         self.calm *= share
 
-    def sizes(self) -> list[float]:
-        """Mean square of the last innovations over that expected, of each three, (p / 3,)."""
-        np.divide(self.innovation, self.gains.deviation, out=self._scaled)
-        np.multiply(self._scaled, self._scaled, out=self._scaled)
-        np.add.reduce(self._squares, axis=1, out=self._sizes)
-        return [each / 3.0 for each in self._sizes.tolist()]
-
     def past_change(self) -> Floats:
         """
         Find what the innovations since tell about the displacements of the lag ago, (m,).
@@ -102,9 +94,9 @@ class Estimate:
 
 @kernel
 def advance(
-    step: Floats, sensed: Floats, gain: Floats, limit: Floats, state: Floats, calm: Floats,
-    innovation: Floats, innovations: Floats, beyond: Floats, is_known: NDArray[np.bool_],
-    n_periods: int,
+    step: Floats, sensed: Floats, gain: Floats, deviation: Floats, state: Floats, calm: Floats,
+    innovation: Floats, innovations: Floats, sizes: Floats, beyond: Floats,
+    is_known: NDArray[np.bool_], n_periods: int,
 ) -> None:  # fmt: skip
     """
     Move an estimate by its law, and correct it.
@@ -115,12 +107,14 @@ def advance(
         State after a step by that before, of each coordinate, (3, 3, m).
     sensed, gain
         Measurements by the state, (p, 3 m), and its correction by their innovations, (3 m, p).
-    limit
-        Largest innovation that corrects, (p,).
+    deviation
+        Standard deviation of each innovation, (p,).
     state, calm
         The state as it is told, and calm, (3, m), written.
     innovation, innovations
         Innovation (p,), and those of the last steps, limited, (l, p), written.
+    sizes
+        Mean square of each three innovations over that expected, (p / 3,), written.
     beyond, is_known
         Measurements, and which of them are there, (p,).
     n_periods
@@ -139,13 +133,16 @@ def advance(
         for r in range(p):
             innovations[k - 1, r] = innovations[k, r]
     used = innovations[-1]
+    sizes[:] = 0.0
     for r in range(p):
         expected = 0.0
         for j in range(3):
             for i in range(m):
                 expected += sensed[r, j * m + i] * state[j, i]
         innovation[r] = beyond[r] - expected if is_known[r] else 0.0
-        used[r] = min(max(innovation[r], -limit[r]), limit[r])
+        limit = _CLIPPED * deviation[r]
+        used[r] = min(max(innovation[r], -limit), limit)
+        sizes[r // 3] += (innovation[r] / deviation[r]) ** 2 / 3.0
     for j in range(3):
         for i in range(m):
             for r in range(p):
@@ -154,9 +151,9 @@ def advance(
 
 
 def advance_in_numpy(
-    step: Floats, sensed: Floats, gain: Floats, limit: Floats, state: Floats, calm: Floats,
-    innovation: Floats, innovations: Floats, beyond: Floats, is_known: NDArray[np.bool_],
-    n_periods: int,
+    step: Floats, sensed: Floats, gain: Floats, deviation: Floats, state: Floats, calm: Floats,
+    innovation: Floats, innovations: Floats, sizes: Floats, beyond: Floats,
+    is_known: NDArray[np.bool_], n_periods: int,
 ) -> None:  # fmt: skip
     """Move and correct an estimate as `advance`."""
     for _ in range(n_periods):
@@ -164,6 +161,8 @@ def advance_in_numpy(
             each[:] = (step * each).sum(axis=1)
     innovation[:] = np.where(is_known, beyond - sensed @ state.reshape(-1), 0.0)
     innovations[:-1] = innovations[1:]
+    limit = _CLIPPED * deviation
     np.clip(innovation, -limit, limit, out=innovations[-1])
+    sizes[:] = np.square(innovation / deviation).reshape(-1, 3).mean(axis=1)
     state += (gain @ innovations[-1]).reshape(state.shape)
     calm += PACE * (state - calm)

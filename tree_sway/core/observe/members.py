@@ -75,6 +75,17 @@ def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
     return Uncertainty(drag=math.hypot(DRAG, leaf))
 
 
+def most_of(found: Floats) -> Floats:
+    """Find the bounds of 80 % of the members, (2, ...), by what was found for each, (..., e)."""
+    ordered = np.sort(found, axis=-1)
+    rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
+    low, share = int(rank), rank - int(rank)
+    ends = []
+    for first, second in ((low, low + 1), (-low - 1, -low - 2)):
+        ends.append((1.0 - share) * ordered[..., first] + share * ordered[..., second])
+    return np.stack(ends)
+
+
 class Members:
     """
     Trees that the real one might be.
@@ -240,16 +251,12 @@ class Members:
             Lower and upper bound of what is beyond the corrected motion, (2, ...).
 
         """
-        found = readout[..., : self._count] @ self.errors
-        if scale is not None:
-            found = found + scale
-        found.sort(axis=-1)
-        rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
-        low, share = int(rank), rank - int(rank)
-        ends = []
-        for first, second in ((low, low + 1), (-low - 1, -low - 2)):
-            ends.append((1.0 - share) * found[..., first] + share * found[..., second])
-        return np.stack(ends)
+        found = self.differences(readout)
+        return most_of(found if scale is None else found + scale)
+
+    def differences(self, readout: Floats) -> Floats:
+        """Read each member beyond the corrected motion, (..., e), by each coordinate, (..., m)."""
+        return np.asarray(readout[..., : self._count] @ self.errors)
 
     def reset(self) -> None:
         """Begin anew from the motion of the model."""

@@ -100,7 +100,8 @@ class MotionSensor:
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
         self._is_measured = np.ones(9, dtype=np.bool_)
         self._sample, self._found = np.full((2, 9), np.nan)
-        self._ring = empty_ring()
+        self.ring = empty_ring()
+        """Its last samples, (1,) of `RING`."""
         self._reference: Floats | None = None
 
     @property
@@ -115,17 +116,17 @@ class MotionSensor:
 
     @cached_property
     def _clock(self) -> Floats:
-        return np.asarray(self._ring['clock'][0])
+        return np.asarray(self.ring['clock'][0])
 
     @cached_property
     def _keep(self) -> Callable[[float], int]:
         """Check and keep the sample in `_sample`, of a time."""
-        call = entry_of(keep_sample, self._ring, 0.0, self._sample, self._is_measured)
-        return lambda time: call(self._ring, time, self._sample, self._is_measured)
+        call = entry_of(keep_sample, self.ring, 0.0, self._sample, self._is_measured)
+        return lambda time: call(self.ring, time, self._sample, self._is_measured)
 
     @cached_property
     def _read(self) -> Callable[..., bool]:
-        return partial(entry_of(read_samples, self._ring, 0.0, 0.0, self._found), self._ring)
+        return partial(entry_of(read_samples, self.ring, 0.0, 0.0, self._found), self.ring)
 
     def offer(
         self,

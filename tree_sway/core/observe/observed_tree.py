@@ -28,7 +28,7 @@ from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.explained_motion import ExplainedMotion
-from tree_sway.core.observe.members import Members, uncertainty_of
+from tree_sway.core.observe.members import Members, most_of, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
@@ -299,7 +299,7 @@ class ObservedTree(SwaySimulator):
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""
-        energy, own = self.observer.energies[2:].tolist()
+        energy, own = self.observer.energies.tolist()
         if energy <= self._limit:
             return
         self.observer.limit(self._limit / max(energy, 1e-300))
@@ -356,10 +356,34 @@ class ObservedTree(SwaySimulator):
             A tree made without a band.
 
         """
+        tips = self._slopes_of_tips()
+        return self._members_with_band().band(tips if branches is None else tips[list(branches)])
+
+    def sway_band(self) -> Floats:
+        """
+        Where the distance of the real tree's highest tip from rest is for 80 % of the time.
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound less the distance of this tree in [m], (2,).
+
+        Raises
+        ------
+        ParameterError
+            A tree made without a band.
+
+        """
         members = self._members_with_band()
+        slopes = self._slopes_of_tips()[self.tree.branch_of_segment[self._highest]]
+        moved = slopes[:, : self.observer.count] @ self._corrected[0]
+        others = np.linalg.norm(moved[:, None] + members.differences(slopes), axis=0)
+        return most_of(others - np.linalg.norm(moved))
+
+    def _slopes_of_tips(self) -> Floats:
         if self._tips is None:
             self._tips = tip_slopes(self)
-        return members.band(self._tips if branches is None else self._tips[list(branches)])
+        return self._tips
 
     def load_band(self, per_rotation: Floats) -> Floats:
         """

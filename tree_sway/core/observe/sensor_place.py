@@ -39,6 +39,10 @@ class PlaceMotion(NamedTuple):
     displacement: Floats
     rotation: Floats
 
+    def first(self, count: int) -> PlaceMotion:
+        """Return those of the first coordinates alone, (3, count)."""
+        return PlaceMotion(self.displacement[:, :count], self.rotation[:, :count])
+
 
 def place_on(tree: Tree, where: str | float) -> SensorPlace:
     """

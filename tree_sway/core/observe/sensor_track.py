@@ -16,10 +16,11 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.alignment import align, Alignment, GRAVITY, LEAST_NOISE, TELLS_LITTLE
 from tree_sway.core.observe.motion_sensor import MotionSensor
+from tree_sway.core.observe.sample_ring import read_samples
 from tree_sway.core.observe.sensor_place import PlaceMotion
 
 LEARNING = 20.0
@@ -99,6 +100,47 @@ def find_beyond(
         beyond[i] += tilted - computed[i]
 
 
+@kernel
+def read_motion(
+    rings: Records, time: float, dt: float, computed: Floats, mounting: Floats, row: int,
+    kept: Floats, kept_computed: Floats, values: Floats, moved: Floats, beyond: Floats,
+) -> bool:  # fmt: skip
+    """
+    Read a sensor about a time, and keep what it and the model say.
+
+    Parameters
+    ----------
+    rings
+        Samples of the sensor, (1,) of `RING`.
+    time, dt
+        Time, and that of a step [s].
+    computed
+        Rows of the model, (12,).
+    mounting
+        As `find_beyond` takes it.
+    row
+        Row of the memory to write.
+    kept, kept_computed
+        Memory of samples (n, 9), and rows of the model (n, 12), written.
+    values, moved, beyond
+        The sample, and what `find_beyond` makes of it, (9,), written.
+
+    Returns
+    -------
+    bool
+        Whether there is a sample.
+
+    """
+    if not read_samples(rings, time, dt, values):
+        return False
+    for i in range(9):
+        kept[row, i] = values[i]
+    for i in range(ROWS):
+        kept_computed[row, i] = computed[i]
+    find_beyond(mounting, values, computed, moved, beyond)
+    return True
+
+
 class SensorTrack:
     """
     A sensor, what is known about it, and whether it is in use.
@@ -137,13 +179,16 @@ class SensorTrack:
         self._next_fit = round(LEARNING / dt)
         self._absent = self._agreed = 0.0
         self._is_refused = False
-        self._moved, self._beyond = np.zeros((2, 9))
+        self._values, self._moved = np.zeros((2, 9))
         self._fitted_rows = slice(0, 3)
 
     @cached_property
-    def _find_beyond(self) -> Callable[..., None]:
-        nine = self._moved
-        return entry_of(find_beyond, self._mounting, nine, np.zeros(ROWS), nine, nine)
+    def _read(self) -> Callable[..., bool]:
+        nine, twelve, memory = self._moved, np.zeros(ROWS), (self._sensed, self._computed)
+        return entry_of(
+            read_motion, self.sensor.ring, 0.0, 0.0, twelve, self._mounting, 0, *memory,
+            nine, nine, nine,
+        )  # fmt: skip
 
     def _uses(self) -> tuple[int, ...]:
         given = self.sensor.quantities
@@ -202,7 +247,7 @@ class SensorTrack:
         """Whether there was no sample for longer than networks delay one."""
         return self._absent > _ABSENT_AFTER
 
-    def read(self, time: float, computed: Floats) -> Floats | None:
+    def read(self, time: float, computed: Floats, beyond: Floats) -> bool:
         """
         Read the sensor at the time of a step, and learn from it.
 
@@ -212,24 +257,30 @@ class SensorTrack:
             Time in [s].
         computed
             Rows of the model in the wind alone, (12,).
+        beyond
+            Motion in the frame of the tree beyond the model's, (9,), written.
 
         Returns
         -------
-        Floats or None
-            Motion in the frame of the tree beyond the model's, (9,); None without a sample, or
-            before the mounting is known. The array is reused.
+        bool
+            Whether there is a sample, and its mounting is known.
 
         """
-        values = self.sensor.at(time, self._dt)
-        if values is None:
+        row = self._count % len(self._sensed)
+        memory = self._sensed, self._computed
+        if not self._read(
+            self.sensor.ring, time, self._dt, computed, self._mounting, row, *memory,
+            self._values, self._moved, beyond,
+        ):  # fmt: skip
             self._miss()
-            return None
+            return False
         self._absent = 0.0
-        self._learn(values, computed)
-        if self.alignment is None or self.alignment.problem:
-            return None
-        self._find_beyond(self._mounting, values, computed, self._moved, self._beyond)
-        return self._beyond
+        self._count += 1
+        if self._count == self._next_fit:
+            self._next_fit = math.ceil(_LATER * self._count)
+            self._align()
+            find_beyond(self._mounting, self._values, computed, self._moved, beyond)
+        return self.alignment is not None and not self.alignment.problem
 
     def _miss(self) -> None:
         self._absent += self._dt
@@ -237,14 +288,6 @@ class SensorTrack:
             if self.in_use:
                 self.sensor.counts.silent += 1
             self.in_use = False
-
-    def _learn(self, values: Floats, computed: Floats) -> None:
-        row = self._count % len(self._sensed)
-        self._sensed[row], self._computed[row] = values, computed
-        self._count += 1
-        if self._count == self._next_fit:
-            self._next_fit = math.ceil(_LATER * self._count)
-            self._align()
 
     def _align(self) -> None:
         n = min(self._count, len(self._sensed))

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, Protocol, TYPE_CHECKING
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -15,8 +15,22 @@ from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.model.drag_law import DragLaw
 
-if TYPE_CHECKING:
-    from tree_sway.core.run.branchwise import Tunable
+
+class Tunable(NamedTuple):
+    """
+    Arrays that a tuning writes, one number per oscillator, and their parts.
+
+    ``weight`` is the part of the stiffness by gravity, negative where it softens; ``inertia`` is 1
+    of modes; ``others`` are proportional to a power of the stiffness of the wood; ``loss`` is the
+    damping ratio of each over that of the tree.
+    """
+
+    stiffness: Floats
+    damping: Floats
+    inertia: Floats | float
+    weight: Floats
+    others: tuple[tuple[Floats, float], ...] = ()
+    loss: Floats | float = 1.0
 
 
 class Oscillators(Protocol):

@@ -42,16 +42,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.load_layouts import Banks, OSCILLATORS, Oscillators, WORK, Works
 from tree_sway.core.model.load_records import load_records
-from tree_sway.core.model.records import (
-    Banks,
-    Branches,
-    OSCILLATORS,
-    Oscillators,
-    WIDTH,
-    WORK,
-    Works,
-)
+from tree_sway.core.model.records import Branches, WIDTH
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import (
     fill_guards,
@@ -60,7 +53,8 @@ from tree_sway.core.oscillators.two_axis import (
     true_force,
     within_guard,
 )
-from tree_sway.core.run.branchwise import Branchwise, Tunable
+from tree_sway.core.run.bank import Tunable
+from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.setup.branch_loads import own_loads, set_air, wind_forces
 
 NOT_FINITE = -1

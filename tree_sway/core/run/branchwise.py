@@ -4,26 +4,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from tree_sway.core.arrays import Floats, Records
-
-
-class Tunable(NamedTuple):
-    """
-    Arrays that a tuning writes, one number per oscillator, and their parts.
-
-    ``weight`` is the part of the stiffness by gravity, negative where it softens; ``inertia`` is 1
-    of modes; ``others`` are proportional to a power of the stiffness of the wood; ``loss`` is the
-    damping ratio of each over that of the tree.
-    """
-
-    stiffness: Floats
-    damping: Floats
-    inertia: Floats | float
-    weight: Floats
-    others: tuple[tuple[Floats, float], ...] = ()
-    loss: Floats | float = 1.0
 
 
 class Branchwise:

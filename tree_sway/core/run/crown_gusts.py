@@ -28,13 +28,17 @@ from tree_sway.core.run.numpy_table import harmonics, Views, views_of
 from tree_sway.core.setup.numpy_branch_loads import into_slots
 from tree_sway.core.wind.crown_wind import CrownWind
 
+_TINY = 1e-300
+"""Added to a sum of squares that is divided by."""
+
 
 class CrownGusts:
     """The wind of a crown, and the model that is advanced in it."""
 
     def __init__(self, model: SwayModel, oscillators: Any, *, plain: bool = False) -> None:
         """Start without wind."""
-        self._delay, self._share = model.limb_delay, model.limb_share
+        self._delay = model.limb_delay
+        self._share = model.limb_share
         self.wind = CrownWind(float(model.limb_spread[0]), model.settings.crown_coherence)
         self._oscillators = oscillators
         if oscillators.loads is None:
@@ -42,7 +46,8 @@ class CrownGusts:
 
     def _bound(self, moments: Floats, *, plain: bool) -> Callable[..., None]:
         """Return `add_gusts`, or its numpy form, with the arrays of the model."""
-        oscillators, apart = self._oscillators, self.wind.record['apart'][0]
+        oscillators = self._oscillators
+        apart = self.wind.record['apart'][0]
         records = oscillators.record, oscillators.time_step, oscillators.instance
         if plain:
             table, time_step, instance = (views_of(each) for each in records)
@@ -53,7 +58,8 @@ class CrownGusts:
 
     def advance(self, x: float, y: float, z: float, per_speed_squared: float, dt: float) -> int:
         """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
-        apart, oscillators = self.wind.push(x, y, z, dt), self._oscillators
+        oscillators = self._oscillators
+        apart = self.wind.push(x, y, z, dt)
         if oscillators.loads is not None:
             into_slots(apart[self._delay], oscillators.loads['gust'])
             return int(oscillators.advance(x, y, z, per_speed_squared))
@@ -89,9 +95,14 @@ def add_gusts(
         `drag_law.drag_density` in [kg/m^3].
 
     """
-    table, whole, half = tables[0], time_steps[0].whole, time_steps[0].half
-    instance, mean, own, force = instances[0], room[0], room[1], room[2]
-    n_harmonics, n_modes = moments.shape[1], moments.shape[2]
+    table = tables[0]
+    instance = instances[0]
+    time_step = time_steps[0]
+    mean = room[0]
+    own = room[1]
+    force = room[2]
+    n_harmonics = moments.shape[1]
+    n_modes = moments.shape[2]
     _load(table, x + ax, y + ay, z + az, per_speed_squared, mean)
     force[:] = 0.0
     for delay in range(len(moments)):
@@ -101,7 +112,8 @@ def add_gusts(
             change = own[number] - mean[number]
             for mode in range(n_modes):
                 force[mode] += change * moments[delay, number, mode]
-    bent, upright = 0.0, 1e-300
+    bent = 0.0
+    upright = _TINY
     for mode in range(n_modes):
         at_rest = 0.0
         for number in range(n_harmonics):
@@ -109,9 +121,11 @@ def add_gusts(
         bent += at_rest * instance.wanted[mode] / table.stiffness[mode]
         upright += at_rest * at_rest / table.stiffness[mode]
     share = min(max(bent / upright, 0.0), 1.0)
+    whole = time_step.whole
     for mode in range(n_modes):
         # As in `step_instance`.
-        added = share * force[mode] / (1.0 - instance.diagonal[mode] * half[5, mode])
+        implicit = 1.0 - instance.diagonal[mode] * time_step.half[5, mode]
+        added = share * force[mode] / implicit
         instance.eta[mode] += (whole[2, mode] + whole[3, mode]) * added
         instance.rate[mode] += (whole[6, mode] + whole[7, mode]) * added
         instance.force[mode] += added
@@ -122,7 +136,6 @@ def add_gusts_in_numpy(
     x: float, y: float, z: float, ax: float, ay: float, az: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """Add to a step what the winds of the limbs do beside their mean, as `add_gusts`."""
-    shown = slice(moments.shape[2])
     most_pressure = float(table['most_pressure'])
 
     def load(wx: float, wy: float, wz: float) -> Floats:
@@ -132,20 +145,24 @@ def add_gusts_in_numpy(
         return dynamic_pressure * harmonics(wx / speed, wy / speed, wz / speed)
 
     mean = load(x + ax, y + ay, z + az)
-    force = np.zeros(moments.shape[2])
+    n_modes = moments.shape[2]
+    force = np.zeros(n_modes)
     for (more_x, more_y, more_z), by_harmonics in zip(apart.tolist(), moments, strict=True):
-        force += (load(x + more_x, y + more_y, z + more_z) - mean) @ by_harmonics
-    stiffness = table['stiffness'][shown]
-    at_rest = mean @ table['harmonics'][:, shown] / stiffness
-    bent = float(at_rest @ instance['wanted'][shown])
-    upright = 1e-300 + float(at_rest @ (at_rest * stiffness))
-    whole, half = time_step['whole'][:, shown], time_step['half'][:, shown]
+        own = load(x + more_x, y + more_y, z + more_z)
+        force += (own - mean) @ by_harmonics
+    stiffness = table['stiffness'][:n_modes]
+    at_rest = mean @ table['harmonics'][:, :n_modes]
+    static = at_rest / stiffness
+    bent = float(static @ instance['wanted'][:n_modes])
+    upright = _TINY + float(static @ at_rest)
+    share = min(max(bent / upright, 0.0), 1.0)
+    whole = time_step['whole'][:, :n_modes]
     # As in `step_instance`.
-    added = min(max(bent / upright, 0.0), 1.0) * force
-    added /= 1.0 - instance['diagonal'][shown] * half[5]
-    instance['eta'][shown] += (whole[2] + whole[3]) * added
-    instance['rate'][shown] += (whole[6] + whole[7]) * added
-    instance['force'][shown] += added
+    implicit = 1.0 - instance['diagonal'][:n_modes] * time_step['half'][5, :n_modes]
+    added = share * force / implicit
+    instance['eta'][:n_modes] += (whole[2] + whole[3]) * added
+    instance['rate'][:n_modes] += (whole[6] + whole[7]) * added
+    instance['force'][:n_modes] += added
 
 
 @part

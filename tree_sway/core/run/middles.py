@@ -10,11 +10,12 @@ from functools import cached_property, partial
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Singles
-from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.records import Blocks, Instances, Segments
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.placing import GIVEN, place, room_for
 from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.core.vector import plus_times, put, times, Vector, vector
 
 
 class Middles:
@@ -32,7 +33,8 @@ class Middles:
 
     def __init__(self, bank: Bank, mass: Floats, length: Floats) -> None:
         self._bank = bank
-        self._root_mass, self._half_length = np.sqrt(mass), 0.5 * length
+        self._root_mass = np.sqrt(mass)
+        self._half_length = 0.5 * length
         self._poses = np.zeros((len(mass), 7))
         self.tangent = np.zeros(3 * len(mass))
         """Directions of the segments at the first pose of the last `fill`, (3 n,)."""
@@ -82,15 +84,23 @@ def _fill(
             instances, shapes, segments, blocks, bases, 1.0, 0.0, 1.0, room, rotations[k],
             origin, poses,
         )  # fmt: skip
-        middles = out[k]
         for i in range(len(half_length)):
-            x, y, z, w = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
-            along = 1.0 - 2.0 * (y * y + z * z)
-            aside = 2.0 * (x * y + w * z)
-            up = 2.0 * (x * z - w * y)
-            half = half_length[i]
-            middles[3 * i] = root_mass[i] * (poses[i, 0] + half * along)
-            middles[3 * i + 1] = root_mass[i] * (poses[i, 1] + half * aside)
-            middles[3 * i + 2] = root_mass[i] * (poses[i, 2] + half * up)
+            _write_middle(poses[i], root_mass[i], half_length[i], out[k], 3 * i)
             if k == 0:
-                tangent[3 * i], tangent[3 * i + 1], tangent[3 * i + 2] = along, aside, up
+                put(_axis(poses[i]), tangent, 3 * i)
+
+
+@part
+def _axis(pose: Floats) -> Vector:
+    """Return the direction of the x axis of a pose."""
+    x, y, z, w = pose[3], pose[4], pose[5], pose[6]
+    return 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
+
+
+@part
+def _write_middle(
+    pose: Floats, root_mass: float, half_length: float, middles: Floats, first: int
+) -> None:
+    """Write the middle of a segment, times the square root of its mass."""
+    middle = plus_times(vector(pose, 0), half_length, _axis(pose))
+    put(times(root_mass, middle), middles, first)

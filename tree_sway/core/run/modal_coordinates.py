@@ -16,7 +16,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.run.branchwise import Tunable
+from tree_sway.core.run.bank import Tunable
 
 FARTHEST = 2.0
 """Largest rotation of a branch on its parent in [rad]."""

@@ -43,20 +43,6 @@ def take_four(
         slots[row : row + 4, slot + offset] = numbers[first : first + 4]
 
 
-def write_past_caches(of: Any, into: Any) -> None:
-    """
-    Copy an array (n,) to memory that is not read soon, without reading it first.
-
-    Ordinary writes to memory beyond the caches read it first. `settle` makes the data visible to
-    other threads.
-    """
-    into[:] = of
-
-
-def settle() -> None:
-    """Wait until all written data is visible to other threads."""
-
-
 def shapes_together(shapes: Floats) -> Any:
     """Lay shapes (k, n) out for `add_shapes`: (ceil(n / 64), k, 64), in single precision."""
     n_shapes, n_coordinates = shapes.shape
@@ -76,19 +62,20 @@ def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
 
 if not WHY_PLAIN:
     from numba.core import cgutils, types
-    from numba.extending import intrinsic, lower_builtin, overload, type_callable
+    from numba.extending import lower_builtin, type_callable
 
     llvm = cgutils.ir
     _VECTOR = llvm.VectorType(llvm.DoubleType(), 4)
     _INTEGER = llvm.IntType(32)
 
-    def _element(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
+    def element_at(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
+        """Return the address of an element of an array."""
         array = context.make_array(kind)(context, builder, array)
         return cgutils.get_item_pointer(context, builder, kind, array, index)
 
     def _place(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
         """Return the address of four numbers."""
-        element = _element(context, builder, kind, array, *index)
+        element = element_at(context, builder, kind, array, *index)
         return builder.bitcast(element, _VECTOR.as_pointer())
 
     def _turned(builder: Any, rows: list[Any]) -> tuple[Any, ...]:
@@ -110,7 +97,7 @@ if not WHY_PLAIN:
             mixed(upper_odd, lower_odd, back),
         )
 
-    def _generated(function: Any, typed: Any) -> Any:
+    def generated(function: Any, typed: Any) -> Any:
         """Generate code for a function, which compiles faster than a call of an intrinsic."""
         type_callable(function)(lambda context: typed)
         return lower_builtin(function, types.VarArg(types.Any))  # type: ignore[attr-defined]
@@ -142,34 +129,19 @@ if not WHY_PLAIN:
         return generate
 
     _AT, _ROWS = 2 * (types.intp,), 5 * (types.intp,)
-    _generated(
+    generated(
         put_four,
         lambda slots, row, slot, rows, a, b, c, d, first: types.none(slots, *_AT, rows, *_ROWS),
     )(_carried(is_put=True))
-    _generated(
+    generated(
         take_four,
         lambda rows, a, b, c, d, first, slots, row, slot: types.none(rows, *_ROWS, slots, *_AT),
     )(_carried(is_put=False))
 
-    _LINE = llvm.VectorType(llvm.DoubleType(), 8)
-
-    @intrinsic
-    def _write_line(typing, into, at, of, row):  # type: ignore[no-untyped-def]
-        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            kinds, line = signature.args, _LINE.as_pointer()
-            target = builder.bitcast(_element(context, builder, kinds[0], *values[:2]), line)
-            source = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
-            written = builder.store(builder.load(source, align=8), target, align=64)
-            note = builder.module.add_metadata([_INTEGER(1)])
-            written.set_metadata('nontemporal', note)
-            return context.get_dummy_value()
-
-        return types.none(into, types.intp, of, types.intp), generate
-
     _SINGLES = llvm.VectorType(llvm.FloatType(), 16)
     _DOUBLES = llvm.VectorType(llvm.DoubleType(), 16)
 
-    @_generated(add_shapes, lambda table, block, by, to: types.none(table, types.intp, by, to))
+    @generated(add_shapes, lambda table, block, by, to: types.none(table, types.intp, by, to))
     def _add(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kinds = signature.args
         table, block, amounts, target = values
@@ -177,11 +149,11 @@ if not WHY_PLAIN:
         sums = [cgutils.alloca_once_value(builder, zeros) for _ in range(TOGETHER // 16)]
         n_shapes = context.make_array(kinds[2])(context, builder, amounts).nitems
         with cgutils.for_range(builder, n_shapes) as loop:
-            amount = builder.load(_element(context, builder, kinds[2], amounts, loop.index))
+            amount = builder.load(element_at(context, builder, kinds[2], amounts, loop.index))
             in_first = builder.insert_element(zeros, amount, _INTEGER(0))
             first_for_all = llvm.Constant(llvm.VectorType(_INTEGER, 16), None)
             in_all = builder.shuffle_vector(in_first, zeros, first_for_all)
-            shape = _element(context, builder, kinds[0], table, block, loop.index, block.type(0))
+            shape = element_at(context, builder, kinds[0], table, block, loop.index, block.type(0))
             shape = builder.bitcast(shape, _SINGLES.as_pointer())
             for sixteen, total in enumerate(sums):
                 read = builder.load(builder.gep(shape, [block.type(sixteen)]), align=64)
@@ -191,30 +163,7 @@ if not WHY_PLAIN:
         begin = builder.mul(block, block.type(TOGETHER))
         for sixteen, total in enumerate(sums):
             first = builder.add(begin, block.type(16 * sixteen))
-            where = _element(context, builder, kinds[3], target, first)
+            where = element_at(context, builder, kinds[3], target, first)
             written = builder.bitcast(where, _DOUBLES.as_pointer())
             builder.store(builder.fpext(builder.load(total), _DOUBLES), written, align=8)
         return context.get_dummy_value()
-
-    @_generated(settle, lambda: types.none())
-    def _fence(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        builder.fence('seq_cst')
-        return context.get_dummy_value()
-
-    @overload(write_past_caches)
-    def _write_past_caches(of, into):  # type: ignore[no-untyped-def]
-        def write(of, into):  # type: ignore[no-untyped-def]
-            count, address = len(of), into.ctypes.data
-            # Lines of a cache begin at multiples of 64 bytes.
-            first = count
-            if address % 8 == 0:
-                first = min((64 - address % 64) % 64 // 8, count)
-            for number in range(first):
-                into[number] = of[number]
-            last = first + (count - first) // 8 * 8
-            for number in range(first, last, 8):
-                _write_line(into, number, of, number)
-            for number in range(last, count):
-                into[number] = of[number]
-
-        return write

@@ -21,15 +21,7 @@ from tree_sway.core.checks import (
     whole,
 )
 from tree_sway.core.model.drag_law import drag_density
-from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.model.tree_state import (
-    digest_of,
-    fill_memory,
-    refuse_other_state,
-    TreeState,
-    values_of,
-)
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.tree.segment_frame import ends_of_poses
@@ -37,6 +29,8 @@ from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
+    from tree_sway.core.model.state_basis import StateBasis
+    from tree_sway.core.model.tree_state import TreeState
     from tree_sway.core.run.clamp_watch import ClampWatch
     from tree_sway.core.run.crown_gusts import CrownGusts
     from tree_sway.core.run.pushes import Spring, Touch
@@ -204,6 +198,8 @@ class SwaySimulator:
 
     def digest(self) -> str:
         """Digest of tree, species, settings and tuning."""
+        from tree_sway.core.model.tree_state import digest_of
+
         tuned = () if self._tuning is None else self._tuning.changes
         return digest_of(self.tree, self.models[0].species, self.settings, *tuned)
 
@@ -214,6 +210,8 @@ class SwaySimulator:
 
     def state(self) -> TreeState:
         """Return a copy of the state."""
+        from tree_sway.core.model.tree_state import TreeState, values_of
+
         return TreeState(self.tree.name, self.digest(), self.model, values_of(self._memory()))
 
     def set_state(self, state: TreeState) -> None:
@@ -223,6 +221,8 @@ class SwaySimulator:
         Raises a `StateError` for a different tree or model, or a state that is not finite, and
         keeps the present state.
         """
+        from tree_sway.core.model.tree_state import fill_memory, refuse_other_state
+
         refuse_other_state(state, self.state())
         fill_memory(self._memory(), state.values)
         self._dt = math.nan  # the state determines which coordinates the step solves

@@ -21,8 +21,8 @@ from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.records import Blocks, Instance, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.run.past_caches import settle, write_past_caches
 from tree_sway.core.run.placing import NONE, place
-from tree_sway.core.run.simd import settle, write_past_caches
 from tree_sway.core.run.table_model import step_instance
 
 

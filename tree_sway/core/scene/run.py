@@ -153,7 +153,9 @@ class Run:
 
     def lacks_wind(self, to: int, *, delay: float = 0.0) -> bool:
         """
-        Whether the next sample of a regular sensor acts before a time, and has not arrived.
+        Whether the next sample of a sensor acts before a time, and has not arrived.
+
+        It is expected a period of the sensor after the last one, where that is known.
 
         Parameters
         ----------
@@ -163,11 +165,19 @@ class Run:
             Delay of the wind in [s], as for `advance`.
 
         """
-        period, newest = self._wind.period, self.newest
-        if newest is None or period is None:
+        if self.newest is None:
             return False
-        expected = self._seconds(newest) + self._wind.lateness + _EARLIEST * period
+        period = self._wind.period or 0.0
+        expected = self._seconds(self.newest) + self._wind.lateness + _EARLIEST * period
         return self._seconds(to) - delay >= expected
+
+    def behind(self, delay: float) -> float:
+        """
+        Time in [s] by which the wind of a step was measured before the end of the step.
+
+        A sample acts after the delay of the wind in [s] and a period more, when the next is known.
+        """
+        return delay + self._wind.lateness + (self._wind.period or 0.0)
 
     def request(
         self, action: Callable[[], object], refused: Refused = lambda reason: None
@@ -293,9 +303,7 @@ class Run:
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
-            # A sample acts a period after its time, when the next one is known.
-            behind = delay + self._wind.lateness + (self._wind.period or 0.0)
-            self._starting(end * 1e-9 - behind)
+            self._starting(end * 1e-9 - self.behind(delay))
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:

@@ -167,6 +167,7 @@ class Scene(PlacedTrees):
         rate: float,
         *,
         is_smoothed: bool = False,
+        has_band: bool = False,
     ) -> ObservedTree:
         """
         Make the simulator of the one tree with motion sensors on the real one.
@@ -175,7 +176,7 @@ class Scene(PlacedTrees):
         ----------
         settings
             Settings, as for `simulator`.
-        at, rate, is_smoothed
+        at, rate, is_smoothed, has_band
             Arguments of `ObservedTree`.
 
         Raises
@@ -197,6 +198,7 @@ class Scene(PlacedTrees):
             at=at,
             rate=rate,
             is_smoothed=is_smoothed,
+            has_band=has_band,
         )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:

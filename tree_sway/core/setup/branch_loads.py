@@ -16,7 +16,8 @@ from __future__ import annotations
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.drag_law import drag
-from tree_sway.core.model.records import Branch, Branches, Load, Loads, WIDTH, Work, Works
+from tree_sway.core.model.load_layouts import Load, Loads, Work, Works
+from tree_sway.core.model.records import Branch, Branches, WIDTH
 from tree_sway.core.rotation import product, quaternion, rotated
 from tree_sway.core.vector import (
     column,
@@ -34,6 +35,8 @@ from tree_sway.core.vector import (
     vector,
 )
 
+_SIXTH = 1.0 / 6.0
+
 
 @part
 def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
@@ -44,11 +47,15 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     keeps its distance from the parent's base, as the end of a rod: where it is displaced by s
     across an arm a, it comes closer by ``|s|^2 / (2 |a|)``.
     """
-    work[0].velocity[:], work[0].orientation[:] = 0.0, 0.0
+    work[0].velocity[:] = 0.0
+    work[0].orientation[:] = 0.0
     work[0].orientation[0] = 1.0
     for b in range(1, len(branches)):
-        branch, own, on = branches[b], work[b], work[branches[b].parent]
-        parent, rest_arm = branches[branch.parent], vector(branch.arm, 0)
+        branch = branches[b]
+        own = work[b]
+        parent = branches[branch.parent]
+        on = work[branch.parent]
+        rest_arm = vector(branch.arm, 0)
         shift, rotation = _of_base(branch, parent, x)
         shift_rate, rotation_rate = _of_base(branch, parent, v)
         shortening = branch.per_arm * dot(shift, shift)
@@ -60,7 +67,8 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
 
         # In the frame of the parent's base, then in that of the base itself.
         parent_spin = vector(on.velocity, 3)
-        carried = plus(plus(vector(on.velocity, 0), cross(parent_spin, arm)), shift_rate)
+        carried = plus(vector(on.velocity, 0), cross(parent_spin, arm))
+        carried = plus(carried, shift_rate)
         velocity = plus_times(carried, -shortening_rate, rest_arm)
         spin = plus(parent_spin, _spin(rotation, rotation_rate))
         put(turned_back(rotation, velocity), own.velocity, 0)
@@ -71,9 +79,11 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
 @part
 def _of_base(branch: Branch, parent: Branch, amounts: Floats) -> tuple[Vector, Vector]:
     """Find displacement and rotation vector of a base by amounts of its parent's coordinates."""
-    shift, rotation = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    shift = (0.0, 0.0, 0.0)
+    rotation = (0.0, 0.0, 0.0)
     for c in range(parent.n_coordinates):
-        amount, twist = amounts[parent.coordinate + c], branch.twist[c]
+        amount = amounts[parent.coordinate + c]
+        twist = branch.twist[c]
         shift = plus_times(shift, amount, vector(twist, 0))
         rotation = plus_times(rotation, amount, vector(twist, 3))
     return plus(shift, cross(rotation, vector(branch.base, 0))), rotation
@@ -88,11 +98,7 @@ def _spin(rotation: Vector, rate: Vector) -> Vector:
     """
     first = cross(rotation, rate)
     second = cross(rotation, first)
-    return (
-        rate[0] + 0.5 * first[0] + second[0] / 6.0,
-        rate[1] + 0.5 * first[1] + second[1] / 6.0,
-        rate[2] + 0.5 * first[2] + second[2] / 6.0,
-    )
+    return plus_times(plus_times(rate, 0.5, first), _SIXTH, second)
 
 
 @part
@@ -107,12 +113,14 @@ def _orient(parent: Floats, rotation: Vector, orientation: Floats) -> None:
 def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
     """Write the wind [m/s] of every branch in the turned frame of its base."""
     for b in range(len(work)):
-        group, j, q = loads[b // WIDTH], b % WIDTH, work[b].orientation
+        group = loads[b // WIDTH]
+        j = b % WIDTH
+        q = work[b].orientation
         speed = group.speed[j]
-        group.air_velocity[0, j], group.air_velocity[1, j], group.air_velocity[2, j] = rotated(
-            q[0], -q[1], -q[2], -q[3], speed * (wx + group.gust[0, j]),
-            speed * (wy + group.gust[1, j]), speed * (wz + group.gust[2, j]),
-        )  # fmt: skip
+        x = speed * (wx + group.gust[0, j])
+        y = speed * (wy + group.gust[1, j])
+        z = speed * (wz + group.gust[2, j])
+        put_column(rotated(q[0], -q[1], -q[2], -q[3], x, y, z), group.air_velocity, j)
         for k in range(6):
             group.velocity[k, j] = work[b].velocity[k]
 
@@ -135,7 +143,7 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     for block in range(len(loads)):
         group = loads[block]
         _move_pieces(group)
-        impulse, compliance = group.drag_impulse, group.compliance
+        impulse = group.drag_impulse
         for j in range(WIDTH):
             rotation = column(group.rotation, 0, j)
             # The wind less the motion of the base, of the branch itself, and of its spin.
@@ -143,18 +151,23 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
             spin = turned_back(rotation, column(group.velocity, 3, j))
             air = minus(turned_back(rotation, wind), column(group.moment, 0, j))
             air = minus(air, _transposed_times(group.coupling, j, spin))
-            air = plus_times(air, compliance[j], column(impulse, 0, j))
+            air = plus_times(air, group.compliance[j], column(impulse, 0, j))
             fx, fy, fz, per_velocity = _drag_at(group, j, per_speed_squared, air)
+            force = fx, fy, fz
             put_column(times(per_velocity, air), impulse, j)
-            put_column((fx, fy, fz), group.own_force, j)
-            put_column(turned_by(rotation, (fx, fy, fz)), group.force, j)
+            put_column(force, group.own_force, j)
+            put_column(turned_by(rotation, force), group.force, j)
 
 
 @part
 def _move_pieces(group: Load) -> None:
     """Find rotation and velocity of the loaded pieces; ``moment`` is scratch for the latter."""
-    mode, damping, x, v = group.load_rotation, group.damping_mode, group.x, group.v
-    rotation, velocity = group.rotation, group.moment
+    mode = group.load_rotation
+    damping = group.damping_mode
+    x = group.x
+    v = group.v
+    rotation = group.rotation
+    velocity = group.moment
     for j in range(WIDTH):
         for k in range(3):
             rotation[k, j] = mode[0, k, j] * x[0, j] + mode[1, k, j] * x[1, j]
@@ -171,11 +184,13 @@ def _drag_at(
     group: Load, j: int, per_speed_squared: float, air: Vector
 ) -> tuple[float, float, float, float]:
     """Return the force on a branch in air, and the force per velocity, as `drag_law.drag`."""
-    p, v = group.projector, group.v
+    p = group.projector
+    v = group.v
+    c = per_speed_squared * group.area[j]
+    spread = group.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j])
     return drag(
         p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
-        per_speed_squared * group.area[j], group.compliance[j], air[0], air[1], air[2],
-        group.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
+        c, group.compliance[j], air[0], air[1], air[2], spread,
     )  # fmt: skip
 
 
@@ -183,20 +198,18 @@ def _drag_at(
 def _times(matrix: Floats, j: int, v: Vector) -> Vector:
     """Multiply the matrix (3, 3) of a slot by a vector."""
     return (
-        matrix[0, 0, j] * v[0] + matrix[0, 1, j] * v[1] + matrix[0, 2, j] * v[2],
-        matrix[1, 0, j] * v[0] + matrix[1, 1, j] * v[1] + matrix[1, 2, j] * v[2],
-        matrix[2, 0, j] * v[0] + matrix[2, 1, j] * v[1] + matrix[2, 2, j] * v[2],
+        dot(column(matrix[0], 0, j), v),
+        dot(column(matrix[1], 0, j), v),
+        dot(column(matrix[2], 0, j), v),
     )
 
 
 @part
 def _transposed_times(matrix: Floats, j: int, v: Vector) -> Vector:
     """Multiply the transpose of the matrix (3, 3) of a slot by a vector."""
-    return (
-        matrix[0, 0, j] * v[0] + matrix[1, 0, j] * v[1] + matrix[2, 0, j] * v[2],
-        matrix[0, 1, j] * v[0] + matrix[1, 1, j] * v[1] + matrix[2, 1, j] * v[2],
-        matrix[0, 2, j] * v[0] + matrix[1, 2, j] * v[1] + matrix[2, 2, j] * v[2],
-    )
+    total = times(v[0], column(matrix[0], 0, j))
+    total = plus_times(total, v[1], column(matrix[1], 0, j))
+    return plus_times(total, v[2], column(matrix[2], 0, j))
 
 
 @part
@@ -209,12 +222,13 @@ def own_loads(loads: Loads) -> None:
     """
     for block in range(len(loads)):
         group = loads[block]
-        force, mode, lever, load = group.force, group.load_mode, group.chord_lever, group.load
+        mode = group.load_mode
+        load = group.load
         for j in range(WIDTH):
-            fx, fy, fz = force[0, j], force[1, j], force[2, j]
-            load[0, j] = lever[0, j] * fx + lever[1, j] * fy + lever[2, j] * fz
-            load[1, j] = mode[0, 0, j] * fx + mode[0, 1, j] * fy + mode[0, 2, j] * fz
-            load[2, j] = mode[1, 0, j] * fx + mode[1, 1, j] * fy + mode[1, 2, j] * fz
+            force = column(group.force, 0, j)
+            load[0, j] = dot(column(group.chord_lever, 0, j), force)
+            load[1, j] = dot(column(mode[0], 0, j), force)
+            load[2, j] = dot(column(mode[1], 0, j), force)
 
 
 @part
@@ -239,13 +253,15 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     for b in range(len(branches)):
         _begin(branches[b], work[b], loads[b // WIDTH], b % WIDTH, moment)
     for b in range(len(branches) - 1, 0, -1):
-        branch, own = branches[b], work[b]
-        rotation, shift = vector(own.rotation, 0), vector(own.displacement, 0)
+        branch = branches[b]
+        own = work[b]
+        rotation = vector(own.rotation, 0)
+        shift = vector(own.displacement, 0)
         force = turned_by(rotation, vector(own.wrench, 0))
         couple = turned_by(rotation, vector(own.wrench, 3))
         total = work[branch.parent].wrench
-        put(plus(vector(total, 0), force), total, 0)
         at_parent = plus(couple, cross(vector(own.arm, 0), force))
+        put(plus(vector(total, 0), force), total, 0)
         put(plus(vector(total, 3), at_parent), total, 3)
 
         # `outward_pass` transposed: the shortening of the arm, the spin, and the base's motion.
@@ -264,7 +280,8 @@ def _begin(branch: Branch, own: Work, group: Load, j: int, moment: Floats) -> No
     """Begin moments, wrench and force of a branch with the wind's own."""
     for c in range(branch.n_coordinates):
         moment[branch.coordinate + c] = group.load[1 + c, j]
-    force, q = column(group.force, 0, j), own.orientation
+    force = column(group.force, 0, j)
+    q = own.orientation
     put(force, own.wrench, 0)
     put(column(group.moment, 0, j), own.wrench, 3)
     put(rotated(q[0], q[1], q[2], q[3], force[0], force[1], force[2]), own.force, 0)
@@ -275,26 +292,20 @@ def _spin_transposed(rotation: Vector, couple: Vector) -> Vector:
     """Return what a couple does per unit of a rotation vector: `_spin` transposed."""
     first = cross(couple, rotation)
     second = cross(first, rotation)
-    return (
-        couple[0] + 0.5 * first[0] + second[0] / 6.0,
-        couple[1] + 0.5 * first[1] + second[1] / 6.0,
-        couple[2] + 0.5 * first[2] + second[2] / 6.0,
-    )
+    return plus_times(plus_times(couple, 0.5, first), _SIXTH, second)
 
 
 @part
 def _load_own(group: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
-    mode, load = group.load_mode, group.load
-    for j in range(WIDTH):
-        force = column(group.own_force, 0, j)
-        load[1, j] = dot(column(mode[0], 0, j), force)
-        load[2, j] = dot(column(mode[1], 0, j), force)
-        couple = _times(group.coupling, j, force)
-        put_column(turned_by(column(group.rotation, 0, j), couple), group.moment, j)
-    for c in range(2, group.n_rows):
+    mode = group.load_mode
+    for c in range(group.n_rows):
         for j in range(WIDTH):
-            load[1 + c, j] = dot(column(mode[c], 0, j), column(group.own_force, 0, j))
+            force = column(group.own_force, 0, j)
+            group.load[1 + c, j] = dot(column(mode[c], 0, j), force)
+    for j in range(WIDTH):
+        couple = _times(group.coupling, j, column(group.own_force, 0, j))
+        put_column(turned_by(column(group.rotation, 0, j), couple), group.moment, j)
 
 
 @fused
@@ -309,9 +320,12 @@ def wind_moments(
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):
-        group, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
+        group = loads[b // WIDTH]
+        j = b % WIDTH
+        first = branches[b].coordinate
         for c in range(branches[b].n_coordinates):
-            group.x[c, j], group.v[c, j] = x[i + c], v[i + c]
+            group.x[c, j] = x[first + c]
+            group.v[c, j] = v[first + c]
     set_air(work, loads, wx, wy, wz)
     wind_forces(loads, per_speed_squared)
     bent_loads(branches, work, loads, moment)

@@ -16,6 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.setup.load_derivatives import SYMMETRIC
 from tree_sway.core.setup.modes import Modes
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
@@ -50,20 +51,23 @@ def gust_responses(
 
     """
     circular = modes.circular
-    swept = np.geomspace(circular[0] / _BEYOND, _BEYOND * circular[-1], _COUNT)[:, None]
+    slowest, fastest = circular[0], circular[-1]
+    identity = np.eye(len(circular))
+    swept = np.geomspace(slowest / _BEYOND, _BEYOND * fastest, _COUNT)[:, None]
     # Root of the spectrum w^(-5/3) over bands of width w, constant below the slowest mode.
-    gusts = np.maximum(swept, circular[0])[:, :, None] ** (-1.0 / 3.0)
-    free = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
-    winds = (np.array([np.cos(azimuth), np.sin(azimuth), 0.0]) for azimuth in _AZIMUTHS)
+    gusts = np.maximum(swept, slowest) ** (-1.0 / 3.0)
+    in_vacuum = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
+    undamped = in_vacuum[:, :, None] * identity
+    winds = [np.array([np.cos(azimuth), np.sin(azimuth), 0.0]) for azimuth in _AZIMUTHS]
     found = []
     for load, air in gust_slopes(branches, modes.shapes, *winds):
         for speed in _SPEEDS:
-            system = 1j * swept[:, :, None] * (drag_density(speed, *law) * speed * air)
-            system += free[:, :, None] * np.eye(len(circular))
-            responses = gusts * np.linalg.solve(system, load)
-            parts = np.concatenate([responses.real, responses.imag]).swapaxes(0, 1)
-            flat = parts.reshape(len(circular), -1)
-            found.append(flat / np.linalg.norm(tips @ flat))
+            air_damping = drag_density(speed, *law) * speed * air
+            system = 1j * swept[:, :, None] * air_damping + undamped
+            responses = gusts[:, :, None] * np.linalg.solve(system, load)
+            parts = np.concatenate([responses.real, responses.imag])
+            amounts = parts.swapaxes(0, 1).reshape(len(circular), -1)
+            found.append(amounts / np.linalg.norm(tips @ amounts))
     return np.hstack(found)
 
 
@@ -76,20 +80,29 @@ def gust_slopes(
     Yielded are slopes by the wind, (m, 3), and, with the opposite sign, by the rates of the
     shapes, (m, m).
     """
-    m, bases = shapes.shape[1], base_motion(branches, shapes)
-    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
-    pushed = (at + own_motion(branches, 'load_mode', shapes)).reshape(-1, m).T
-    at += own_motion(branches, 'damping_mode', shapes)
+    n_shapes = shapes.shape[1]
+    base = base_motion(branches, shapes)
+    at_rest = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
+    pushed = at_rest + own_motion(branches, 'load_mode', shapes)
+    damped = at_rest + own_motion(branches, 'damping_mode', shapes)
+    work = pushed.reshape(-1, n_shapes).T
+    speed = branches['speed'][:, None, None]
     for ahead in winds:
         slope = drag_slopes(branches, ahead)
-        load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
-        yield load, pushed @ (slope @ at).reshape(-1, m)
+        by_wind = work @ (speed * slope).reshape(-1, 3)
+        by_rates = work @ (slope @ damped).reshape(-1, n_shapes)
+        yield by_wind, by_rates
 
 
 def drag_slopes(branches: Records, ahead: Floats) -> Floats:
-    """Slopes of drag by the velocity of the air in a wind of 1 kg/m^3, (b, 3, 3)."""
-    projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+    """
+    Slopes of drag by the velocity of the air in a wind u of 1 kg/m^3, (b, 3, 3).
+
+    Of the force ``A |u| P u``, with ``|u|^2 = u . P u``, it is ``A (|u| P + P u (P u)^T / |u|)``.
+    """
+    projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
     across = projector @ ahead
     speed = np.sqrt(np.maximum(across @ ahead, 1e-12))[:, None, None]
-    slope = speed * projector + across[:, :, None] * across[:, None, :] / speed
-    return np.asarray((branches['area'] * branches['speed'])[:, None, None] * slope)
+    outer = across[:, :, None] * across[:, None, :]
+    area = (branches['area'] * branches['speed'])[:, None, None]
+    return np.asarray(area * (speed * projector + outer / speed))

@@ -18,8 +18,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.model.load_layouts import WORK
 from tree_sway.core.model.load_records import load_records
-from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
 from tree_sway.core.setup.load_derivatives import LoadSlopes, SYMMETRIC
 from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
@@ -128,16 +128,17 @@ class WindMoments:
     def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
         """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
         branches = self.branches
+        n_components = 3 * len(branches)
         base = base_motion(branches, shapes)
         moved = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
         moved += own_motion(branches, 'load_mode', shapes)
         projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
-        per_velocity = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
-        force = per_velocity[:, None] * across
-        n_components = 3 * len(branches)
-        return np.asarray(force.reshape(n_components, -1).T @ moved.reshape(n_components, -1))
+        area = branches['area'] * branches['speed'] ** 2
+        per_velocity = area[:, None] * np.sqrt(square)
+        force = (per_velocity[:, None] * across).reshape(n_components, -1)
+        return np.asarray(force.T @ moved.reshape(n_components, -1))
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""
@@ -164,10 +165,12 @@ def static_responses(
     at_rest = np.zeros((len(level_winds), moments.n))
     small = solve(moments.at_poses(at_rest, level_winds).T).T
     pressures = np.tile([pressure(speed) for speed in _SPEEDS], len(level_winds))[:, None]
-    far = _equilibria(moments, solve, np.repeat(level_winds, len(_SPEEDS), axis=0), pressures)
+    strong_winds = np.repeat(level_winds, len(_SPEEDS), axis=0)
+    far = _equilibria(moments, solve, strong_winds, pressures)
     # Where air has no pressure, none of these winds bends the tree.
     per_pressure = far / np.maximum(pressures, 1e-300)
-    aslant = [solve(moments(at_rest[0], at_rest[0], wind)) for wind in _inclined_winds()]
+    rest = np.zeros(moments.n)
+    aslant = [solve(moments(rest, rest, wind)) for wind in _inclined_winds()]
     return np.vstack([small, per_pressure, aslant]).T
 
 
@@ -191,9 +194,12 @@ def _equilibria(
 
 def _inclined_winds() -> list[Floats]:
     """Return directions of winds that fall and rise, straight and aslant."""
-    aslant, straight = _AZIMUTHS[::2], _AZIMUTHS[:1]
-    azimuths_of = ((-0.5, straight), (-0.25, aslant), (0.25, aslant), (0.5, straight))
-    return [_direction(each, rise * np.pi) for rise, azimuths in azimuths_of for each in azimuths]
+    winds = []
+    for elevation in (-90.0, -45.0, 45.0, 90.0):
+        is_vertical = abs(elevation) == 90.0
+        azimuths = _AZIMUTHS[:1] if is_vertical else _AZIMUTHS[::2]
+        winds += [_direction(azimuth, np.radians(elevation)) for azimuth in azimuths]
+    return winds
 
 
 def _direction(azimuth: float, elevation: float) -> Floats:

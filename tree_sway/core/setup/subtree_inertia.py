@@ -25,16 +25,18 @@ def subtree_inertia(tree: Tree, reduction: Reduction) -> Floats:
     It is never less than the diagonal of the mass matrix. Both axes of a branch with children have
     one inertia, so that it does not depend on the choice of the axes.
     """
-    mass, stiffness = reduction.mass.tocsc(), reduction.stiffness.tocsc()
-    inertia = np.asarray(mass.diagonal()).copy()
-    spring = np.repeat(np.asarray(stiffness.diagonal()).reshape(-1, 2).mean(axis=1), 2)
-    for branch in np.flatnonzero(tree.subtree_end - np.arange(tree.n_branches) > 1):
-        first, end = reduction.first[branch], reduction.first[tree.subtree_end[branch]]
-        below = slice(int(first), int(end))
-        its_mass, its_stiffness = mass[below, below], stiffness[below, below]
-        own = int(reduction.first[branch + 1] - first)
-        follow = its_mass[:, :own].toarray() / spring[below, None]
-        energy = np.einsum('ni,ni->', follow, its_stiffness @ follow)
-        kinetic = np.einsum('ni,ni->', follow, its_mass @ follow)
-        inertia[first : first + own] = spring[first : first + own] * kinetic / energy
+    mass = reduction.mass.tocsc()
+    stiffness = reduction.stiffness.tocsc()
+    first = reduction.first
+    inertia = np.array(mass.diagonal())
+    of_axes = np.asarray(stiffness.diagonal()).reshape(-1, 2)
+    spring = np.repeat(of_axes.mean(axis=1), 2)
+    size = tree.subtree_end - np.arange(tree.n_branches)
+    for branch in np.flatnonzero(size > 1):
+        own = slice(first[branch], first[branch + 1])
+        subtree = slice(first[branch], first[tree.subtree_end[branch]])
+        q = mass[subtree, own].toarray() / spring[subtree, None]
+        strain = np.vdot(q, stiffness[subtree, subtree] @ q)
+        kinetic = np.vdot(q, mass[subtree, subtree] @ q)
+        inertia[own] = spring[own] * kinetic / strain
     return inertia

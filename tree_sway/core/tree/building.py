@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree.parents_first import chain_starts, checked_order, first_of_each
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.tree import Tree, tree_in_order
 from tree_sway.errors import TreeError
 
 MAX_COORDINATE = 1e8
@@ -85,18 +85,14 @@ def tree_from_segments(
     names = _names(branch_names, ordered)
     chains = [chains[number] for number in ordered]
     order = np.concatenate(chains).astype(np.int64)
-    segment_parent = _renumbered(parents, order)
     branch_first = np.concatenate([[0], np.cumsum([len(chain) for chain in chains])])
-    branch_parent = _branch_parent(segment_parent, branch_first)
-    return Tree(
+    return tree_in_order(
         start=starts[order],
         end=ends[order],
         base_diameter=diameters[order, 0],
         tip_diameter=diameters[order, 1],
-        segment_parent=segment_parent,
+        segment_parent=_renumbered(parents, order),
         branch_first=branch_first.astype(np.int64),
-        branch_parent=branch_parent,
-        subtree_end=_subtree_end(branch_parent),
         source_index=order,
         branch_names=names,
         name=name,
@@ -129,12 +125,6 @@ def _renumbered(parents: Ints, order: Ints) -> Ints:
     position = np.empty(len(order), dtype=np.int64)
     position[order] = np.arange(len(order))
     return np.where(parents[order] < 0, -1, position[parents[order]]).astype(np.int64)
-
-
-def _branch_parent(segment_parent: Ints, branch_first: Ints) -> Ints:
-    branch_of_segment = np.repeat(np.arange(len(branch_first) - 1), np.diff(branch_first))
-    on = segment_parent[branch_first[:-1]]
-    return np.where(on < 0, -1, branch_of_segment[on]).astype(np.int64)
 
 
 def _numbers(what: str, values: ArrayLike) -> Floats:
@@ -246,11 +236,3 @@ def _depth_first(chains: Sequence[Ints], parents: Ints) -> list[int]:
         ordered.append(stack.pop())
         stack.extend(children.get(ordered[-1], ()))
     return ordered
-
-
-def _subtree_end(branch_parent: Ints) -> Ints:
-    end = np.arange(1, len(branch_parent) + 1, dtype=np.int64)
-    for branch in range(len(branch_parent) - 1, 0, -1):
-        its_parent = branch_parent[branch]
-        end[its_parent] = max(end[its_parent], end[branch])
-    return end

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,6 +157,35 @@ class Tree:
     def segments_of(self, branch: int) -> slice:
         """Slice of the segments of a branch."""
         return slice(int(self.branch_first[branch]), int(self.branch_first[branch + 1]))
+
+
+def tree_in_order(
+    *, segment_parent: Ints, branch_first: Ints, source_index: Ints, **fields: Any
+) -> Tree:
+    """
+    Return a tree whose segments and branches are in depth-first order already.
+
+    Arguments are the fields of `Tree`, less those that follow from the order of the segments.
+    """
+    branch_of_segment = np.repeat(np.arange(len(branch_first) - 1), np.diff(branch_first))
+    on = segment_parent[branch_first[:-1]]
+    branch_parent = np.where(on < 0, -1, branch_of_segment[on]).astype(np.int64)
+    return Tree(
+        segment_parent=segment_parent,
+        branch_first=branch_first,
+        branch_parent=branch_parent,
+        subtree_end=_subtree_end(branch_parent),
+        source_index=source_index,
+        **fields,
+    )
+
+
+def _subtree_end(branch_parent: Ints) -> Ints:
+    end = np.arange(1, len(branch_parent) + 1, dtype=np.int64)
+    for branch in range(len(branch_parent) - 1, 0, -1):
+        its_parent = branch_parent[branch]
+        end[its_parent] = max(end[its_parent], end[branch])
+    return end
 
 
 def _read_only(array: NDArray[_Number]) -> NDArray[_Number]:

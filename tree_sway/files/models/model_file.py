@@ -9,8 +9,8 @@ Arrays of the tree have the prefix ``tree_``. `doc/sway_model.md` documents all 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass, replace
 import json
 import math
 from pathlib import Path
@@ -22,12 +22,10 @@ from numpy.typing import NDArray
 
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.tree import Tree, tree_in_order
 from tree_sway.core.tree.wood import Species
-from tree_sway.errors import FormatError, inside, ParameterError, TreeError
-from tree_sway.files.text_file import path_of
-from tree_sway.files.whole_file import whole_file
+from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.paths import path_of
 
 SUFFIX = '.npz'
 
@@ -37,40 +35,14 @@ VERSION = 1
 LARGEST = 1 << 30
 """Largest size of all arrays of a file [bytes]."""
 
-_FORMAT = 'tree_sway model'
-_TREE = 'start', 'end', 'base_diameter', 'tip_diameter', 'segment_parent', 'branch_first'
-_LEAVES = 'leaf_mass', 'leaf_area'
+FORMAT = 'tree_sway model'
+LEAVES = 'leaf_mass', 'leaf_area'
+_DIAMETERS = 'base_diameter', 'tip_diameter'
+_INDICES = 'segment_parent', 'branch_first'
+TREE = ('start', 'end', *_DIAMETERS, *_INDICES)
+"""Fields of a `Tree` that are arrays of the file."""
+
 _TEXT_LIMIT = 1 << 24
-
-
-def write_model(path: str | Path, model: SwayModel) -> None:
-    """
-    Write a model as an ``.npz`` file, with its tree, species and settings.
-
-    Raises
-    ------
-    FormatError
-        A file that cannot be written.
-
-    """
-    tree, settings = model.tree, model.settings
-    about = {
-        'format': _FORMAT,
-        'version': VERSION,
-        'name': tree.name,
-        'tree_species': tree.species,
-        'branch_names': list(tree.branch_names),
-        'species': _plain(model.species),
-        'settings': _plain(settings),
-        'digest': model.digest(),
-    }
-    arrays: dict[str, Any] = {f'tree_{name}': getattr(tree, name) for name in _TREE}
-    arrays |= {**model.arrays(), 'about': np.array(json.dumps(about))}
-    for name in _LEAVES:
-        if getattr(settings, name) is not None:
-            arrays[name] = np.asarray(getattr(settings, name), dtype=np.float64)
-    with whole_file(path) as partial, partial.open('wb') as file:
-        np.savez_compressed(file, **arrays)
 
 
 def read_model(path: str | Path) -> SwayModel:
@@ -88,11 +60,11 @@ def read_model(path: str | Path) -> SwayModel:
         arrays = _read_arrays(where)
         about = _read_about(arrays.pop('about', np.array('')))
         try:
-            tree = _tree(about, {name: arrays.pop(f'tree_{name}') for name in _TREE})
-            leaves = {name: arrays.pop(name) for name in _LEAVES if name in arrays}
+            tree = _tree(about, {name: arrays.pop(f'tree_{name}') for name in TREE})
+            leaves = {name: arrays.pop(name) for name in LEAVES if name in arrays}
             species = _made(Species, about['species'])
             settings = replace(_made(Settings, about['settings']), **leaves)
-        except (KeyError, TypeError, ValueError, TreeError, ParameterError) as error:
+        except (LookupError, TypeError, ValueError, ParameterError) as error:
             raise _damaged(f'its tree or settings: {error}') from None
         model = SwayModel.of_arrays(arrays, tree, species, settings)
         if model.digest() != about.get('digest'):
@@ -123,7 +95,7 @@ def _read_about(text: NDArray[Any]) -> dict[str, Any]:
         about = json.loads(str(text))
     except (ValueError, RecursionError):
         raise _damaged('the text about it is no JSON') from None
-    if not isinstance(about, dict) or about.get('format') != _FORMAT:
+    if not isinstance(about, dict) or about.get('format') != FORMAT:
         raise _damaged('it is another format')
     if about.get('version') != VERSION:
         raise FormatError(
@@ -139,42 +111,50 @@ def _damaged(what: str) -> FormatError:
 
 
 def _tree(about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Tree:
-    """Build a tree again, with all checks; refuse one whose segments are in another order."""
-    first = arrays['branch_first']
-    sizes = np.diff(first)
-    if (sizes < 1).any() or int(sizes.sum()) != len(arrays['start']):
-        raise _damaged('branches without segments')
-    tree = tree_from_segments(
-        arrays['start'],
-        arrays['end'],
-        np.stack([arrays['base_diameter'], arrays['tip_diameter']], axis=1),
-        parent=arrays['segment_parent'],
-        branch=np.repeat(np.arange(len(sizes)), sizes),
-        branch_names=[str(name) for name in about['branch_names']],
+    """Make the tree again; refuse arrays that are no tree in depth-first order."""
+    names = tuple(str(name) for name in about['branch_names'])
+    _check_tree(arrays, names)
+    tree = tree_in_order(
+        **arrays,
+        source_index=np.arange(len(arrays['start']), dtype=np.int64),
+        branch_names=names,
         name=str(about['name']),
         species=str(about['tree_species']),
     )
-    if not np.array_equal(tree.branch_first, first) or not np.array_equal(
-        tree.start, arrays['start']
-    ):
-        raise _damaged('segments that are not in depth-first order')
+    if not tree.length.all():
+        raise _damaged('segments without length')
+    carrier = tree.branch_parent.tolist()
+    for branch in range(1, tree.n_branches):
+        before = branch - 1
+        while before > carrier[branch]:
+            before = carrier[before]
+        if before != carrier[branch]:
+            raise _damaged('branches that are not in depth-first order')
     return tree
 
 
-def _plain(value: Any) -> Any:
-    """Return a dataclass as numbers and texts for JSON, which has no infinity, without arrays."""
-    if is_dataclass(value):
-        own = {each.name: getattr(value, each.name) for each in fields(value)}
-        return {name: _plain(each) for name, each in own.items() if name not in _LEAVES}
-    if isinstance(value, tuple):
-        return [_plain(each) for each in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value.item() if isinstance(value, np.generic) else value
+def _check_tree(arrays: Mapping[str, NDArray[Any]], names: Sequence[str]) -> None:
+    """Check types, shapes and numbers of the arrays of a tree, and that parents come first."""
+    count, first = len(arrays['start']), arrays['branch_first']
+    if first[0] != 0 or first[-1] != count or (np.diff(first) < 1).any():
+        raise _damaged('branches without segments')
+    if len(first) != len(names) + 1:
+        raise _damaged(f'{len(names)} branch names for {len(first) - 1} branches')
+    shapes = {'start': (count, 3), 'end': (count, 3), 'branch_first': first.shape}
+    for name, array in arrays.items():
+        expected = np.int64 if name in _INDICES else np.float64
+        if array.dtype != expected or array.shape != shapes.get(name, (count,)):
+            raise _damaged(f'tree_{name} is {array.dtype} of shape {array.shape}')
+        if not np.isfinite(array).all() or (name in _DIAMETERS and array.min() <= 0.0):
+            raise _damaged(f'tree_{name} has a number that no tree has')
+    parent, before = arrays['segment_parent'], np.arange(-1, count - 1)
+    is_base = np.isin(before + 1, first[1:])
+    if not ((parent == before) | (is_base & (0 <= parent) & (parent <= before))).all():
+        raise _damaged('segments that are not in depth-first order')
 
 
 def _made(kind: Any, values: Mapping[str, Any]) -> Any:
-    """Make a dataclass of numbers and texts that `_plain` returned; others are refused."""
+    """Make a dataclass of numbers and texts that `write_model` wrote; others are refused."""
     hints, given = get_type_hints(kind), {}
     for name, value in values.items():
         hint = hints[name]

@@ -9,7 +9,7 @@ from pathlib import Path
 from tree_sway.files.motion.imu_bag import read_imu_bag
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.motion.motion_table import read_motion_table
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 
 _BAGS = ('.db3', '.mcap')
 

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import yaml
 
 from tree_sway.errors import FormatError
-from tree_sway.files.text_file import path_of, read_lines
+from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_lines
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.files.yaml_document import packaged_schema, read_yaml
 

@@ -9,7 +9,8 @@ import math
 from pathlib import Path
 
 from tree_sway.errors import FormatError
-from tree_sway.files.text_file import path_of, read_text
+from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_text
 
 NAME, LOW, HIGH = 'name', 'low_80 [m/s]', 'high_80 [m/s]'
 

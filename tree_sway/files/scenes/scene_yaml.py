@@ -29,9 +29,10 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.scenes.stand_table import read_stand_table
 from tree_sway.files.scenes.tree_names import refuse_same_names
-from tree_sway.files.text_file import is_file, path_of, read_text
+from tree_sway.files.text_file import read_text
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
 

@@ -17,6 +17,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.file_format import UnknownFormatError
+from tree_sway.files.paths import path_of
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import (
     is_stand_table,
@@ -24,7 +25,7 @@ from tree_sway.files.scenes.stand_table import (
     read_stand_table,
     why_no_stand,
 )
-from tree_sway.files.text_file import path_of, read_head
+from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 from tree_sway.files.trees.tree_options import same

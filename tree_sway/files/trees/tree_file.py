@@ -19,7 +19,7 @@ from typing import Any
 from tree_sway.core.tree.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile

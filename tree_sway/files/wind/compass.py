@@ -22,6 +22,7 @@ _WORDS = {
     **dict.fromkeys(('east', 'est', 'este', 'leste', 'ost'), 'E'),
     **dict.fromkeys(('south', 'sud', 'süd', 'sur', 'sul'), 'S'),
     **dict.fromkeys(('west', 'ouest', 'oeste', 'ovest'), 'W'),
+    **{'北': 'N', '東': 'E', '南': 'S', '西': 'W'},
 }
 _WORD = re.compile('|'.join(sorted(_WORDS, key=len, reverse=True)))
 

@@ -27,6 +27,16 @@ def _date_and_hour(parts: Sequence[str]) -> str:
     return f'{parts[0]} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
 
 
+def _date_and_digits(parts: Sequence[str]) -> str:
+    clock = parts[1].zfill(4)
+    return f'{parts[0]} {clock[:-2]}:{clock[-2:]}'
+
+
+def _date_and_clock(parts: Sequence[str]) -> str:
+    year, month, day, clock = parts
+    return f'{year}-{month}-{day} {clock}'
+
+
 def _numbers(parts: Sequence[str]) -> str:
     if not all(part.isdigit() for part in parts):
         return ''
@@ -39,12 +49,15 @@ PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
     (('year', 'month', 'day', 'hour', 'minute'), _numbers),
     (('year', 'month', 'day', 'hour'), _numbers),
     (('year', 'mo', 'dy', 'hr'), _numbers),
+    (('vuosi', 'kuukausi', 'paeivae', 'aika'), _date_and_clock),
+    (('vuosi', 'kk', 'pv', 'klo'), _date_and_clock),
     (('yyyymmdd', 'hh'), _date_and_hour),
     (('date', 'time'), _date_and_time),
     (('datum', 'zeit'), _date_and_time),
     (('datum', 'uhrzeit'), _date_and_time),
     (('datum', 'tid'), _date_and_time),
     (('fecha', 'hora'), _date_and_time),
+    (('fecha', 'horamin'), _date_and_digits),
     (('date', 'heure'), _date_and_time),
     (('date', 'timeutc'), _date_and_time),
     (('data', 'horautc'), _date_and_time),

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway.files.file_format import contains, FileFormat, format_of
-from tree_sway.files.text_file import path_of
+from tree_sway.files.paths import path_of
 from tree_sway.files.wind.bag import read_bag_wind
 from tree_sway.files.wind.layouts.known import looks_like_wind
 from tree_sway.files.wind.metar import METAR, read_metar_wind

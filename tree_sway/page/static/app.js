@@ -55,6 +55,8 @@ let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
 const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 let day = days[0];
+/** Segment of the branch that was clicked; -1 if it was picked otherwise. */
+let pointedAt = -1;
 let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
@@ -195,6 +197,7 @@ function showFacts() {
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
     sensors: motionSensors(status.motion),
+    "band-of": status.motion?.band && shown.value === "motion" && scene.picked < 0 ? word("band") : "",
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
@@ -248,7 +251,8 @@ function draw(now) {
     const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
       traces.wind.add(now / 1000, speed);
-      traces.tip.add(now / 1000, value);
+      const isSure = shown.value === "motion" && scene.picked < 0;
+      traces.tip.add(now / 1000, value, isSure ? status.motion?.band : undefined);
     }
     const { factor, unit, digits } = unitOf(shown.value, value);
     write({ "tip-now": `${(factor * value).toFixed(digits && digits + 1)} ${unit}` });
@@ -272,11 +276,13 @@ function showButtons() {
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
-/** @param {number} branch to follow; the highest if -1 */
-function pick(branch) {
+/** @param {number} branch to follow; the highest if -1 @param {number} [segment] of it that was pointed at */
+function pick(branch, segment = -1) {
   const names = scene.watched.kind?.branch_names ?? [];
   scene.picked = names[branch] === undefined ? -1 : branch;
   write({ branch: names[branch] ?? word("tallest") });
+  pointedAt = segment;
+  element("sensor-here").hidden = segment < 0 || !controls.some(({ name }) => name === "sensor_at");
   traces.tip.show(shown.value);
 }
 
@@ -327,6 +333,7 @@ const actions = {
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
+  "sensor-here": () => stream.set("sensor_at", `segment:${pointedAt}`),
   pull: async () => (hands.drag ??= new (await import("./drag.js")).Drag(scene, stream)).toggle(),
   sound: async () => (hands.sound ??= new (await import("./sound.js")).Sound()).toggle(),
   headset: async () => {
@@ -362,7 +369,9 @@ let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
   if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
-  if (scene.description) pick(scene.under(event).branch);
+  if (!scene.description) return;
+  const { branch, segment } = scene.under(event);
+  pick(branch, segment);
 });
 shown.addEventListener("change", () => pick(scene.picked));
 timeLine.addEventListener("input", () => {

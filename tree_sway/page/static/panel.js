@@ -74,7 +74,7 @@ export class Panel {
     this._show.clear();
     const isButton = (/** @type {Control} */ { is_action: isAction, value }) => isAction || typeof value === "boolean";
     const fields = controls.filter((each) => !isButton(each)).map((each) =>
-      each.choices.length ? this._choice(each) : this._slider(each));
+      each.choices.length ? this._choice(each) : typeof each.value === "string" ? this._text(each) : this._slider(each));
     const buttons = controls.filter(isButton).map((each) => this._button(each));
     this.form.replaceChildren(...fields, made("div", { className: "buttons" }, ...buttons));
     for (const { name, value } of controls) this._show.get(name)?.(value);
@@ -128,6 +128,14 @@ export class Panel {
   _choice(control) {
     const options = control.choices.map((each) => made("option", { value: each }, each.replaceAll("_", " ")));
     const input = made("select", named(control), ...options);
+    input.addEventListener("change", () => this.send(control.name, input.value));
+    this._show.set(control.name, (value) => (input.value = value));
+    return this._field(control, input);
+  }
+
+  /** @param {Control} control */
+  _text(control) {
+    const input = made("input", { ...named(control), type: "text", maxLength: 40 });
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);

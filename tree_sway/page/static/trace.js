@@ -22,10 +22,11 @@ export class Trace {
   constructor(element, quantity) {
     this.quantity = quantity;
     this._line = element.querySelector("polyline");
+    this._shade = element.querySelector("polygon");
     this._labels = element.querySelectorAll("li");
     /** How long ago what is shown ends [s]. */
     this.back = 0;
-    this._points = /** @type {{time: number, value: number}[]} */ ([]);
+    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
   }
 
   /** Begin anew. @param {string} quantity */
@@ -34,11 +35,12 @@ export class Trace {
     this._points.length = 0;
   }
 
-  /** @param {number} time [s] @param {number} value */
-  add(time, value) {
+  /** @param {number} time [s] @param {number} value
+   * @param {number[]} [band] from where to where the real one is likely, less the value */
+  add(time, value, band) {
     const points = this._points;
     if (time <= (points.at(-1)?.time ?? time - 1)) points.length = 0;
-    points.push({ time, value });
+    points.push({ time, value, band });
     while (points[0].time < time - LOOK_BACK - SECONDS) points.shift();
   }
 
@@ -55,12 +57,17 @@ export class Trace {
 
   draw() {
     const { points, end } = this._shown;
-    const greatest = Math.max(this.statistics.greatest, QUANTITIES[this.quantity].least);
+    const highest = points.map(({ value, band = [0, 0] }) => value + band[1]);
+    const greatest = Math.max(...highest, QUANTITIES[this.quantity].least);
     const { factor, unit, digits } = unitOf(this.quantity, greatest);
     const power = 10 ** Math.floor(Math.log10(greatest * factor));
     const top = power * ([1, 2, 5].find((step) => step * power >= 0.999 * greatest * factor) ?? 10);
-    const corners = points.map(({ time, value }) => [SECONDS - end + time, 1 - Math.min((value * factor) / top, 1)]);
-    this._line?.setAttribute("points", corners.join(" "));
+    /** @param {number} time @param {number} value */
+    const corner = (time, value) => [SECONDS - end + time, 1 - Math.min(Math.max((value * factor) / top, 0), 1)];
+    this._line?.setAttribute("points", points.map(({ time, value }) => corner(time, value)).join(" "));
+    const sure = points.map(({ time, value, band = [0, 0] }) => band.map((off) => corner(time, value + off)));
+    const around = [...sure.map(([low]) => low), ...sure.map(([, high]) => high).reverse()];
+    this._shade?.setAttribute("points", points.some(({ band }) => band) ? around.join(" ") : "");
     const numbers = [top, top / 2, 0].map((each) => each.toFixed(each < 10 && digits === 0 ? 1 : digits).replace(/\.0$/, ""));
     const times = [20, 15, 10, 5, 0].map((ago) => Math.round(ago + this.back)).map((ago, i) => `${ago ? "−" : ""}${ago}${i < 4 ? "" : " s"}`);
     [unit, ...numbers, ...times].forEach((text, i) => (this._labels[i].textContent = text));

@@ -185,6 +185,8 @@ interface SensorStatus {
 interface MotionStatus {
   sensors?: SensorStatus[];
   explained?: number;
+  /** Where 80 % of the trees are that the real one may be, less the motion of the highest tip [m]. */
+  band?: number[];
 }
 
 /** What the wind is, and for a live one its newest reading. */

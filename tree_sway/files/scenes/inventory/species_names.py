@@ -14,6 +14,8 @@ from tree_sway.files.scenes.inventory.species_codes import has_codes, list_of, n
 
 UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
+_GENERAL = ('broadleaf', 'conifer')
+"""Trees of no known species."""
 _NO_EPITHETS = ('sp', 'sp.', 'spp', 'spp.', 'species')
 """Cells that say that the epithet is not known, and would else be read as abbreviations."""
 _MOST_NOTES = 20
@@ -62,26 +64,25 @@ def species_of_rows(
 
 
 def _column_of_names(columns: InventoryColumns) -> int | None:
-    """Column most of whose first cells are names of species; None without one."""
+    """Column most of whose first cells are names, of species if any has these; None without."""
     shares = list[tuple[float, int]]()
     for index in range(len(columns.table.columns)):
         cells = columns.table.cells(index, range(min(_TRIED, columns.n_rows)))
         filled = [cell for cell in cells if cell]
+        named = [cell for cell in filled if len(cell) >= _SHORTEST_NAME and cell[0].isalpha()]
         if filled:
-            shares.append((sum(map(_is_species, filled)) / len(filled), index))
+            shares.append((sum(map(_specificity, named)) / len(filled), index))
     share, index = max(shares, default=(0.0, 0), key=lambda each: each[0])
     return index if share > 0.5 else None
 
 
-def _is_species(cell: str) -> bool:
-    """Whether a cell is the name of a species, longer than the foresters' abbreviations."""
-    if len(cell) < _SHORTEST_NAME or not cell[0].isalpha():
-        return False
+def _specificity(name: str) -> int:
+    """Return 0 for an unknown name, 1 for a broadleaf or conifer of no species, else 2."""
     try:
-        species_named(cell)
+        species = species_named(name)
     except SpeciesError:
-        return False
-    return True
+        return 0
+    return 1 if species.key in _GENERAL else 2
 
 
 def _decoded(
@@ -111,16 +112,10 @@ def _joined(genus: str, epithet: str) -> str:
 
 
 def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
-    """First name that is known, else the first that is not empty."""
+    """First name of a species, else of a broadleaf or conifer, else the first that is there."""
     parts = [part.strip() for cell in cells for part in cell.split('::') if part.strip()]
     parts = [part for part in parts if part.lower() not in _NO_EPITHETS]
     for name in parts:
         if name in given:
             return name
-    for name in parts:
-        try:
-            species_named(name)
-        except SpeciesError:
-            continue
-        return name
-    return parts[0] if parts else ''
+    return max(parts, default='', key=_specificity)  # the first of those that say most

@@ -26,7 +26,8 @@ from pathlib import Path
 
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import FormatError, SpeciesError
-from tree_sway.files.text_file import is_file, path_of, read_text
+from tree_sway.files.paths import is_file, path_of
+from tree_sway.files.text_file import read_text
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments

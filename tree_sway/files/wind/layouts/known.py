@@ -10,9 +10,11 @@ from tree_sway.files.wind.layouts.badc_csv import BADC_CSV
 from tree_sway.files.wind.layouts.cumulus import CUMULUS_LOG, CUMULUS_REALTIME
 from tree_sway.files.wind.layouts.energyplus import EPW
 from tree_sway.files.wind.layouts.isd import ISD_CSV, ISD_LITE
+from tree_sway.files.wind.layouts.jma import JMA
 from tree_sway.files.wind.layouts.json_tables import JSON
 from tree_sway.files.wind.layouts.layout import Layout
 from tree_sway.files.wind.layouts.long import LONG
+from tree_sway.files.wind.layouts.meteoblue import METEOBLUE
 from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.layouts.spaced import SPACED
 from tree_sway.files.wind.layouts.toa5 import TOA5
@@ -20,7 +22,7 @@ from tree_sway.files.wind.layouts.weatherlink_text import WEATHERLINK_TEXT
 
 LAYOUTS = (
     *(TOA5, JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, ISD_LITE, BADC_CSV),
-    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW),
+    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW, JMA, METEOBLUE),
     *LONG,
     PLAIN,
 )

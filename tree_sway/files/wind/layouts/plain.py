@@ -19,7 +19,7 @@ from tree_sway.files.wind.layouts.layout import Layout
 _HEAD = 40
 _CELL = re.compile(r'[,;\t](?=(?:[^"]*"[^"]*")*[^"]*$)')
 _NUMBER = re.compile(r'[-+\d.,:]+')
-_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc')
+_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _WIND = ('wind_speed', 'wind_direction', 'wind_x', 'gust')
 
 
@@ -78,11 +78,15 @@ def _with_units_below(table: TextTable) -> TextTable:
     speeds = [cell for name, cell in pairs if rank_of(name, 'wind_speed') is not None]
     if not any(unit_known('speed', cell) for cell in speeds):
         return table
+    units = [
+        '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
+        for name, cell in zip(table.columns, cells, strict=False)
+    ]
     return replace(
         table,
         numbers=table.numbers[1:],
         texts=table.texts[1:],
-        units=tuple(cells),
+        units=tuple(units),
         unit_line=table.numbers[0],
     )
 

@@ -1,0 +1,94 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Memory of the wind load on every branch: a record of work each, and one of load for sixteen.
+
+Models that sum the load over the branches use them; a table of winds has no need of them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Annotated
+
+import numpy as np
+
+from tree_sway.core.arrays import fields_of, Floats, RecordsOf
+from tree_sway.core.model.records import whole_lines, WIDTH
+
+
+class Work:
+    """Motion and loads of a branch, passed from one pass of a step to the next."""
+
+    velocity: Annotated[Floats, 6]  # velocity and spin of the base in its own, turned frame
+    orientation: Annotated[Floats, 4]  # rotation of the base from rest, w x y z
+    force: Annotated[Floats, 3]  # wind force on the branch in the last step [N]
+    rotation: Annotated[Floats, 3]  # rotation vector of the base from the parent's base
+    # Displacement of the base in the frame of the parent's base:
+    displacement: Annotated[Floats, 3]
+    arm: Annotated[Floats, 3]  # position of the base from the parent's base, bent
+    wrench: Annotated[Floats, 6]  # force and moment on the branch and its subtree (`branch_loads`)
+
+
+class Load:
+    """
+    Wind load of sixteen consecutive branches, and the data for it.
+
+    Rows are coordinates; rows that a branch does not have are zero.
+    """
+
+    n_rows: int  # largest number of coordinates of a branch
+    # As in `Branch`:
+    speed: Annotated[Floats, WIDTH]
+    area: Annotated[Floats, WIDTH]
+    spread: Annotated[Floats, WIDTH]
+    projector: Annotated[Floats, 6, WIDTH]
+    damping_mode: Annotated[Floats, 'rows', 3, WIDTH]
+    load_rotation: Annotated[Floats, 'rows', 3, WIDTH]
+    load_mode: Annotated[Floats, 'rows', 3, WIDTH]
+    chord_lever: Annotated[Floats, 3, WIDTH]  # chord direction times lever
+    coupling: Annotated[Floats, 3, 3, WIDTH]  # moment about the base per force [m]
+    # Set with the time step:
+    compliance: Annotated[Floats, WIDTH]  # velocity half a step after a unit of force [s/kg]
+    # Set with the wind:
+    gust: Annotated[Floats, 3, WIDTH]  # wind of the branch less that of the tree [m/s]
+    # State at the middle of the step, and quantities derived from it:
+    x: Annotated[Floats, 'rows', WIDTH]
+    v: Annotated[Floats, 'rows', WIDTH]
+    velocity: Annotated[Floats, 6, WIDTH]  # velocity and spin of the base in its own, turned frame
+    air_velocity: Annotated[Floats, 3, WIDTH]  # wind in that frame [m/s]
+    rotation: Annotated[Floats, 3, WIDTH]  # rotation of the loaded pieces in that frame
+    # Reduction of the relative wind by the last force, over the compliance [N]:
+    drag_impulse: Annotated[Floats, 3, WIDTH]
+    own_force: Annotated[Floats, 3, WIDTH]  # force in the turned frame of the branch [N]
+    force: Annotated[Floats, 3, WIDTH]  # force in the frame of the base [N]
+    moment: Annotated[Floats, 3, WIDTH]  # moment about the base in its frame [N m]
+    load: Annotated[Floats, 'loads', WIDTH]  # load along b, then on each coordinate [N m]
+
+
+class Oscillators(Load):
+    """Oscillators of sixteen consecutive branches, and the wind load on them."""
+
+    now_x: Annotated[Floats, 2, WIDTH]
+    now_v: Annotated[Floats, 2, WIDTH]
+    whole: Annotated[Floats, 8, WIDTH]  # rows of the propagator of a step
+    # Rows of the propagator of half a step under a constant load:
+    half: Annotated[Floats, 6, WIDTH]
+    guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.guards`
+
+
+Works = RecordsOf[Work]
+Loads = RecordsOf[Load]
+Banks = RecordsOf[Oscillators]
+
+
+WORK = np.dtype(fields_of(Work))
+
+
+@cache
+def load_layout(n_coordinates: int) -> np.dtype[np.void]:
+    """Lay out `Load`, with room for a number of coordinates."""
+    return whole_lines(fields_of(Load, rows=n_coordinates, loads=1 + n_coordinates))
+
+
+OSCILLATORS = whole_lines(fields_of(Oscillators, rows=2, loads=3))

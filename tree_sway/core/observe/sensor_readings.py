@@ -1,0 +1,112 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What all sensors measure beyond the model, at the newest step that their samples cover.
+
+A sensor that sends late is read at an earlier step, and compared with the motion that the model
+had then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.lateness import Lateness
+from tree_sway.core.observe.sensor_place import PlaceMotion
+from tree_sway.core.observe.sensor_track import ROWS, sensed_rows, SensorTrack
+from tree_sway.core.observe.unknown_motion import UnknownMotion
+
+LATEST = 30
+"""Largest number of steps by which sensors are read late."""
+
+_KEPT = 64
+
+
+class SensorReadings:
+    """
+    Readings of the sensors on a tree.
+
+    Parameters
+    ----------
+    unknown
+        Law of the unknown motion, with stiffness and damping of the model.
+    tracks, places
+        Sensors, and how each is moved by the coordinates of the model.
+    dt
+        Time step in [s].
+
+    """
+
+    def __init__(
+        self,
+        unknown: UnknownMotion,
+        tracks: Sequence[SensorTrack],
+        places: Sequence[PlaceMotion],
+        dt: float,
+    ) -> None:
+        self._unknown, self._tracks, self._places = unknown, tracks, places
+        self._dt = dt
+        self.lateness = Lateness(len(tracks), dt, LATEST)
+        """Steps by which sensors are read late."""
+        self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
+        self._forces = np.zeros((_KEPT, unknown.count))
+        self.forces = self._forces[0]
+        """Force of the wind on each coordinate at the step that was read, (n,)."""
+        self._swing = np.zeros(3 * len(unknown.all_stiffness))
+        self.beyond = np.zeros((len(tracks), 9))
+        """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
+        self._beyond = list(self.beyond)
+        self.is_known = np.zeros(len(tracks), dtype=np.bool_)
+        """Which of them there are, (k,)."""
+        self.read_model()
+
+    def read_model(self) -> None:
+        """Read stiffness and damping of the model again."""
+        law = self._unknown.all_stiffness, self._unknown.all_damping
+        rows = [sensed_rows(each, *law) for each in self._places]
+        self._rows = np.array(rows).reshape(-1, len(self._swing))
+
+    def note(self, step: int, swing: tuple[Floats, ...]) -> None:
+        """Note displacement, rate and force of each coordinate in the wind alone, (m,)."""
+        m, slot, n = len(swing[0]), step % _KEPT, self._unknown.count
+        state, forces = self._swing, self._forces[slot]
+        state[:m], state[m : 2 * m], state[2 * m :] = swing
+        np.dot(self._rows, state, out=self._sensed[slot].reshape(-1))
+        # The force of the wind on a tree that stands still.
+        np.multiply(self._unknown.air_damping, swing[1][:n], out=forces)
+        forces += swing[2][:n]
+
+    def read(self, time: float, step: int, done: int) -> bool:
+        """
+        Read the sensors.
+
+        Parameters
+        ----------
+        time
+            Time of the end of the step in [s].
+        step, done
+            Number of the step, and of the newest one that was read before.
+
+        Returns
+        -------
+        bool
+            Whether a step was read; not where sensors have become later.
+
+        """
+        for k, track in enumerate(self._tracks):
+            if track.may_be_used:
+                self.lateness.note(k, time, track.sensor.newest)
+        self.lateness.settle(time)
+        late = self.lateness.steps
+        if step - late <= done:
+            self.is_known[:] = False
+            return False
+        slot, when = (step - late) % _KEPT, time - late * self._dt
+        self.forces = self._forces[slot]
+        sensed = self._sensed[slot]
+        for k, track in enumerate(self._tracks):
+            self.is_known[k] = track.read(when, sensed[k], self._beyond[k])
+        return True

@@ -1,0 +1,59 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A `SwayModel` is written as an ``.npz`` file, which `model_file` reads."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.files.models.model_file import FORMAT, LEAVES, TREE, VERSION
+from tree_sway.files.whole_file import whole_file
+
+
+def write_model(path: str | Path, model: SwayModel) -> None:
+    """
+    Write a model as an ``.npz`` file, with its tree, species and settings.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be written.
+
+    """
+    tree, settings = model.tree, model.settings
+    about = {
+        'format': FORMAT,
+        'version': VERSION,
+        'name': tree.name,
+        'tree_species': tree.species,
+        'branch_names': list(tree.branch_names),
+        'species': _plain(model.species),
+        'settings': _plain(settings),
+        'digest': model.digest(),
+    }
+    arrays: dict[str, Any] = {f'tree_{name}': getattr(tree, name) for name in TREE}
+    arrays |= {**model.arrays(), 'about': np.array(json.dumps(about))}
+    for name in LEAVES:
+        if getattr(settings, name) is not None:
+            arrays[name] = np.asarray(getattr(settings, name), dtype=np.float64)
+    with whole_file(path) as partial, partial.open('wb') as file:
+        np.savez_compressed(file, **arrays)
+
+
+def _plain(value: Any) -> Any:
+    """Return a dataclass as numbers and texts for JSON, which has no infinity, without arrays."""
+    if is_dataclass(value):
+        own = {each.name: getattr(value, each.name) for each in fields(value)}
+        return {name: _plain(each) for name, each in own.items() if name not in LEAVES}
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value.item() if isinstance(value, np.generic) else value
