@@ -276,9 +276,9 @@ READ = {
         [('plane', 16.0, 0.477), ('lime', 10.0, 0.286)],
     ),
     'Taipei': (
-        'TreeID,Dist,Region,TreeType,Diameter,TreeHeight,SurveyDate,TWD97X,TWD97Y,UpdDate\n'
-        'A1,中山區,路口,榕樹,45,9.5,2025-01-02,303100.1,2770100.2,2025-01-03\n'
-        'A2,中山區,路口,樟樹,32,8.0,2025-01-02,303110.1,2770104.2,2025-01-03\n',
+        'TreeID,Dist,Region,TreeType,Diameter,TreeHeight,SurveyDate,TWD97X,TWD97Y\n'
+        'A1,中山區,路口,榕樹,45,9.5,2025-01-02,303100.1,2770100.2\n'
+        'A2,中山區,路口,樟樹,32,8.0,2025-01-02,303110.1,2770104.2\n',
         [('broadleaf', 9.5, 0.45), ('broadleaf', 8.0, 0.32)],
     ),
     'Seoul': (
@@ -301,8 +301,8 @@ READ = {
         [('oak', 18.0, 0.796), ('beech', 20.0, 0.573)],
     ),
     'Czech natural forests': (
-        'STROM_ID;DREVINA;CHARAKTER;VYSKA;DELKA;VYCETNI_T1;X;Y\n'
-        '1;smrk;1;32,5;;480;-742100,1;-1043100,2\n2;buk;1;28,0;;390;-742104,1;-1043103,2\n',
+        'STROM_ID;DREVINA;VYSKA;DELKA;VYCETNI_T1;X;Y\n'
+        '1;smrk;32,5;;480;-742100,1;-1043100,2\n2;buk;28,0;;390;-742104,1;-1043103,2\n',
         [('spruce', 32.5, 0.48), ('beech', 28.0, 0.39)],
     ),
     'a plot in metres with few digits stays one': (
