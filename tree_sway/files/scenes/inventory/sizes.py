@@ -76,14 +76,16 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     in_inches = ratio * _CM / _INCH
     if ratio > _SLENDER[1] and _SLENDER[0] < in_inches < _SLENDER[1]:
         return _INCH, ', by height over it'
-    if ratio > _SLENDER[1] and _SLENDER[0] < in_inches * _FOOT < _SLENDER[1] and factor is None:
-        return _INCH, ', by height in feet over it'
+    if factor is None and _SLENDER[0] < in_inches * _FOOT < _SLENDER[1]:
+        # Feet and inches for metres and cm: nearly all trees would be too slender.
+        if _slenderness(height, values * _CM, quantile=0.1) > _SLENDER[1]:
+            return _INCH, ', by height in feet over it'
     return _CM, ''
 
 
-def _slenderness(height: Floats, diameter: Floats) -> float:
+def _slenderness(height: Floats, diameter: Floats, quantile: float = 0.5) -> float:
     known = (height > 0.0) & (diameter > 0.0)
-    return float(np.median(height[known] / diameter[known])) if known.any() else 0.0
+    return float(np.quantile(height[known] / diameter[known], quantile)) if known.any() else 0.0
 
 
 def _height_column(columns: InventoryColumns) -> int | None:
