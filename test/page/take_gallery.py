@@ -18,6 +18,7 @@ import asyncio
 from dataclasses import dataclass
 import io
 from pathlib import Path
+import sys
 import tempfile
 
 from PIL import Image
@@ -54,6 +55,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _CLOSE = 'treeSway.scene.camera.zoom(0.9);'
+_MAY = 'treeSway.scene.flower(5.5);'
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -78,11 +80,14 @@ treeSway.scene.camera.home();
 """
 """Hides the instruments and the arrow of the wind, and fits the tree into the whole picture."""
 
+DRAWN = 300.0
+"""Until the first pictures of a thousand trees are drawn in full quality on a processor [s]."""
+
 SETTLING = 15.0
 """Until a page without a graphics unit has chosen what it leaves out [s]."""
 
-FILM, EVERY, FILM_WIDTH = 5.0, 0.1, 640
-"""Length of a film and time between its pictures [s], and its width [px]."""
+FILM, EVERY, FILM_SIZE = 5.0, 0.1, (640, 400)
+"""Length of a film and time between its pictures [s], and their size [px]: each is drawn anew."""
 
 VIEWS = (
     View('benjamina', 'benjamina', script=_CLOSE, size=SQUARE),
@@ -100,9 +105,9 @@ VIEWS = (
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('lime', 'lime', script=_CLOSE, size=SQUARE),
     View('beech', 'beech', script=_CLOSE, size=SQUARE),
-    View('horse_chestnut', 'horse_chestnut', script=_CLOSE, size=SQUARE),
+    View('horse_chestnut', 'horse_chestnut', script=_CLOSE + _MAY, size=SQUARE),
     View('willow', 'willow', script=_CLOSE, size=SQUARE),
-    View('willow_sways', 'willow', is_film=True),
+    View('willow_sways', 'willow', is_film=True, size=FILM_SIZE),
     View('walnut', 'walnut', script=_CLOSE, size=SQUARE),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
@@ -141,6 +146,7 @@ def main() -> None:
                     words = ['--species', view.tree, *GROWN[view.tree].split()]
                     if not Path(tree).exists():
                         cli.main(['grow', *words, '-o', tree])
+                print(view.name, file=sys.stderr, flush=True)
                 take(view, tree, given.folder / f'{view.name}.jpg')
 
 
@@ -167,7 +173,8 @@ async def look(url: str, view: View, path: Path) -> None:
     async with Browser() as browser:
         address = f'{url}?quality=full' if view.is_full else url
         await browser.open(address, width=width, height=height, dark=view.is_dark)
-        await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
+        live = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
+        await browser.until(live, DRAWN)
         if not view.has_cards:
             await browser.run(_BARE)
         if view.script:
@@ -198,15 +205,17 @@ async def film(browser: Browser, path: Path) -> None:
     """Look back over the last seconds, a picture at a time."""
     oldest = 'treeSway.playout._frames[0].stamp'
     await browser.until(f'treeSway.playout.newest > {oldest} + {1e3 * FILM}')
-    pictures = []
-    for number in range(round(FILM / EVERY)):
+    pictures: list[Image.Image] = []
+    count = round(FILM / EVERY)
+    for number in range(count):
         slide = f"s.value = {number * EVERY - FILM}; s.dispatchEvent(new Event('input'))"
         await browser.run(f"{{const s = document.getElementById('time'); {slide};}}")
         drawn = await browser.run('treeSway.scene._frame')
         await browser.until(f'treeSway.scene._frame > {drawn} + 1')
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
-        size = FILM_WIDTH, FILM_WIDTH * image.height // image.width
-        pictures.append(image.resize(size, Image.Resampling.LANCZOS))
+        pictures.append(image)
+        print(f'\r{path}: {len(pictures)} of {count}', end='', file=sys.stderr, flush=True)
+    print(file=sys.stderr)
     first, *others = pictures
     first.save(
         path, save_all=True, append_images=others, duration=round(1e3 * EVERY), loop=0, quality=70

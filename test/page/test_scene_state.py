@@ -289,3 +289,11 @@ def test_a_running_scene_has_the_same_description_and_steps_none_of_its_models()
     at_rest = SceneState(pair_of_trees()).description
     assert SceneState(scene).description == at_rest
     assert [group.simulator.counts.steps for group in scene.groups] == [0]
+
+
+def test_a_seedling_has_no_more_clusters_of_leaves_than_leaves() -> None:
+    seedling = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml').tree
+    (leaves,) = SceneState(make_simulator(seedling, in_leaf=True), 2800).leaves
+    assert leaves is not None
+    # Its leaves have 0.14 m^2, each about 0.09 m long and half as wide.
+    assert 20 < len(leaves.size) < 80

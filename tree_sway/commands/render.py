@@ -55,8 +55,10 @@ def run(arguments: argparse.Namespace) -> int:
         simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
     began = time.monotonic()
     rate, pixels = arguments.rate, arguments.pixels
-    frames = swaying(simulator, wind, rate, arguments.seconds)
+    count = max(1, round(arguments.seconds * rate))
     why_plain = _why_not_the_page(arguments)
+    what = 'swaying' if why_plain else f'drawing {count} pictures'
+    frames = swaying(simulator, wind, rate, arguments.seconds, what)
     if not why_plain:
         from PIL import Image
 
@@ -74,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
     spent = time.monotonic() - began
     print(
-        f'{target}: {scene.name}, {max(1, round(arguments.seconds * rate))} pictures, '
+        f'{target}: {scene.name}, {count} pictures, '
         f'{arguments.seconds:g} s of wind in {spent:.1f} s'
     )
     return 0

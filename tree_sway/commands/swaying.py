@@ -17,7 +17,9 @@ from tree_sway.page.wind_source import blow, WindSource
 _STEPS_PER_SECOND = 60.0
 
 
-def swaying(simulator: Simulator, wind: WindSource, rate: float, seconds: float) -> Iterator[None]:
+def swaying(
+    simulator: Simulator, wind: WindSource, rate: float, seconds: float, what: str = 'swaying'
+) -> Iterator[None]:
     """
     Sway a scene, at least 60 steps per second, and yield after each frame.
 
@@ -29,13 +31,15 @@ def swaying(simulator: Simulator, wind: WindSource, rate: float, seconds: float)
         Frames per second [Hz].
     seconds
         Length of all frames [s].
+    what
+        Label of the progress.
 
     """
     steps = max(1, round(_STEPS_PER_SECOND / rate))
     intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
     run = Run(simulator, rate * steps, intake=intake)
     tick = 0
-    for _ in bar(range(max(1, round(seconds * rate))), 'swaying'):
+    for _ in bar(range(max(1, round(seconds * rate))), what):
         for _ in range(steps):
             tick += 1
             blow(run, wind, tick * run.period)

@@ -34,7 +34,7 @@ _PAINT = """(async (looks, patterns, pixels) => {
   const { barkPicture, leafPicture, leavesAlong } = await import(href);
   const url = (canvas) => canvas.toDataURL('image/png');
   const leaves = Object.entries(looks).map(([key, { look, long }]) =>
-    [key, url(leafPicture(look, Math.max(5, leavesAlong(look, long)), false, pixels))]);
+    [key, url(leafPicture(look, Math.max(5, leavesAlong(look, long)), { size: pixels }))]);
   const bark = patterns.map((pattern) => [`bark_${pattern}`, url(barkPicture(pattern))]);
   return Object.fromEntries([...leaves, ...bark]);
 })"""

@@ -103,6 +103,7 @@ const stream = new TreeStream(address.href, {
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
+      scene.flower(Number(values.month));
       for (const control of controls) control.value = values[control.name] ?? control.value;
       panel.update(values, Boolean(refused));
     }

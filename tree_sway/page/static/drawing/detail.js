@@ -37,11 +37,13 @@ export function levelsOf({ reached, order, slots }, highest, most) {
 
 export class Detail {
   /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of a ball about
-   * the middle of each kind [m] @param {number} watched tree that is always placed */
-  constructor(trees, levels, radii, watched) {
+   * the middle of each kind [m] @param {number} watched tree that is always placed
+   * @param {number} [card] what a card costs over what a segment does */
+  constructor(trees, levels, radii, watched, card = 1) {
     this.trees = trees;
     this.levels = levels;
     this._radii = radii;
+    this._card = card;
     this.watched = watched;
     /** Trees, the largest on the screen first. */
     this.order = Uint32Array.from(trees, (_, t) => t);
@@ -71,7 +73,7 @@ export class Detail {
     this.segments = 0;
     for (const t of this.order) {
       const levels = this.levels[this.trees[t].kind];
-      const cost = (/** @type {number} */ level) => (level ? levels[level].segments + levels[level].cards : 0);
+      const cost = (/** @type {number} */ level) => (level ? levels[level].segments + this._card * levels[level].cards : 0);
       const least = t === this.watched ? 1 : pixels[t] ? 0 : -1;
       let level = pixels[t] ? levels.length - 1 : least;
       while (level > least && levels[level].from > size * pixels[t]) level--;

@@ -10,9 +10,9 @@ import { leafPlace } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
-const LARGEST_CARDS = 4;
-/** Tufts over the cards that others have, which are smaller. */
-const TUFTS = 0.6;
+const LARGEST_CARDS = 2.5;
+/** Length of a small card with a tuft over that of another; and how far from its shoot it is, over the same. */
+const [TUFTS, TUFTS_BESIDE] = [1.1, 0.65];
 /** Length of a small card over that of one of full size, by how many there are, and the least of it. */
 const [SMALLER, LEAST_CARD] = [0.57, 0.08];
 /** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
@@ -22,6 +22,8 @@ const VARIETY = 200;
 /** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
  * drawn there over that of a cluster, and at most [m]. */
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
+/** Length of a dead stub over the size of what is drawn on thin wood. */
+const STUB = 4;
 /** From which droop a tree weeps: the same wood of it, whose boughs a curtain hides, down to the ground. */
 const [WEEPS, THIN_WEEPING] = [0.8, 8];
 /** The frame of a shoot that hangs straight down. */
@@ -29,7 +31,7 @@ const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Length of a candle of flowers over that of a leaf, its width over its length; how open to the sky the leaves
  * are that it stands over, and how many cards there are to one. */
 const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.5, 17];
-/** Height up to which no small card is drawn [m], and that of a curtain. */
+/** Height up to which nothing is in leaf [m], and that of a curtain, below which no leaf hangs. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers of a corner of a card. */
 const PER_CORNER = 19;
@@ -42,11 +44,12 @@ const BOW = 0.1;
  * of them is a thinner crown. Per vertex: place (3), how it moves with the flutter (3), normal (3), where
  * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
- * cards of the whole crown, whose area fewer have as well
- * @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
-export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most) {
+ * cards of the whole crown, whose area fewer have as well @param {boolean} isFlowering
+ * @returns {{mesh: Mesh, along: number, isSpread: boolean}} and how many leaves the picture is long, and whether
+ * its cards are small ones */
+export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
-  if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1 };
+  if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1, isSpread: false };
   const random = seeded();
   const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
   const look = lookOf(kind);
@@ -55,12 +58,13 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  const share = leafShare(look, along);
+  const share = leafShare(look, along, isFlowering);
   const uneven = look.has_needles ? 0.07 : 0.14;
   const candle = candleCorners(CANDLE * wholeLeaf(look));
   // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
   const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
   const lowest = look.is_potted ? -Infinity : rest[2] + browsed;
+  const soil = look.is_potted ? -Infinity : rest[2] + 0.6 * browsed;
   const values = [];
   for (const shoot of shoots) {
     const p = STRIDE * hung[shoot.segment];
@@ -68,11 +72,13 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
     const back = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
     const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(shoot.frame, axis));
     const own = axes.map((axis) => turned(back, axis));
+    // All of a clump or none of it: a few of its leaves would hang in the air.
+    if (isSpread && shoot.at[2] < lowest) continue;
     const centre = turned(back, shoot.at.map((a, c) => a - rest[p + c]));
     for (let card = 0; card < shoot.share * each; card++) {
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card);
       const end = inFrame(axes, corners[2].place, shoot.size, shoot.at);
-      if (isSpread && end[2] < lowest) continue;
+      if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards);
       const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
@@ -94,7 +100,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
     }
   }
   const firsts = mixed(Array.from({ length: values.length / (4 * PER_CORNER) }, (_, card) => 4 * card), random);
-  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along };
+  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along, isSpread };
 }
 
 /** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes
@@ -144,9 +150,9 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
-    // A dead stub stays bare.
+    // A dead stub stays bare: the few leaves of it would hang in the air.
     const reach = Array.from(length.subarray(first[branch], end + 1)).reduce((sum, each) => sum + each, 0);
-    if (reach > 2 * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
+    if (reach > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
       if (leafy.has(segment) || radius[2 * segment] > leafiest) continue;
       const count = Math.ceil(length[segment] / ((weeps ? 0.7 : 1.5) * size));
@@ -162,7 +168,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
 function cardsOf(look, mean, clusters, cards, most) {
   const { rolls, length, width } = look.spray;
   const perCluster = (/** @type {number} */ all) => Math.max(1, Math.floor(all / clusters));
-  const each = perCluster(look.form === "tufts" && cards > rolls.length * clusters ? TUFTS * cards : cards);
+  const each = perCluster(cards);
   const leaf = wholeLeaf(look);
   const alone = { rolls, width: pictureWidth(look, 1), length: Math.min(length, (1.4 * leaf) / mean) };
   if (each <= rolls.length) {
@@ -173,7 +179,8 @@ function cardsOf(look, mean, clusters, cards, most) {
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
   }
   // Small cards hide each other less.
-  const small = length * Math.max(LEAST_CARD, (rolls.length / each) ** SMALLER);
+  const finer = look.form === "tufts" ? TUFTS : 1;
+  const small = finer * length * Math.max(LEAST_CARD, (rolls.length / each) ** SMALLER);
   if (look.has_needles || small * mean > 1.6 * leaf) {
     return { each, along: leavesAlong(look, small * mean), spray: { rolls, width, length: small }, isSpread: true };
   }
@@ -201,7 +208,8 @@ function cardCorners({ length, width, rolls }, phase, card) {
  * @param {Look} look @param {Spray} spray the card's own @param {() => number} random */
 function spreadCorners(look, { length, width }, random) {
   const whole = look.spray.length;
-  const wide = look.spray.width * whole;
+  // Tufts stand about their shoots, with sky between one shoot and the next.
+  const wide = look.spray.width * whole * (look.form === "tufts" ? TUFTS_BESIDE : 1);
   const isFlat = look.has_needles && look.form !== "tufts";
   const some = () => random() + random() - 1;
   const middle = [whole * (0.5 + 0.5 * some()), wide * some(), (isFlat ? 0.55 : 0.8) * wide * some()];

@@ -37,7 +37,9 @@ export class Grass {
     this.gusts.spread(time, mean, 2 * reach);
     const field = [x, y, reach, tall];
     use(this.gl, this._program, { field, downwind: [...way, first, 2 * reach], time: time % 1000, "gusts[0]": this.gusts.speeds });
-    drawPart(this.gl, this._part);
+    // About a small tree blades are large in the picture: fewer of them cover as much of it.
+    const share = Math.min(1, ((TALL * height) / tall) ** 2);
+    drawPart(this.gl, this._part, share);
   }
 
   free() {

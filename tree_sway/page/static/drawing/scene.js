@@ -18,7 +18,7 @@ import { barkMesh, boxOf, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
-import { barkPicture, leafPicture } from "./textures.js";
+import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 
 /** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
@@ -26,6 +26,8 @@ const CROWD = 50;
 /** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
  * has all of its cards and of one that is a picture [px]. */
 const MOST = { segments: 40000, cards: 64000, all: 200000, near: 700, far: 90 };
+/** What a card costs over what a segment does: that one is placed for each frame, which a graphics unit does for a card. */
+const CARD = 0.35;
 /** Of a crowd, whose kinds take memory. */
 const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
@@ -45,6 +47,8 @@ const PAINTED = 260;
 const GLOSS = 0.2;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
+/** When a horse chestnut flowers, in months from 1. */
+const FLOWERING = [5.2, 6.2];
 /** Of a tree in its own colours. */
 const UNPAINTED = [0, 0, 0, 0];
 
@@ -60,6 +64,7 @@ export class Scene {
     this.quality = new Quality();
     this.day = DAYLIGHT.light;
     this.isAutumn = false;
+    this.isFlowering = false;
     this.leavesShown = true;
     this.hasPerson = true;
     /** Whether an arrow shows the wind. */
@@ -131,6 +136,14 @@ export class Scene {
     if (this.description) this.describe(this.description);
   }
 
+  /** Put flowers on what flowers in a month. @param {number} month from 1, with its part that has passed */
+  flower(month) {
+    const isFlowering = month >= FLOWERING[0] && month < FLOWERING[1];
+    if (isFlowering === this.isFlowering) return;
+    this.isFlowering = isFlowering;
+    this.dress({});
+  }
+
   /** Take another tree. @param {Description} description */
   describe(description) {
     const { kinds, trees } = description;
@@ -150,7 +163,7 @@ export class Scene {
     const levels = this._kinds.map(({ placer, highest }) => levelsOf(placer, highest, most));
     const radii = this._kinds.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
     const tops = trees.map(({ kind, place }) => place[2] + place[4] * this._kinds[kind].high[2]);
-    this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))));
+    this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))), this.isSlow ? 1 : CARD);
     this._budget = most.all;
     const corners = trees.flatMap(({ kind, place }) => Array.from({ length: 8 }, (_, corner) => {
       const { low, high } = this._kinds[kind];
@@ -289,11 +302,13 @@ export class Scene {
     const look = lookOf(shape.kind);
     const { bark: barkColor, twig: twigColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
-    const { mesh, along } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
+    const isFlowering = this.isFlowering && !this.isAutumn;
+    const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
-    const name = `${number} ${along}`;
+    const isClump = isSpread || along >= CLUMP;
+    const name = `${number} ${along} ${isClump}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn), this.isSlow));
+      pictures.set(name, pictureTexture(gl, leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump }), this.isSlow));
     }
     const relief = look.bark_pattern;
     const foot = feet[relief] ?? { color: barkColor, height: 0 };

@@ -217,9 +217,14 @@ void main() {
   float own = leaf.a;
   // Seen along itself a card would be a blade.
   leaf.a *= min(1.0, 0.3 + 3.0 * abs(edge));
-  // Further away leaves are mixed with what is between them: less of one will do, so that no crown thins out.
-  float mixed = max(0.0, log2(length(fwidth(at)) * 180.0));
-  if (leaf.a * (1.0 + 0.07 * mixed) < 0.5) discard;
+  // Further away a point of the picture holds leaves and the gaps between them: it is drawn or left out by
+  // chance, so that no card is seen as one large leaf.
+  float small = length(fwidth(at));
+  float cells = exp2(floor(0.5 - log2(small)));
+  float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
+  float mixed = max(0.0, log2(180.0 * small));
+  float least = mix(0.5, 0.15 + 0.6 * chance, min(1.0, 0.3 * mixed));
+  if (leaf.a < least) discard;
   vec3 base = mix(leaf.rgb / max(own, 0.01), paint.rgb, paint.a);
   color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb + shine, lit.a), 1.0);
 }

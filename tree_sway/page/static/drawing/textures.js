@@ -5,13 +5,18 @@
 import { outlineOf, seeded } from "./looks.js";
 
 /** Leaves along a picture: a leaf alone, sprays of more and more. */
-const ALONG = [1, 3, 5, 8, 12, 18, 24];
+const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
 const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Share of a picture beside a candle. */
 const LEAF_SHARE = 0.75;
+/** Leaves along a picture from which it is one of a clump rather than of a shoot, whatever the cards; and how many
+ * times they would cover it. */
+export const [CLUMP, CLUMP_FILLED] = [12, 1.7];
+/** Length of a shoot that is clad in long needles, over theirs. */
+const BRUSH = 1.5;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
@@ -24,8 +29,9 @@ export const pictureWidth = ({ form, slenderness, spray }, along) =>
   along > 1 ? spray.width : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Share of the width of a picture that leaves have; the flowers of a horse chestnut stand beside them.
- * @param {Look} look @param {number} along as in `leafPicture` */
-export const leafShare = ({ form }, along) => (form === "digitate" && along === 1 ? LEAF_SHARE : 1);
+ * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
+export const leafShare = ({ form }, along, isFlowering) =>
+  (isFlowering && form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
 /** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
  * @param {Look} look @param {number} long length of a card [m] */
@@ -36,15 +42,19 @@ export function leavesAlong(look, long) {
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {boolean} isAutumn @param {number} [size] of the picture [px] */
-export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128) {
-  const share = leafShare(look, along);
-  const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along), share);
-  if (share < 1 && !isAutumn) brush.candle();
+ * @param {{isAutumn?: boolean, isFlowering?: boolean, isClump?: boolean, size?: number}} [options] whether it
+ * shows a clump of leaves seen from afar, and its size [px] */
+export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isClump = false, size } = {}) {
+  const share = leafShare(look, along, isFlowering);
+  const hasLeaflets = look.form in IN_LEAFLETS;
+  const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
+  const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along), seeded(97 + along), share);
+  if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 26);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
+  else if (isClump && (along >= CLUMP || !hasLeaflets)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
@@ -219,14 +229,29 @@ class Brush {
     }
   }
 
+  /** What is seen of a clump of shoots from afar: small leaves in layers with gaps between them, with no
+   * outline that would read as one large leaf. @param {number} leaf length of one */
+  clump(leaf) {
+    const { half, random } = this;
+    const unit = this.unit * leaf;
+    const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
+    for (let i = 0; i < count; i++) {
+      const [turn, far] = [2 * Math.PI * random(), Math.sqrt(random())];
+      const [along, across] = [far * Math.cos(turn), far * Math.sin(turn)];
+      const [x, y] = [0.5 + (0.5 - unit) * along, (half - unit) * across];
+      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
+      this.at(x, y, 2 * Math.PI * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
+    }
+  }
+
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
    * lighter at the tips. @param {number} shoot length of needles and shoot together */
   needles(shoot) {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
-    const apart = Math.max(0.09, 0.7 * shoot);
-    const long = (isFrond ? 0.4 : 0.42) * apart;
-    const wide = Math.max(0.1 * long, 0.0045);
+    const apart = Math.max(0.12, 0.95 * shoot);
+    const long = (isFrond ? 0.4 : 0.31) * apart;
+    const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
@@ -264,14 +289,16 @@ class Brush {
     this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
     for (const isUpper of [false, true]) {
       for (let i = 0; i < count; i++) {
-        const before = 0.9 * long * random();
+        // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
+        const before = Math.min(BRUSH * long, 0.8 * x) * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + 2.9 * ((i + random()) / count - 0.5);
+        const turn = heading + (i % 2 ? 1 : -1) * (0.15 + 0.75 * random());
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
-        const reach = Math.min(long * (0.55 + 0.45 * random()), 0.99 - fromX, room);
+        // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
+        const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.018, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
       }
     }
   }
