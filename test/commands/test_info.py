@@ -109,6 +109,32 @@ def test_natural_modes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[
         assert mode['damping_ratio'] == pytest.approx(0.04)
 
 
+def write_whips(path: Path, n: int, diameter: float) -> str:
+    """Write three rods of 1.5 m, in pieces, on a post of 1 m."""
+    post = np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 5)
+    start, end, thickness, branch = [post[:-1]], [post[1:]], [np.full(4, 0.05)], [np.zeros(4, int)]
+    for k, angle in enumerate(np.deg2rad([0.0, 120.0, 240.0])):
+        tip = [1.5 * np.cos(angle), 1.5 * np.sin(angle), 1.3]
+        nodes = np.linspace([0.0, 0.0, 1.0], tip, n + 1)
+        start.append(nodes[:-1])
+        end.append(nodes[1:])
+        thickness.append(np.full(n, diameter))
+        branch.append(np.full(n, k + 1))
+    start, end, thickness, branch = map(np.concatenate, (start, end, thickness, branch))
+    write_tree(path, tree_from_segments(start, end, thickness, branch=branch))
+    return str(path)
+
+
+def test_a_limp_tree_that_its_table_moves_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wood = ['--modulus', str(MODULUS), '--density', str(DENSITY)]
+    for n, diameter, is_told in ((1, 0.004, True), (2, 0.003, False), (1, 0.02, False)):
+        path = write_whips(tmp_path / 'whips.yaml', n, diameter)
+        warnings = facts(capsys, path, *wood)['warnings']
+        assert any('no inertia to solve with' in each for each in warnings) == is_told
+
+
 def test_leaves_weigh_and_slow(
     capsys: pytest.CaptureFixture[str], goldcrest: dict[str, Any]
 ) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway.cache.model_cache import MODELS
 from tree_sway.commands.arguments import (
     add_exact_argument,
     add_leaves_argument,
@@ -29,8 +30,10 @@ from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
@@ -105,16 +108,19 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
     settings = in_season(tree, species, settings)
     notes, modes = [], list[dict[str, Any]]()
     try:
-        modes, mass = mode_table(tree, species, settings, count)
+        whole = TreeReductions(tree, species, settings)
+        modes, mass = mode_table(whole, count)
+        limp_doubt = _limp_doubt(whole)
     except TreeError as error:
         if settings.gravity == 0.0:
             raise
         # Its size is still of interest.
         leaf_mass = 0.0 if settings.leaf_mass is None else float(settings.leaf_mass.sum())
         mass = species.density * float(tree.volume.sum()) + leaf_mass
-        doubt = f'no modes: {error}'
+        doubts = [f'no modes: {error}']
     else:
-        doubt = sway_oddity(tree, species, min(mode['frequency'] for mode in modes))
+        odd = sway_oddity(tree, species, min(mode['frequency'] for mode in modes))
+        doubts = [*filter(None, [odd, limp_doubt])]
     used = published = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
@@ -136,7 +142,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
     frequencies = [mode['frequency'] for mode in modes]
     return {
         'name': tree.name, 'notes': notes,
-        'warnings': [*oddities(tree, species), *filter(None, [doubt])],
+        'warnings': [*oddities(tree, species), *doubts],
         'branches': tree.n_branches, 'segments': tree.n_segments, 'height': tree.height,
         'length': float(tree.length.sum()),
         'volume': float(tree.volume.sum()), 'base_diameter': float(tree.base_diameter[0]),
@@ -148,6 +154,14 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         'strength': used and used.plain(), 'published_moment': published,
         'frequencies': frequencies, 'modes': modes,
     }  # fmt: skip
+
+
+def _limp_doubt(whole: TreeReductions) -> str:
+    """Return what makes the motion of a limp tree doubtful, as `simulate` says it."""
+    if not whole.is_limp:
+        return ''
+    simulator = make_simulator(whole.tree, whole.species, whole.settings, cache=MODELS)
+    return simulator.banks[0].doubt
 
 
 def _published_moment(tree: Tree, species: Species, speed: float) -> float | None:

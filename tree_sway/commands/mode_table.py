@@ -8,31 +8,29 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.setup.relative_damping import relative_damping
 
 
-def mode_table(
-    tree: Tree, species: Species, settings: Settings, count: int
-) -> tuple[list[dict[str, Any]], float]:
+def mode_table(whole: TreeReductions, count: int) -> tuple[list[dict[str, Any]], float]:
     """
     List the slowest natural modes of a tree, a number of them or all, and its mass in [kg].
 
     A mode has frequency [Hz] and damping ratio of wood and leaves, both without air, and the
     branch that bends most.
     """
-    whole = TreeReductions(tree, species, settings)
     modes = whole.natural_modes(min(count, whole.with_subtrees.reduction.n_coordinates))
+    damping_ratios = whole.damping_ratio * relative_damping(whole, modes)
     reduced = whole.with_subtrees
     owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])
     rows = [
         {
             'frequency': frequency,
-            'damping_ratio': whole.damping_ratio,
-            'branch': tree.branch_names[int(owner[np.argmax(np.abs(shape))])],
+            'damping_ratio': damping_ratio,
+            'branch': whole.tree.branch_names[int(owner[np.argmax(np.abs(shape))])],
         }
-        for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True)
+        for frequency, damping_ratio, shape in zip(
+            modes.frequencies.tolist(), damping_ratios.tolist(), modes.shapes.T, strict=True
+        )
     ]
     return rows, float(reduced.mass.sum())

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.sensor_place import PlaceMotion
+from tree_sway.core.observe.sensor_spectrum import SensorSpectrum
 from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.core.observe.tree_fit import fits, SensorSpectrum, Spectrum, TreeFit
+from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 _FIRST, _LATER = 40.0, 1.4

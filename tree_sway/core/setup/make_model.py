@@ -27,6 +27,7 @@ from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.relative_damping import relative_damping
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.setup.stream_basis import (
     arrays_of_stream,
@@ -54,9 +55,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
     # One coordinate after the other in memory, so that loops over key rotations are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T).T
     arrays = modal_arrays(reduced.branches, reduced.reduction, modes)
-    n_even = min(EVENLY_DAMPED, reduced.reduction.n_coordinates)
-    even = reductions.natural_modes(n_even).circular
-    relative = np.maximum(modes.circular / even[-1], 1.0)
+    relative = relative_damping(reductions, modes)
     slopes = inertia_slopes(reduced.tree, reduced.places, modes.shapes, reduced.mass)
     coordinates = Coordinates(
         shapes,
@@ -122,13 +121,6 @@ def _stream(
     found = basis_of_responses(branches, responses.rotations, in_gale)
     matrix, back = projection @ found.matrix, found.projection @ shapes
     return arrays_of_stream(replace(found, matrix=matrix, projection=back))
-
-
-EVENLY_DAMPED = 40
-"""
-Number of natural modes of equal damping ratio; above them it grows with the frequency, as by
-damping proportional to the stiffness of the wood.
-"""
 
 
 @one_thread()

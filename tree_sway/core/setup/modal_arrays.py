@@ -11,6 +11,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.setup.modes import Modes
+from tree_sway.core.setup.relative_damping import stiffness_by_weight
 from tree_sway.core.setup.tree_motion import centre_motion
 
 
@@ -54,7 +55,7 @@ def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
         'diagonal': np.asarray(reduction.stiffness.diagonal()),
-        'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
+        'weight': stiffness_by_weight(reduction.gravity, shapes.T),
         'momentum': reduction.mass @ modes.shapes,
         # Mean squared motion of each load centre, over three directions, (b, m).
         'participation': np.square(centre_motion(branches, modes.shapes)).sum(axis=1) / 2.0,
