@@ -5,11 +5,19 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tree_sway_lab.twin.trial import _compared, _held, DT, squared_score
-from tree_sway_lab.twin.true_tree import sensor_places, tree_called, TrueMotion
+from tree_sway_lab.twin.true_tree import (
+    Circumstances,
+    drawn,
+    sensor_places,
+    tree_called,
+    true_motion,
+    TrueMotion,
+)
 
 from tree_sway.commands.cli import main
 
@@ -50,6 +58,26 @@ def test_the_square_of_the_wind_explains_a_motion_that_is_one() -> None:
         tips[k, 0] = 0.01 * passed
     tips[:, 0, 2] = 0.0
     assert squared_score(TrueMotion(wind, tips, {}), 0.5).error < 1e-9
+
+
+def test_drawn_trees_have_the_spreads_of_wood_damping_and_drag() -> None:
+    trees = drawn(Circumstances(), 400, in_leaf=False)
+    logs = np.log([(each.wood, each.damping, each.drag) for each in trees])
+    np.testing.assert_allclose(logs.mean(axis=0), 0.0, atol=1e-9)
+    np.testing.assert_allclose(logs.std(axis=0), [0.22, 0.5, 0.25], rtol=0.01)
+    assert np.abs(np.corrcoef(logs.T) - np.eye(3)).max() < 0.2
+    assert len({each.seed for each in trees}) == 400
+
+
+def test_a_true_tree_of_more_drag_leans_more() -> None:
+    tree, species = tree_called('straight')
+    calm = Circumstances(coherence=1.0, speed=4.0, seconds=25.0)
+    lean = []
+    for drag in (1e-6, 1.0, 1.5):
+        around = replace(calm, drag=drag)
+        true = true_motion(tree, species, [], around, in_leaf=False, model=30)
+        lean.append(true.tips[600:, 0, 0].mean())
+    assert (lean[2] - lean[0]) / (lean[1] - lean[0]) == pytest.approx(1.5, abs=0.05)
 
 
 def test_sensors_sit_on_the_stem_and_then_on_the_stoutest_limbs() -> None:

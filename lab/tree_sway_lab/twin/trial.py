@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 import time
 
 import numpy as np
@@ -42,9 +42,10 @@ class Score:
     stem
         Correlation of the stem's tip with the true one, the smaller of both axes [-].
     held
-        Share of the time that the band of 80 % holds the tips [-]; 0 without a band.
+        Share of the time that the band of 80 % holds the tips [-]; not a number without a band.
     cost, worst
-        Median and 99th percentile of the time of a step in [us], sensors and all, while scored.
+        Median and 99th percentile of the processor's time of a step in [us], sensors and all,
+        while scored.
     notes
         What the sensors say.
 
@@ -61,23 +62,30 @@ class Score:
     notes: tuple[str, ...] = ()
 
 
+def mean_score(scores: Sequence[Score]) -> Score:
+    """Return the mean of scores; the notes are those of all."""
+    names = [each.name for each in fields(Score) if each.name != 'notes']
+    means = {name: float(np.mean([getattr(each, name) for each in scores])) for name in names}
+    return Score(**means, notes=tuple(note for each in scores for note in each.notes))
+
+
 def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
     """Score a simulator as it is without sensors."""
     tree = sim.tree
     block, tips = np.empty((tree.n_segments, 7)), np.empty_like(true.tips)
     spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
-        began = time.perf_counter()
+        began = time.thread_time_ns()
         sim.step(each, DT)
-        spent[k] = time.perf_counter() - began
+        spent[k] = time.thread_time_ns() - began
         tips[k] = tips_of_poses(tree, sim.place(block))
     error, roughness, stem = _compared(tips, true.tips, 0)
     return Score(error, roughness, error, roughness, stem, np.nan, *_costs(spent))
 
 
 def _costs(spent: Floats) -> tuple[float, float]:
-    """Median and 99th percentile of times of steps, in [us], of the later part of a record."""
-    later = 1e6 * spent[round(_TRUSTED * len(spent)) :]
+    """Median and 99th percentile, in [us], of times [ns] of the later steps of a record."""
+    later = 1e-3 * spent[round(_TRUSTED * len(spent)) :]
     return float(np.median(later)), float(np.quantile(later, 0.99))
 
 
@@ -130,9 +138,9 @@ def twin_score(
     bands = np.full((len(tips), 2, *tips.shape[1:]), np.nan)
     spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
-        began = time.perf_counter()
+        began = time.thread_time_ns()
         twin.step(each, DT)
-        spent[k] = time.perf_counter() - began
+        spent[k] = time.thread_time_ns() - began
         tips[k] = tips_of_poses(tree, twin.place(block))
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         if has_band:
@@ -145,9 +153,9 @@ def twin_score(
     notes = [*twin.problems]
     if (fit := twin.observer.fit) is not None:
         notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
+    held = _held(tips, true.tips, bands) if has_band else np.nan
     return Score(
-        error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
-        *_costs(spent), tuple(notes),
+        error, roughness, late_error, late_roughness, stem, held, *_costs(spent), tuple(notes)
     )  # fmt: skip
 
 

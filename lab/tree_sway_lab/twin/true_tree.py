@@ -13,9 +13,12 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.model.drag_law import DragLaw
+from tree_sway.core.observe.members import uncertainty_of
 from tree_sway.core.observe.sensor_place import place_on, SensorPlace
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
@@ -38,6 +41,8 @@ class Circumstances:
     ----------
     wood, damping
         Modulus of the true tree over the model's, and its damping ratio over the model's [-].
+    drag
+        Drag area of the true tree over the model's [-].
     coherence
         Share of a gust that reaches the whole crown at once [-].
     upwind
@@ -51,11 +56,28 @@ class Circumstances:
 
     wood: float = 0.8
     damping: float = 1.5
+    drag: float = 1.0
     coherence: float = 0.3
     upwind: float = 0.0
     speed: float = 7.0
     seconds: float = 120.0
     seed: int = 101
+
+
+def drawn(around: Circumstances, count: int, *, in_leaf: bool) -> list[Circumstances]:
+    """
+    Draw wood, damping and drag of a number of true trees from their spreads, each in its own wind.
+
+    Each takes one value from every stratum of each spread.
+    """
+    rng = np.random.default_rng(around.seed)
+    strata = ndtri((np.arange(count) + 0.5) / count)
+    spreads = np.array(uncertainty_of(in_leaf=in_leaf))
+    factors = np.exp([spread * rng.permutation(strata) for spread in spreads]).T.tolist()
+    return [
+        replace(around, wood=wood, damping=damping, drag=drag, seed=around.seed + k)
+        for k, (wood, damping, drag) in enumerate(factors)
+    ]
 
 
 class TrueMotion(NamedTuple):
@@ -102,14 +124,17 @@ def true_simulator(
 ) -> SwaySimulator:
     """Return a simulator of the true tree."""
     known = prepare(tree, species, model=0, in_leaf=in_leaf)
-    return make_simulator(
+    model_of_true = prepare(
         tree,
         replace(species, modulus=around.wood * species.modulus),
         model=model,
         in_leaf=in_leaf,
         crown_coherence=around.coherence,
-        damping_ratio=around.damping * known.damping_ratio,
+        damping_ratio=min(around.damping * known.damping_ratio, 1.0),
     )
+    leaves, exponent, wood = model_of_true.drag_law
+    law = DragLaw(around.drag * leaves, exponent, around.drag * wood)
+    return make_simulator(replace(model_of_true, drag_law=law))
 
 
 def winds(around: Circumstances) -> tuple[Floats, Floats]:

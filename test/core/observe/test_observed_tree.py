@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+import tracemalloc
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,8 @@ from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
 DT, SECONDS = 1.0 / 60.0, 70
+LEARNED = 30 * 60
+"""Steps after which a mounting was found for the second time, the third being far."""
 TREE, SPECIES = grow('spruce', 5.0, rng=np.random.default_rng(8)), species_named('spruce')
 AT = f'{TREE.branch_names[0]}:0.6'
 BANDED = list(range(0, TREE.n_branches, 12))
@@ -133,7 +136,7 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, _ = good()
+    twin, tips, late, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
     smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
@@ -145,7 +148,7 @@ def test_a_sensor_takes_most_of_the_error_away() -> None:
 
 
 def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, _ = good()
+    _twin, tips, late, *_ = good()
     true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
     rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
     assert np.sqrt(rough[1]) < 1.5
@@ -293,3 +296,32 @@ def test_a_tree_without_a_band_says_how_to_get_one() -> None:
     with pytest.raises(ParameterError, match='without a band') as caught:
         twin.band()
     assert 'has_band' in str(caught.value.cure)
+
+
+@pytest.mark.compiled
+def test_a_step_with_a_sensor_makes_no_arrays() -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
+    wind, motion = [tuple(each) for each in truth().wind.tolist()], measured()
+    rows = [motion.time.tolist(), motion.acceleration.tolist(), motion.rate.tolist()]
+    samples = list(zip(*rows, strict=True))
+
+    def sway(first: int, last: int) -> None:
+        for k in range(first, last):
+            time, acceleration, rate = samples[k]
+            twin.offer('phone', time, acceleration=acceleration, rate=rate)
+            twin.step(wind[k], DT)
+
+    sway(0, LEARNED)
+    assert twin.observer.is_active
+    tracemalloc.start()
+    try:
+        sway(LEARNED, LEARNED + 2)
+        before = tracemalloc.get_traced_memory()[0]
+        tracemalloc.reset_peak()
+        sway(LEARNED + 2, LEARNED + 200)
+        now, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    print(f'peak {peak - before} B, kept {now - before} B')
+    assert peak - before < 2500  # views and numbers
+    assert now - before < 500

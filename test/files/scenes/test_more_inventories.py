@@ -12,6 +12,7 @@ import pytest
 from tree_sway.errors import FormatError
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
+from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_head
 
 #: Head and rows; then species, height [m] or None where it is that of the stem, diameter [m].
@@ -274,6 +275,36 @@ READ = {
         '48.8244,2.2703;Tilleul;Tilia tomentosa;90;10;adulte\n',
         [('plane', 16.0, 0.477), ('lime', 10.0, 0.286)],
     ),
+    'Taipei': (
+        'TreeID,Dist,Region,TreeType,Diameter,TreeHeight,SurveyDate,TWD97X,TWD97Y\n'
+        'A1,中山區,路口,榕樹,45,9.5,2025-01-02,303100.1,2770100.2\n'
+        'A2,中山區,路口,樟樹,32,8.0,2025-01-02,303110.1,2770104.2\n',
+        [('broadleaf', 9.5, 0.45), ('broadleaf', 8.0, 0.32)],
+    ),
+    'Seoul': (
+        '라벨,도로명,수목명,흉고직경(cm),수고(m),수관폭(m),경도,위도\n'
+        '01,종로,은행나무,35,12,5,126.98120,37.57120\n'
+        '02,종로,양버즘나무,45,15,7,126.98131,37.57121\n',
+        [('ginkgo', 12.0, 0.35), ('plane', 15.0, 0.45)],
+    ),
+    'a survey by BS 5837': (
+        'Tree No.,Species,Height (m),Stem dia. (mm),Branch spread N,Crown clearance (m),'
+        'Life stage,BS category,Easting,Northing\n'
+        'T1,Common oak,16,850,6,3,Mature,A1,531000,181000\n'
+        'T2,Silver birch,12,320,3,2,Semi-mature,B2,531010,181006\n',
+        [('oak', 16.0, 0.85), ('birch', 12.0, 0.32)],
+    ),
+    'a German survey, girths at breast height, heights estimated': (
+        'Nr.;Baumart;Umfang in 1,3 m Höhe [cm];Höhe geschätzt [m];Krone Ø [m];'
+        'Rechtswert (UTM);Hochwert (UTM)\n'
+        '1;Stieleiche;250;18;14;391234;5821234\n2;Rotbuche;180;20;12;391244;5821240\n',
+        [('oak', 18.0, 0.796), ('beech', 20.0, 0.573)],
+    ),
+    'Czech natural forests': (
+        'STROM_ID;DREVINA;VYSKA;DELKA;VYCETNI_T1;X;Y\n'
+        '1;smrk;32,5;;480;-742100,1;-1043100,2\n2;buk;28,0;;390;-742104,1;-1043103,2\n',
+        [('spruce', 32.5, 0.48), ('beech', 28.0, 0.39)],
+    ),
     'a plot in metres with few digits stays one': (
         'x,y,species,height,dbh\n12.250,3.500,oak,18,45\n30.500,8.750,oak,20,50\n',
         [('oak', 18.0, 0.45), ('oak', 20.0, 0.5)],
@@ -301,6 +332,22 @@ def test_it_is_read_as_it_is(name: str, tmp_path: Path) -> None:
     step = np.hypot(np.diff(found.x), np.diff(found.y))
     assert step.min() > 3.0
     assert step.max() < 30.0
+
+
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [
+        ('SPCD,DIA,HT\n131,8.1,55\n131,9.4,58\n', [(16.764, 0.206), (17.678, 0.239)]),
+        ('species,dbh,height\npine,7,24\nfir,14,45\n', [(7.315, 0.178), (13.716, 0.356)]),
+        ('species,dbh,height\npine,18,24\nfir,34,28\n', [(24.0, 0.18), (28.0, 0.34)]),
+    ],
+)
+def test_inches_and_feet_without_a_place_are_told_by_their_ratio(
+    text: str, expected: list[tuple[float, float]]
+) -> None:
+    found = inventory_of(parse_table(text.splitlines(), 'trees.csv'), needs_place=False)
+    sizes = np.column_stack([found.height, found.diameter])
+    np.testing.assert_allclose(sizes, expected, rtol=5e-3)
 
 
 def test_degrees_in_x_and_y_are_said(tmp_path: Path) -> None:

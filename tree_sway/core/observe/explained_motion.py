@@ -25,6 +25,8 @@ class ExplainedMotion:
     def __init__(self) -> None:
         self._passed = self._since = 0.0
         self._means: Floats = np.zeros((2, 0))
+        self._away: Floats = np.zeros(0)
+        self._next_away: Floats = np.zeros(0)
         self._energies: Floats = np.zeros(2)
 
     def note(self, dt: float, stiffness: Floats, whole: Floats, added: Floats) -> None:
@@ -47,14 +49,17 @@ class ExplainedMotion:
         dt, self._since = self._since, 0.0
         if self._means.shape[1] != len(whole):
             self._means = np.zeros((2, len(whole)))
+            self._away, self._next_away = np.zeros((2, len(whole)))
         self._passed += dt
         # Means over all steps until there are more than the time constant.
         share = min(dt / min(self._passed, RECENT), 1.0)
         for k, now in enumerate((whole, added)):
-            away = now - self._means[k]
-            self._means[k] += share * away
+            mean, away, next_away = self._means[k], self._away, self._next_away
+            np.subtract(now, mean, out=away)
+            mean += np.multiply(share, away, out=next_away)
             # Both factors: the mean has moved towards the value (Welford 1962).
-            energy = float(stiffness @ (away * (now - self._means[k])))
+            away *= np.subtract(now, mean, out=next_away)
+            energy = float(stiffness @ away)
             self._energies[k] += share * (energy - self._energies[k])
 
     @property

@@ -11,12 +11,17 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.sensor_place import PlaceMotion
+from tree_sway.core.observe.sensor_spectrum import SensorSpectrum
 from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.core.observe.tree_fit import fits, SensorSpectrum, Spectrum, TreeFit
+from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 _FIRST, _LATER = 40.0, 1.4
 """Motion in [s] from which the tree is first fitted, and how much more there is each time."""
+
+
+_SOON = 5.0
+"""Time in [s] that a fit waits for the first stretch of further sensors."""
 
 
 class RunningFit:
@@ -75,6 +80,9 @@ class RunningFit:
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
         forces = self._unknown.forces
         if seconds < self._fit_after or forces is None:
+            return
+        spectra = [self._spectra[k] for k in used]
+        if any(not each.count and each.until_first < _SOON for each in spectra):
             return
         self._fit_after = _LATER * seconds
         self._parts = fits(

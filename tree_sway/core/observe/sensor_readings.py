@@ -106,6 +106,10 @@ class SensorReadings:
             return False
         slot, when = (step - late) % _KEPT, time - late * self._dt
         self.forces = self._forces[slot]
+        # To find a mounting takes milliseconds: one at a step.
+        due = next((track for track in self._tracks if track.is_due), None)
+        if due is not None:
+            due.align()
         sensed = self._sensed[slot]
         for k, track in enumerate(self._tracks):
             self.is_known[k] = track.read(when, sensed[k], self._beyond[k])

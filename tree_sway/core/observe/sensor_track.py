@@ -249,7 +249,7 @@ class SensorTrack:
 
     def read(self, time: float, computed: Floats, beyond: Floats) -> bool:
         """
-        Read the sensor at the time of a step, and learn from it.
+        Read the sensor at the time of a step, and keep what it says.
 
         Parameters
         ----------
@@ -276,10 +276,6 @@ class SensorTrack:
             return False
         self._absent = 0.0
         self._count += 1
-        if self._count == self._next_fit:
-            self._next_fit = math.ceil(_LATER * self._count)
-            self._align()
-            find_beyond(self._mounting, self._values, computed, self._moved, beyond)
         return self.alignment is not None and not self.alignment.problem
 
     def _miss(self) -> None:
@@ -289,7 +285,14 @@ class SensorTrack:
                 self.sensor.counts.silent += 1
             self.in_use = False
 
-    def _align(self) -> None:
+    @property
+    def is_due(self) -> bool:
+        """Whether it has seen enough motion for its mounting to be found again."""
+        return self._count >= self._next_fit
+
+    def align(self) -> None:
+        """Find its mounting from the motion so far."""
+        self._next_fit = math.ceil(_LATER * self._count)
         n = min(self._count, len(self._sensed))
         sensed, computed = self._sensed[:n], self._computed[:n].T
         upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))

@@ -26,13 +26,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.sensor_spectrum import Waves
 from tree_sway.core.setup.one_thread import one_thread
-
-Waves = NDArray[np.complex128]
-"""Complex amplitudes."""
 
 STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
 """Standard deviations of the logarithms of stiffness and damping, before any measurement."""
@@ -40,9 +37,11 @@ STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
 _STIFFNESSES = np.geomspace(0.5, 1.8, 53)
 _DAMPINGS = np.geomspace(0.35, 3.0, 9)
 _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
-_BAND = (0.5, 2.2)
-_CYCLES = 40.0
 _MOST_DRAG = 2.0
+
+_LEAST = 1e-4
+"""Least variance of a pattern of static bends that counts, over the largest [-]."""
+
 _INDEPENDENT = 0.1
 """
 Independent values in an averaged periodogram over all.
@@ -65,63 +64,6 @@ class TreeFit(NamedTuple):
     stiffness_error: float
     damping_error: float
     hours: float
-
-
-class SensorSpectrum:
-    """
-    Averaged spectrum of the angular rate or acceleration of a sensor, and of the known forces.
-
-    Parameters
-    ----------
-    frequency
-        First frequency of the model in [Hz].
-    dt
-        Time step in [s].
-    count
-        Number of coordinates whose forces are known.
-
-    """
-
-    def __init__(self, frequency: float, dt: float, count: int) -> None:
-        self._dt = dt
-        self._length = 2 * round(0.5 * _CYCLES / (frequency * dt))
-        # East, north and the force on each coordinate.
-        self._rows = np.zeros((self._length, 2 + count))
-        self._window = np.hanning(self._length + 1)[:-1, None]
-        self._filled = self.count = 0
-        axis = np.fft.rfftfreq(self._length, dt)
-        self._inside = (axis > _BAND[0] * frequency) & (axis < _BAND[1] * frequency)
-        self.circular: Floats = 2.0 * np.pi * np.asarray(axis[self._inside], dtype=np.float64)
-        """Circular frequencies in [rad/s], (f,)."""
-        n_rows = 2 + count
-        self._products = np.zeros((len(self.circular), n_rows, n_rows), dtype=np.complex128)
-        self.seconds = 0.0
-        """Length of the motion so far in [s]."""
-
-    def add(self, motion: Floats, force: Floats) -> None:
-        """Add motion, (3,), and forces of the known wind, (count,), of a step."""
-        row = self._rows[self._filled]
-        row[:2], row[2:] = motion[:2], force
-        self._filled += 1
-        self.seconds += self._dt
-        if self._filled < self._length:
-            return
-        with one_thread():
-            moved = self._window * (self._rows - self._rows.mean(axis=0))
-            waves = np.fft.rfft(moved, axis=0)[self._inside]
-            self._products += waves[:, :, None] * waves[:, None].conj()
-        self.count += 1
-        self._filled = self._length // 2
-        self._rows[: self._filled] = self._rows[self._filled :].copy()
-
-    def skip(self) -> None:
-        """Forget an unfinished stretch: the motion has a gap."""
-        self._filled = 0
-
-    @property
-    def products(self) -> Waves:
-        """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
-        return self._products / max(self.count, 1)
 
 
 class Spectrum(NamedTuple):
@@ -159,16 +101,15 @@ def fits(
         Covariance of the unknown forces, (m, m).
 
     """
-    values, vectors = np.linalg.eigh(covariance)
-    kept = values > 1e-6 * values[-1]
-    forces = (vectors[:, kept] * np.sqrt(values[kept])).T
+    bends, sizes = _patterns(covariance, stiffness)
+    sensors = [_Misfit(each, bends * sizes, stiffness) for each in spectra]
     table = np.zeros((len(_STIFFNESSES), len(_DAMPINGS), len(_SLOPES)))
     for i, stiff in enumerate(_STIFFNESSES.tolist()):
         for j, damped in enumerate(_DAMPINGS.tolist()):
-            law = stiff * stiffness, damped * damping + air_damping
-            for each in spectra:
+            damping_there = damped * damping + air_damping
+            for each in sensors:
                 with one_thread():
-                    table[i, j] += _misfit(each, *law, forces, (stiff - 1.0) * stiffness)
+                    table[i, j] += each.of(stiff, damping_there)
                 yield None
             prior = (math.log(stiff) / STIFFNESS_SPREAD) ** 2
             table[i, j] += 0.5 * (prior + (math.log(damped) / DAMPING_SPREAD) ** 2)
@@ -186,49 +127,89 @@ def _mean(values: Floats, weight: Floats) -> tuple[float, float]:
     return mean, math.sqrt(float(weight @ np.square(values - mean)) + step * step / 12.0)
 
 
-def _misfit(
-    of: Spectrum, stiffness: Floats, damping: Floats, forces: Floats, stiffer: Floats
-) -> Floats:
+def _patterns(covariance: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
     """
-    Return -ln p of a spectrum for each slope of the gusts, (s,).
+    Find the patterns of forces that matter, (m, r), and their deviations, (r,).
+
+    They are uncorrelated, and those that bend the tree little are left out.
+    """
+    soft = 1.0 / stiffness
+    values, vectors = np.linalg.eigh(soft[:, None] * covariance * soft)
+    kept = values > _LEAST * values[-1]
+    return stiffness[:, None] * vectors[:, kept], np.sqrt(values[kept])
+
+
+class _Misfit:
+    """
+    How far the spectrum of a sensor is from that of a candidate.
 
     Parameters
     ----------
-    of
+    measured
         The measured spectrum.
-    stiffness, damping
-        Those of the candidate, (m,).
-    forces
-        A root of the covariance of the unknown forces, (k, m).
-    stiffer
-        Stiffness of the candidate less that of the sensor's rows, (m,).
+    unknown
+        A root of the covariance of the unknown forces, (m, k).
+    stiffness
+        Stiffness of the model of the sensor's rows, (m,).
 
     """
-    w = of.circular
-    response = 1.0 / (stiffness[:, None] - w * w + 1j * w * damping[:, None])
-    low = np.log(w / w[0])
-    weaker = np.exp(-_SLOPES[:, None] * low)
-    told, known, moved = (np.zeros((2, len(_SLOPES))) for _ in range(3))
-    logs = np.zeros(len(_SLOPES))
-    for axis in (0, 1):
-        by_eta, by_rate, by_force = of.rows[axis].reshape(3, -1)
-        by_eta = by_eta - stiffer * by_force
-        motion = (by_eta[:, None] + 1j * w * by_rate[:, None]) * response
-        motion += by_force[:, None]
-        level = np.square(np.abs(forces @ motion)).sum(axis=0)
+
+    def __init__(self, measured: Spectrum, unknown: Floats, stiffness: Floats) -> None:
+        self._n_stretches, self._circular = measured.n_stretches, measured.circular
+        self._stiffness, self._n_unknown = stiffness, unknown.shape[1]
+        w = self._circular
+        weaker = np.exp(-_SLOPES[:, None] * np.log(w / w[0]))
+        self._weaker = weaker[:, None]
+        products = measured.products
+        # All forces of the wind are sums of few patterns, for the wind is one.
+        known, _ = _patterns(products[:, 2:, 2:].real.sum(axis=0), stiffness)
+        shares = known / np.square(stiffness)[:, None]
+        self._forces = shares.T @ products[:, 2:, 2:] @ shares
+        self._shared = np.moveaxis(shares.T @ products[:, 2:, :2], 2, 0)
+        self._power = products[:, (0, 1), (0, 1)].real.T
+        # East and north motion by each pattern, of displacement, rate and force.
+        patterns = np.hstack([unknown, known])
+        by_eta, by_rate, by_force = np.moveaxis(measured.rows[:2].reshape(2, 3, -1), 1, 0)
+        parts = [each[:, None] * patterns.T for each in (by_eta, by_rate, by_force)]
+        self._by_eta, self._by_rate, by_force = parts
+        self._by_stiffer = by_force * stiffness
+        self._by_force = by_force.sum(axis=2)[..., None]
+
+    def of(self, stiff: float, damping: Floats) -> Floats:
+        """
+        Return -ln p of the spectrum for each slope of the gusts, (s,).
+
+        Parameters
+        ----------
+        stiff
+            Stiffness of the candidate over that of the model.
+        damping
+            Its damping, (m,).
+
+        """
+        w = self._circular
+        response = 1.0 / ((stiff * self._stiffness)[:, None] - w * w + 1j * w * damping[:, None])
+        # Real matrices on real and imaginary parts, side by side.
+        parts = response.view(np.float64)
+        moved = ((self._by_eta - (stiff - 1.0) * self._by_stiffer) @ parts).view(np.complex128)
+        motion = moved + 1j * w * (self._by_rate @ parts).view(np.complex128) + self._by_force
+        unknown, known = motion[:, : self._n_unknown], motion[:, self._n_unknown :]
+        level = (np.square(unknown.real) + np.square(unknown.imag)).sum(axis=1)
         # The window spreads the power of a frequency to its neighbours.
-        level[1:-1] = (level[:-2] + 4.0 * level[1:-1] + level[2:]) / 6.0
-        shaped = np.maximum(level * weaker, 1e-300)
+        level[:, 1:-1] = (level[:, :-2] + 4.0 * level[:, 1:-1] + level[:, 2:]) / 6.0
+        shaped = np.maximum(level * self._weaker, 1e-300)
         # Power of the measured and of the expected motion, and what both have in common.
-        products, by_mode = of.products, motion.T[:, None]
-        expected = by_mode @ products[:, 2:, 2:] @ by_mode.conj().swapaxes(1, 2)
-        shared = by_mode @ products[:, 2:, axis, None]
-        told[axis] = (products[:, axis, axis].real / shaped).mean(axis=1)
-        known[axis] = (expected[:, 0, 0].real / shaped).mean(axis=1)
-        moved[axis] = (shared[:, 0, 0].real / shaped).mean(axis=1)
-        logs += np.log(shaped).sum(axis=1)
-    # The factor of the drag, and the level of what it leaves.
-    drag = np.clip(moved.sum(axis=0) / np.maximum(known.sum(axis=0), 1e-300), 0.0, _MOST_DRAG)
-    left = told - 2.0 * drag * moved + drag * drag * known
-    logs += len(w) * np.log(np.maximum(left, 1e-300)).sum(axis=0)
-    return np.asarray(_INDEPENDENT * of.n_stretches * logs)
+        by_pattern = known.swapaxes(1, 2)
+        expected = ((by_pattern[:, :, None] @ self._forces)[:, :, 0] * by_pattern.conj()).sum(
+            axis=2
+        )
+        shared = (by_pattern * self._shared).sum(axis=2)
+        powers = (self._power, shared.real, expected.real)
+        told, common, alone = ((each / shaped).mean(axis=2) for each in powers)
+        # The factor of the drag, and the level of what it leaves.
+        drag = common.sum(axis=1) / np.maximum(alone.sum(axis=1), 1e-300)
+        drag = np.clip(drag, 0.0, _MOST_DRAG)[:, None]
+        left = told - 2.0 * drag * common + drag * drag * alone
+        logs = np.log(shaped).sum(axis=(1, 2))
+        logs += len(w) * np.log(np.maximum(left, 1e-300)).sum(axis=1)
+        return np.asarray(_INDEPENDENT * self._n_stretches * logs)

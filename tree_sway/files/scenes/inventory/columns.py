@@ -31,6 +31,8 @@ class InventoryColumns:
         self.n_rows = len(table.texts)
         self.used = set[int]()
         self.notes = list[str]()
+        self.has_inches = False
+        """Whether stems are in inches, so that heights may be in feet."""
         self.is_kept: NDArray[np.bool_] = np.ones(self.n_rows, dtype=np.bool_)
         self._reasons = Counter[str]()
         self._first = ''

@@ -45,6 +45,7 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
             factor, why = _stem_unit(values / over, columns, is_in_states)
             name = columns.table.columns[index]
             columns.note(f'{name} is taken as {_SAID[factor]}{why}')
+        columns.has_inches |= factor == _INCH
         own = values * factor / over
         own[~((own > 0.0) & (own <= THICKEST))] = np.nan
         found = own if found is None else np.where(np.isnan(found), own, found)
@@ -72,14 +73,19 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
     ratio = _slenderness(height * (factor or 1.0), values * _CM)
-    if ratio > _SLENDER[1] and _SLENDER[0] < ratio * _CM / _INCH < _SLENDER[1]:
+    in_inches = ratio * _CM / _INCH
+    if ratio > _SLENDER[1] and _SLENDER[0] < in_inches < _SLENDER[1]:
         return _INCH, ', by height over it'
+    if factor is None and _SLENDER[0] < in_inches * _FOOT < _SLENDER[1]:
+        # Feet and inches for metres and cm: nearly all trees would be too slender.
+        if _slenderness(height, values * _CM, quantile=0.1) > _SLENDER[1]:
+            return _INCH, ', by height in feet over it'
     return _CM, ''
 
 
-def _slenderness(height: Floats, diameter: Floats) -> float:
+def _slenderness(height: Floats, diameter: Floats, quantile: float = 0.5) -> float:
     known = (height > 0.0) & (diameter > 0.0)
-    return float(np.median(height[known] / diameter[known])) if known.any() else 0.0
+    return float(np.quantile(height[known] / diameter[known], quantile)) if known.any() else 0.0
 
 
 def _height_column(columns: InventoryColumns) -> int | None:
@@ -105,8 +111,9 @@ def heights_of(
         if unit:
             columns.note(f"{name}: '{unit[:40]}' is no known unit")
         ratio = 0.0 if diameter is None else _slenderness(values, diameter)
-        # In the United States a city's heights are in feet or in metres.
-        most = _MIDDLING / math.sqrt(_FOOT) if is_in_states else _SLENDER[1]
+        # In the United States, and beside inches, heights are in feet or in metres.
+        may_be_feet = is_in_states or columns.has_inches
+        most = _MIDDLING / math.sqrt(_FOOT) if may_be_feet else _SLENDER[1]
         if ratio > most and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')

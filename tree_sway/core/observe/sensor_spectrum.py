@@ -1,0 +1,109 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Averaged spectrum of the motion of a sensor and of the known forces (Welch 1967).
+
+Stretches overlap by half. While the next half is measured, the last stretch is transformed, a
+series at each step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+
+Waves = NDArray[np.complex128]
+"""Complex amplitudes."""
+
+_BAND = (0.5, 2.2)
+"""Frequencies over the first one of the tree."""
+
+_CYCLES = 40.0
+"""Length of a stretch in periods of the first frequency."""
+
+_HALVES = 3
+"""Halves that are kept: the last stretch, and the half that is being measured."""
+
+
+class SensorSpectrum:
+    """
+    Averaged spectrum of the angular rate or acceleration of a sensor, and of the known forces.
+
+    Parameters
+    ----------
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+    count
+        Number of coordinates whose forces are known.
+
+    """
+
+    def __init__(self, frequency: float, dt: float, count: int) -> None:
+        self._dt = dt
+        half = self._half = round(0.5 * _CYCLES / (frequency * dt))
+        # East, north and the force on each coordinate.
+        n_series = 2 + count
+        self._series = np.zeros((n_series, _HALVES, half))
+        self._window = np.hanning(2 * half + 1)[:-1]
+        self._stretch = np.zeros(2 * half)
+        axis = np.fft.rfftfreq(2 * half, dt)
+        inside = np.flatnonzero((axis > _BAND[0] * frequency) & (axis < _BAND[1] * frequency))
+        self._inside = slice(int(inside[0]), int(inside[-1]) + 1)
+        self.circular: Floats = 2.0 * np.pi * np.asarray(axis[self._inside], dtype=np.float64)
+        """Circular frequencies in [rad/s], (f,)."""
+        n_frequencies = len(self.circular)
+        self._waves = np.zeros((n_frequencies, n_series), dtype=np.complex128)
+        self._products = np.zeros((n_frequencies, n_series, n_series), dtype=np.complex128)
+        self._now, self._filled, self._n_halves = 0, 0, 0
+        self._next = n_series
+        self.count = 0
+        """Number of stretches."""
+        self.seconds = 0.0
+        """Length of the motion so far in [s]."""
+
+    def add(self, motion: Floats, force: Floats) -> None:
+        """Add motion, (3,), and forces of the known wind, (count,), of a step."""
+        row = self._series[:, self._now, self._filled]
+        row[:2], row[2:] = motion[:2], force
+        self._filled += 1
+        self.seconds += self._dt
+        if self._next < len(self._series):
+            self._transform_next()
+        if self._filled == self._half:
+            self._n_halves += 1
+            self._now, self._filled = (self._now + 1) % _HALVES, 0
+            if self._n_halves > 1:
+                self._next = 0
+
+    @property
+    def until_first(self) -> float:
+        """Motion in [s] that is missing to the first stretch."""
+        measured = self._n_halves * self._half + self._filled
+        return 0.0 if self.count else max(2 * self._half - measured, 0) * self._dt
+
+    def skip(self) -> None:
+        """Forget an unfinished stretch: the motion has a gap."""
+        self._filled = self._n_halves = 0
+        self._next = len(self._series)
+
+    def _transform_next(self) -> None:
+        """Transform a series of the last stretch, and average after the last one."""
+        series, stretch, half = self._series[self._next], self._stretch, self._half
+        stretch[:half] = series[self._now - 2]
+        stretch[half:] = series[self._now - 1]
+        stretch -= stretch.mean()
+        stretch *= self._window
+        self._waves[:, self._next] = np.fft.rfft(stretch)[self._inside]
+        self._next += 1
+        if self._next == len(self._series):
+            self._products += self._waves[:, :, None] * self._waves[:, None].conj()
+            self.count += 1
+
+    @property
+    def products(self) -> Waves:
+        """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
+        return self._products / max(self.count, 1)
