@@ -27,6 +27,7 @@ def test_all_trees_of_the_city_are_read_and_all_species_known(tmp_path: Path) ->
 @pytest.mark.long
 def test_a_tree_takes_seconds_and_memory() -> None:
     pytest.importorskip('distributed', reason='needs dask.distributed')
-    seconds, memory = time_risk([1])
+    seconds, cpu_seconds, memory = time_risk([1])
     assert seconds.value > 0.1
+    assert cpu_seconds.value > 0.1
     assert memory.value > 100.0

@@ -38,17 +38,19 @@ def time_risk(sizes: Sequence[int] = N_TREES) -> list[Measured]:
     Returns
     -------
     list of Measured
-        Per size, the time from start to end in [s], and the largest memory in [MB] of the command
-        and its workers together, with pages that they share counted for each.
+        Per size, the time from start to end and the CPU time of the command and its workers in
+        [s], and their largest memory together in [MB], with pages that they share counted for
+        each.
 
     """
     measured = list[Measured]()
     for n_trees in sizes:
         with TemporaryDirectory() as folder:
             write_city(Path(folder, 'city.csv'), n_trees)
-            seconds, megabytes = run_risk(Path(folder))
+            seconds, cpu_seconds, megabytes = run_risk(Path(folder))
         measured += [
             Measured(f'{n_trees:6,} trees, {cores()} cores', seconds, 's'),
+            Measured(f'{n_trees:6,} trees, CPU time', cpu_seconds, 's'),
             Measured(f'{n_trees:6,} trees, memory', megabytes, 'MB'),
         ]
     return measured
@@ -69,20 +71,25 @@ def write_city(path: Path, n_trees: int) -> None:
     path.write_text('\n'.join(lines) + '\n', encoding='utf-8')
 
 
-def run_risk(folder: Path) -> tuple[float, float]:
-    """Return time [s] and largest memory [MB] of ``tree-sway risk city.csv`` in a folder."""
+def run_risk(folder: Path) -> tuple[float, float, float]:
+    """Return time, CPU time [s] and memory [MB] of ``tree-sway risk city.csv`` in a folder."""
     psutil = import_module('psutil')  # comes with dask
-    began, largest = time.monotonic(), 0
     command = [sys.executable, '-c', _PROGRAM, 'risk', 'city.csv', '-o', 'risk.csv']
+    cpu_seconds: dict[int, float] = {}
+    largest = 0
+    began = time.monotonic()
     with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL) as process:
         whole = psutil.Process(process.pid)
         while process.poll() is None:
             try:
                 processes = [whole, *whole.children(recursive=True)]
                 largest = max(largest, sum(each.memory_info().rss for each in processes))
+                for each in processes:
+                    spent = each.cpu_times()
+                    cpu_seconds[each.pid] = spent.user + spent.system
             except psutil.NoSuchProcess:
                 continue  # one has ended since it was listed
             time.sleep(_PERIOD)
     if process.returncode != 0:
         raise ParameterError('tree-sway risk ended with an error', where='bench risk')
-    return time.monotonic() - began, largest / 1e6
+    return time.monotonic() - began, sum(cpu_seconds.values()), largest / 1e6

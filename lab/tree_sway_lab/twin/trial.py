@@ -153,9 +153,9 @@ def twin_score(
     notes = [*twin.problems]
     if (fit := twin.observer.fit) is not None:
         notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
+    held = _held(tips, true.tips, bands) if has_band else np.nan
     return Score(
-        error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
-        *_costs(spent), tuple(notes),
+        error, roughness, late_error, late_roughness, stem, held, *_costs(spent), tuple(notes)
     )  # fmt: skip
 
 

@@ -16,12 +16,23 @@ pytestmark = pytest.mark.compiled
 
 @pytest.fixture
 def bent():
-    """Return the loads of a crooked tree, some of its modes, and a pose far from rest."""
+    """
+    Return the loads of a crooked tree, some of its modes, and a pose far from rest.
+
+    Its branches are damped at the mean of their motion, as they are loaded.
+    """
     simulator = make_simulator(kind_called('crooked 8'), model=12)
     modal = simulator.banks[0].oscillators.modal
-    load = WindMoments(modal.branches)
+    load = WindMoments(with_mean_damping(modal.branches))
     rng = np.random.default_rng(2)
     return load, modal.shapes, 0.03 * rng.normal(size=load.n)
+
+
+def with_mean_damping(branches):
+    """Return branches that are damped at the mean of their motion, as they are loaded."""
+    other = branches.copy()
+    other['damping_mode'] = other['load_mode']
+    return other
 
 
 @pytest.mark.parametrize('wind', [(0.8, 0.6, 0.0), (-0.3, 0.5, 0.81), (0.0, 0.0, 1.0)])
@@ -40,6 +51,21 @@ def test_slopes_are_those_of_the_load(bent, wind):
         )
     assert turning == pytest.approx(moved, abs=1e-3 * np.abs(moved).max())
     assert damping == pytest.approx(swung, abs=1e-5 * np.abs(swung).max())
+
+
+def test_the_damping_of_a_branch_alone_is_that_of_its_points():
+    """One branch, whose points are damped more than its mean is."""
+    simulator = make_simulator(kind_called('straight'), model=12)
+    branches = simulator.banks[0].oscillators.modal.branches
+    load, last = WindMoments(branches), branches[-1]
+    key = np.zeros((load.n, 1))
+    key[last['coordinate']] = 1.0
+    still, wind = np.zeros(load.n), np.array([0.6, 0.8, 0.0])
+    _, damping = load.slopes(key)(still, wind)
+    swung = load(still, 1e-6 * key[:, 0], wind) - load(still, -1e-6 * key[:, 0], wind)
+    at_mean = WindMoments(with_mean_damping(branches)).slopes(key)(still, wind)[1]
+    assert damping[0, 0] == pytest.approx(swung @ key[:, 0] / 2e-6, rel=1e-3)
+    assert damping[0, 0] < 1.3 * at_mean[0, 0] < 0.0
 
 
 def test_a_tree_at_rest_has_slopes_right_to_single_precision(bent):

@@ -20,6 +20,10 @@ _FIRST, _LATER = 40.0, 1.4
 """Motion in [s] from which the tree is first fitted, and how much more there is each time."""
 
 
+_SOON = 5.0
+"""Time in [s] that a fit waits for the first stretch of further sensors."""
+
+
 class RunningFit:
     """
     The last fit of a tree, and the next one.
@@ -76,6 +80,9 @@ class RunningFit:
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
         forces = self._unknown.forces
         if seconds < self._fit_after or forces is None:
+            return
+        spectra = [self._spectra[k] for k in used]
+        if any(not each.count and each.until_first < _SOON for each in spectra):
             return
         self._fit_after = _LATER * seconds
         self._parts = fits(

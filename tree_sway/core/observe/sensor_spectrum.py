@@ -79,6 +79,12 @@ class SensorSpectrum:
             if self._n_halves > 1:
                 self._next = 0
 
+    @property
+    def until_first(self) -> float:
+        """Motion in [s] that is missing to the first stretch."""
+        measured = self._n_halves * self._half + self._filled
+        return 0.0 if self.count else max(2 * self._half - measured, 0) * self._dt
+
     def skip(self) -> None:
         """Forget an unfinished stretch: the motion has a gap."""
         self._filled = self._n_halves = 0

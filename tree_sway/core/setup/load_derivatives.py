@@ -14,6 +14,10 @@ Two kinds of terms add up:
   force and moment at the joint change as the parent or the joint itself moves;
 - *loads*, `_Loads`: how the wind load of each branch changes as the branch turns and moves.
 
+**Damping takes energy from every motion.** A branch is loaded where it works, at the mean of its
+motion, and damped at that same mean. What the drag on all its points takes more than that, the
+excess, damps its own key rotations, each by itself.
+
 Twists are (velocity, spin) and wrenches (force, moment). Both are about the root node and in the
 frame of the tree unless another point and frame are named. [v] is the matrix of the cross product
 with v. Rotations are exponential coordinates; their maps are taken to second order.
@@ -132,7 +136,9 @@ class LoadSlopes:
         self._joint = joint_motion(branches, shapes)
         self._load_rotation = own_motion(branches, 'load_rotation', shapes)
         self._load_mode = own_motion(branches, 'load_mode', shapes)
-        self._damping_mode = own_motion(branches, 'damping_mode', shapes)
+        self._keys = _key_rotations(branches, shapes)
+        load_mode = branches['load_mode'][:, :2]
+        self._excess = load_mode, branches['damping_mode'][:, :2] - load_mode
 
     def __call__(self, x: Floats, wind: Floats) -> tuple[Singles, Singles]:
         """
@@ -234,8 +240,14 @@ class LoadSlopes:
             turning -= _power(force @ turned, velocity)
             turning -= _power(moment @ turned + force @ velocity, spin)
             turning += _power(loads.by_turn[rows] @ turned, loaded)
-            damping -= _power(loads.drag[rows] @ (centre + self._damping_mode[rows]), loaded)
-        return turning, damping
+            damping -= _power(loads.drag[rows] @ loaded, loaded)
+        keys, excess = self._keys.reshape(-1, m), self._excess_damping(loads.drag).reshape(-1, 1)
+        return turning, damping - keys.T @ (excess * keys)
+
+    def _excess_damping(self, drag: Singles) -> Singles:
+        """Find the damping of both key rotations of branches beyond that at the mean, (b, 2)."""
+        load_mode, beyond = self._excess
+        return _single(np.maximum(np.einsum('bci,bij,bcj->bc', load_mode, drag, beyond), 0.0))
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
         """Sum the motion at the joints of branches that carry others, from the root outward."""
@@ -255,6 +267,14 @@ class LoadSlopes:
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)
         return np.asarray(self._branches['area'][:, None, None] * slope)
+
+
+def _key_rotations(branches: Records, shapes: NDArray[Any]) -> NDArray[Any]:
+    """Return the key rotations of branches by shapes (N, m), zero where one lacks, (b, 2, m)."""
+    both = np.arange(2)
+    rows = np.minimum(branches['coordinate'][:, None] + both, len(shapes) - 1)
+    has = both < branches['n_coordinates'][:, None]
+    return np.where(has[..., None], shapes[rows], np.zeros_like(shapes[:1]))
 
 
 def _single(values: Floats) -> Singles:

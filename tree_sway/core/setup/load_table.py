@@ -164,7 +164,7 @@ class WindBasisTable:
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         table['load'][..., :m] = load - load[:, :1]
         table['turning'][..., :m, :m] = _between(standing.turning)
-        table['damping'][..., :m, :m] = _between(standing.damping)
+        table['damping'][..., :m, :m] = _without_gain(_between(standing.damping))
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
         table['levels'] = _rising_levels(table['equilibrium'], table['amount'])
@@ -271,7 +271,7 @@ class WindBasisTable:
         table['lean'][:, :m, :m] = _between(risen / (2.0 * np.sin(_SLOPE_AT)))
         turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
         table['steep_turning'][:, :m, :m] = -turning, turning
-        table['steep_damping'][:, :m, :m] = damping
+        table['steep_damping'][:, :m, :m] = _without_gain(damping.astype(np.float64))
 
 
 def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]:
@@ -303,6 +303,18 @@ def _between(values: Floats) -> Floats:
     waves = np.fft.rfft(values, axis=0)
     waves[-1] *= 0.5
     return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(values)))
+
+
+def _without_gain(damping: Floats) -> Floats:
+    """
+    Take what adds energy to any motion off slopes of loads by rates, (..., m, m).
+
+    Of the symmetric part, which alone does work, the positive eigenvalues are left out. Weighted
+    means of such slopes, as of the corners around a wind and a lean, add no energy either.
+    """
+    work, axes = np.linalg.eigh(0.5 * (damping + np.swapaxes(damping, -1, -2)))
+    gain = (axes * np.maximum(work, 0.0)[..., None, :]) @ np.swapaxes(axes, -1, -2)
+    return np.asarray(damping - gain)
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
