@@ -62,8 +62,8 @@ _STRONGEST_PUSH = 1e5
 _PUSH_LASTS = 0.5
 """Time [s] after which a push ends if it is not repeated."""
 
-_PATIENCE = 1.0
-"""Time [s] of the machine for which a replay waits for a sample."""
+_PATIENCE, _PATIENCE_AT_FIRST = 3.0, 10.0
+"""Times [s] of the machine for which a replay waits for a sample, and for the first of a topic."""
 
 _STOP_CHECK = 0.05
 """Interval [s] of checks whether the node is ended while it waits."""
@@ -306,13 +306,14 @@ class SolverNode(TreeSwayNode):
 
     def _await_samples(self, to: int) -> None:
         """Wait for the samples that act before a time in [ns], once for each that is lost."""
-        end = time.monotonic() + _PATIENCE
+        begin = time.monotonic()
         while not self.pacer.is_stopping:
             self._arrived.clear()
             lacking = set(self._lacking(to))
             if lacking <= self._missed:
                 return
-            left = end - time.monotonic()
+            is_first = any(newest == UNHEARD for _, newest in lacking - self._missed)
+            left = begin + (_PATIENCE_AT_FIRST if is_first else _PATIENCE) - time.monotonic()
             if left <= 0.0:
                 self._missed = lacking
                 return
