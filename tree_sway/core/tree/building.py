@@ -173,7 +173,7 @@ def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
 
 
 def _integers(values: ArrayLike, n: int, what: str) -> Ints:
-    """Return values as an array (n,); a `TreeError` if they are no integers, or too few or many."""
+    """Return values as an array (n,); a `TreeError` if they are not n integers."""
     try:
         array = np.asarray(values)
     except ValueError:  # rows of different lengths
