@@ -314,3 +314,23 @@ def test_a_password_is_in_no_text(hear) -> None:
     opened = open_source('http://me:secret@127.0.0.1:1/x?key=secret')
     texts += [opened.source.transport, opened.name]
     assert not [text for text in texts if 'secret' in str(text)]
+
+
+def _redirect(place: str) -> str:
+    return f'HTTP/1.1 302 Found\r\nLocation: {place}\r\nConnection: close\r\n\r\n'
+
+
+@pytest.mark.parametrize(
+    ('answer', 'said'),
+    [
+        ('SSH-2.0-OpenSSH_9.6\r\n', 'is not HTTP (Bad status line'),
+        ('HTTP/1.1 200 OK\r\nno header\r\n\r\n', 'is not HTTP ('),
+        (_redirect('/x?key=secret'), 'redirects again and again; give the final address'),
+        (_redirect('ftp://other/?key=secret'), 'redirect'),
+    ],
+)
+def test_a_key_in_the_address_is_in_no_failure(hear, serve, answer: str, said: str) -> None:
+    server = serve(lambda request: bytes(request.wfile.write(answer.encode()) * 0))
+    heard = hear(f'http://{server}/x?key=secret&every=0.2')
+    heard.until(lambda: said in heard.wind.problem)
+    assert 'secret' not in f'{heard.said} {heard.wind.problem}'

@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 import aiohttp
 
 from tree_sway.sensors.transports.event_loop import run_until_over
+from tree_sway.sensors.transports.http_failure import failure_without_address
 from tree_sway.sensors.transports.transport import Message, Receiver
 
 _LARGEST = 2**20
@@ -37,7 +38,8 @@ class HttpPoll:
 
     def listen(self, receiver: Receiver) -> None:
         """Deliver each document; a `ConnectionError` for a status that is not 200."""
-        run_until_over(self._poll(receiver), receiver)
+        with failure_without_address():
+            run_until_over(self._poll(receiver), receiver)
 
     async def _poll(self, receiver: Receiver) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)

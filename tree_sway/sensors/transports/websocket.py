@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 import aiohttp
 
 from tree_sway.sensors.transports.event_loop import run_until_over
+from tree_sway.sensors.transports.http_failure import failure_without_address
 from tree_sway.sensors.transports.transport import Message, Receiver
 
 _LARGEST = 2**18
@@ -35,8 +36,9 @@ class WebSocket:
         return f'{parts.scheme}://{parts.netloc.rpartition("@")[2]}{parts.path}'
 
     def listen(self, receiver: Receiver) -> None:
-        """Deliver each message."""
-        run_until_over(self._follow(receiver), receiver)
+        """Deliver each message; a `ConnectionError` for a server that speaks something else."""
+        with failure_without_address():
+            run_until_over(self._follow(receiver), receiver)
 
     async def _follow(self, receiver: Receiver) -> None:
         timeout = aiohttp.ClientTimeout(total=None, connect=_CONNECT_FOR)
