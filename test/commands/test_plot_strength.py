@@ -79,6 +79,22 @@ def test_one_tree_in_one_season_has_one_figure_in_all_commands(tmp_path, capsys)
     assert curve[-1] != info[0]
 
 
+@pytest.mark.parametrize('yaw', [0.7, 2.1])
+def test_a_turned_tree_has_the_same_figure_named_by_the_tallest_of_its_kind(tmp_path, capsys, yaw):
+    found = []
+    for each in (0.0, yaw):
+        stand = tmp_path / f'{each}.csv'
+        stand.write_text(
+            f'name,x,y,species,height,yaw\nlow,0,0,oak,5,{each}\nhigh,9,0,oak,5.2,{each}\n'
+        )
+        assert main(['info', str(stand), '--speed', '12']) == 0
+        said = capsys.readouterr().out
+        assert 'note       high: in the open; mean wind' in said
+        found += re.findall(r'wood [^;]*; roots [^;]*; bare', said)
+    assert len(found) == 2
+    assert found[0] == found[1]
+
+
 STAND = """\
 name,x,y,species,height,dbh
 low,0,0,oak,8,20

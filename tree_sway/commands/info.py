@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
         for number, kind in enumerate(bar(kinds, 'computing the modes'))
     ]
     facts = {'name': scene.name, 'source': scene.source} | (
-        found[0] if scene.is_one_tree else _sums(scene, found)
+        found[0] if scene.is_one_tree else _sums(scene, found, tallest)
     )
     facts['notes'] = [*scene.notes, *facts['notes']]
     facts['warnings'] = [*scene.faults, *facts['warnings']]
@@ -133,8 +133,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         rig = strength_rig(tallest, chosen)
         (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(
-            f'{tallest.name} {exposure}, of {arguments.speed:g} m/s: {used}; rot and wet soil are '
-            'not included'
+            f'{exposure}, of {arguments.speed:g} m/s: {used}; rot and wet soil are not included'
         )
         published = _published_moment(placed, species, arguments.speed)
         if published is not None:
@@ -196,8 +195,14 @@ def _moment_note(used: StrengthUse, published: float, exposure: str) -> str:
     )
 
 
-def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
-    """Collect the facts on several trees, each scaled from its kind as in the solver."""
+def _sums(
+    scene: Scene, kinds: list[dict[str, Any]], tallest: dict[int, PlacedTree]
+) -> dict[str, Any]:
+    """
+    Collect the facts on several trees, each scaled from its kind as in the solver.
+
+    Warnings are of the first tree of a kind, notes on strength of its tallest.
+    """
     trees = []
     for each, number in zip(scene.trees, scene.kind_numbers.tolist(), strict=True):
         facts, k = kinds[number], each.scale
@@ -208,10 +213,13 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
         trees.append(
             {'name': each.name, 'kind': number, 'place': place, 'frequencies': sways, **tree}
         )
-    first = {tree['kind']: tree['name'] for tree in reversed(trees)}
+    named = {
+        'notes': {number: tree.name for number, tree in tallest.items()},
+        'warnings': {tree['kind']: tree['name'] for tree in reversed(trees)},
+    }
     sentences = {
-        what: [f'{first[n]}: {each}' for n, kind in enumerate(kinds) for each in kind[what]]
-        for what in ('notes', 'warnings')
+        what: [f'{names[n]}: {each}' for n, kind in enumerate(kinds) for each in kind[what]]
+        for what, names in named.items()
     }
     return {
         **sentences,

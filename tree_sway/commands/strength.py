@@ -19,7 +19,13 @@ def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:
 
 
 def strength_rig(tree: PlacedTree, settings: Settings) -> Rig:
-    """Set up a tree where it stands, in its own size, for its used strength."""
-    at_place = PlacedTree(tree.name, tree.placed(), species=tree.species)
+    """
+    Set up a tree at its height and in its own size, for its used strength.
+
+    The wind blows along the axis x of the tree itself: trees of an inventory have random yaws, and
+    a crown bends its stem by some hundredths more or less from different sides.
+    """
+    unturned = replace(tree, yaw=0.0).placed()
+    at_place = PlacedTree(tree.name, unturned, species=tree.species)
     in_leaf = settings.in_leaf if tree.leaf_on is None else tree.leaf_on
     return Rig(at_place, replace(settings, in_leaf=in_leaf))

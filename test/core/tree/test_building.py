@@ -184,6 +184,7 @@ def test_the_input_stays_the_callers_own():
         ({'parent': [-1.0, 0.0, 0.0]}, 'parent must be 3 integers'),
         ({'parent': [-1, 0]}, r'parent must be 3 integers, not \(2,\)'),
         ({'branch': ['a', 'a', 'b']}, 'branch must be 3 integers'),
+        ({'branch': [0, [0], 1]}, 'branch must be 3 integers, not a list of lists'),
         ({'branch': [0, 0, 0]}, 'row 2: branch 0 is not one chain: .*its own branch'),
         ({'branch': [0, 1, 0], 'parent': [-1, 0, 1]}, 'row 2: branch 0 is not one chain'),
         ({'branch_names': ['only one']}, '1 branch names for 2 branches'),

@@ -173,7 +173,11 @@ def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
 
 
 def _integers(values: ArrayLike, n: int, what: str) -> Ints:
-    array = np.asarray(values)
+    """Return values as an array (n,); a `TreeError` if they are not n integers."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        raise TreeError(f'{what} must be {n} integers, not a list of lists') from None
     if array.shape != (n,) or not np.issubdtype(array.dtype, np.integer):
         raise TreeError(f'{what} must be {n} integers, not {array.shape} of {array.dtype}')
     return array.astype(np.int64)
