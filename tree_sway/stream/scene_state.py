@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.foliage import foliage_of, leaf_clusters, LeafClusters
+from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.stream.description import describe_scene
@@ -26,9 +25,6 @@ from tree_sway.stream.tables import tables_of
 
 FULLY_LEAVED = 4
 """Largest number of kinds that are described with the full number of clusters of leaves."""
-
-_BLADE = 0.33
-"""Area of a leaf over the square of its length [-], of one half as wide as it is long."""
 
 
 class SceneState:
@@ -156,7 +152,4 @@ def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
         return None
     rng, species = np.random.default_rng(0), simulator.models[0].species
     traits, look = species.leaves, species.look
-    # No cluster is smaller than a leaf: a seedling has at most one a leaf.
-    area = float(foliage_of(simulator.tree, traits=traits).area.sum())
-    count = min(count, math.ceil(area / (_BLADE * traits.size**2)))
     return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)

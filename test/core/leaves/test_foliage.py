@@ -97,7 +97,7 @@ def test_every_species_has_leaves(species: str) -> None:
 
 
 @every_tree
-@given(seed=st.integers(0, 10_000), count=st.integers(1, 3000))
+@given(seed=st.integers(0, 10_000), count=st.integers(1, 1500))
 @settings(max_examples=8, deadline=None)
 def test_clusters_sit_on_their_segments(name: str, seed: int, count: int) -> None:
     tree = builtin_tree(name)

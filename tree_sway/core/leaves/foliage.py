@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+import math
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from tree_sway.core.wind.convention import quaternions_of_axes
 
 MAX_LEAF_AREA_INDEX = 6.0
 """Largest leaf area over ground covered in [-]."""
+
+_BLADE = 0.33
+"""Area of a leaf over the square of its length [-], of one half as wide as it is long."""
 
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
@@ -115,7 +119,7 @@ def leaf_clusters(
     look: Look | None = None,
 ) -> LeafClusters:
     """
-    Place a number of clusters of leaves evenly along the outer wood of a tree at rest.
+    Place clusters of leaves evenly along the outer wood of a tree at rest: at most one a leaf.
 
     Together they have the tree's leaf area, and their shoots stand and hang as those of the
     species; traits and look are those of the tree's species if None. Raises a `ParameterError` for
@@ -123,16 +127,16 @@ def leaf_clusters(
     """
     within('count', count, 0, 1e9)
     leaf = traits if traits is not None else leaf_traits(tree.species)
-    leafy = leafy_length(tree)
-    ends = np.cumsum(leafy)
+    area = float(foliage_of(tree, traits=leaf).area.sum())
+    count = min(count, math.ceil(area / (_BLADE * leaf.size**2)))
+    ends = np.cumsum(leafy_length(tree))
     place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / max(count, 1) * ends[-1]
     segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
     # Leaves overlap: clusters have their shares of the leaf area, smaller on short twigs, but none
     # is smaller than a leaf.
-    area = float(foliage_of(tree, traits=leaf).area.sum()) / max(count, 1)
     size = np.sqrt(tree.length[segment]) * rng.uniform(0.8, 1.2, count)
-    size *= np.sqrt(4.0 * area / np.pi / np.mean(size**2)) if count else 1.0
+    size *= np.sqrt(4.0 * (area / count) / np.pi / np.mean(size**2)) if count else 1.0
     size = np.maximum(size, leaf.size * rng.uniform(0.8, 1.2, count))
     up = _up_in(tree.rest_frame[segment])
     away = _shoots(up, look if look is not None else look_of(tree.species), leaf, rng)
