@@ -18,6 +18,7 @@ import time
 from typing import TYPE_CHECKING
 
 from tree_sway.commands.live_motion_arguments import sensing
+from tree_sway.commands.record_clock import RecordClock
 from tree_sway.commands.record_wind import WindTable
 from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
@@ -120,7 +121,7 @@ class MotionTable:
     def __init__(self) -> None:
         self.rows: RowFile | None = None
         """The file; None while its folder is being made."""
-        self._ahead = time.time() - time.monotonic()
+        self._clock = RecordClock()
         self._names: tuple[str, ...] = ()
 
     @property
@@ -135,7 +136,7 @@ class MotionTable:
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
         columns = [column for name in self._names for column in _COLUMNS[name]]
-        stamp = datetime.fromtimestamp(sample.time + self._ahead, timezone.utc)
+        stamp = datetime.fromtimestamp(self._clock.date(sample.time), timezone.utc)
         date = stamp.isoformat(timespec='microseconds').replace('+00:00', 'Z')
         cells = [
             f'{value:.9g}'

@@ -17,6 +17,7 @@ import threading
 import time
 
 from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands.record_clock import RecordClock
 from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
@@ -77,6 +78,7 @@ class WindTable:
         self.wind: LiveWind | None = None
         self._first: tuple[float, WindReading] | None = None
         self._before: WindReading | None = None
+        self._clock = RecordClock()
 
     @property
     def count(self) -> int:
@@ -88,7 +90,7 @@ class WindTable:
         before, self._before = self._before, reading
         if reading.time is not None and before is not None and reading.time == before.time:
             return  # a report that is requested again
-        row = reading.time or time.time(), reading
+        row = reading.time or self._clock.date(time.monotonic()), reading
         if self._first is None and not self.count:
             self._first = row
             return

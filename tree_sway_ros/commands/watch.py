@@ -36,12 +36,12 @@ def watch(
             )
     monitor.spin(_SETTLING)
     monitor.restart()
-    begin = time.time()
+    begin = time.monotonic()
     is_live = sys.stdout.isatty()
     try:
-        while check() and (left := begin + seconds - time.time()) > 0.0:
+        while check() and (left := begin + seconds - time.monotonic()) > 0.0:
             monitor.spin(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
-            line = status_line(monitor.take_recent(), time.time() - begin)
+            line = status_line(monitor.take_recent(), time.monotonic() - begin)
             print(f'\r\033[K{line}' if is_live else line, end='' if is_live else '\n', flush=True)
     except KeyboardInterrupt:
         pass
