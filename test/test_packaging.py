@@ -187,7 +187,7 @@ def megabytes(folder: Path) -> float:
 
 def first_picture(line: list[str], folder: Path, environment: dict[str, str]) -> float:
     """Show a tree, open its page, and return the time until its first frame is there [s]."""
-    show = [*line, 'show', 'goldcrest', '--seconds', '5', '--port', '0']
+    show = [*line, 'show', 'goldcrest', '--seconds', '20', '--port', '0']
     began = time.monotonic()
     with subprocess.Popen(
         show, cwd=folder, env=environment, text=True,
@@ -216,6 +216,7 @@ async def first_frame(address: str) -> None:
             message = await asyncio.wait_for(stream.receive(), 60.0)
             while message.type is not aiohttp.WSMsgType.BINARY or message.data[:4] == b'TSWD':
                 message = await asyncio.wait_for(stream.receive(), 60.0)
+                assert message.type in {aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY}
 
 
 @pytest.mark.long
