@@ -188,14 +188,26 @@ class StreamClient:
             certificate is not trusted.
 
         """
+        if not self.has_frames(seconds, frames=frames):
+            what = f'{self.received} frames within {seconds:g} s ({self.problem})'
+            cure = 'start tree-sway show, or check the address'
+            raise TransportError(what, where=self.url, cure=cure)
+
+    def has_frames(self, seconds: float, *, frames: int = 1) -> bool:
+        """
+        Return whether a total number of frames is there, or comes within a time [s].
+
+        Raises
+        ------
+        TransportError
+            The server refuses the token, or its certificate is not trusted.
+
+        """
         with self._more:
             self._more.wait_for(lambda: self.received >= frames or self._refusal, seconds)
             if self.received < frames and self._refusal is not None:
                 raise self._refusal
-            if self.received < frames:
-                what = f'{self.received} frames within {seconds:g} s ({self.problem})'
-                cure = 'start tree-sway show, or check the address'
-                raise TransportError(what, where=self.url, cure=cure)
+            return self.received >= frames
 
     def set(self, name: str, value: Value) -> None:  # noqa: A003
         """
