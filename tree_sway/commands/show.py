@@ -24,6 +24,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.growth.stem_by_age import OLDEST, stem_of_age
 from tree_sway.core.leaves.calendar import FIRST_MONTH, is_bare, LAST_MONTH, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
@@ -192,9 +193,10 @@ def build_scene(
 
 
 def _grown(choices: Choices) -> Scene:
-    """Grow a tree of a species, of the height, individual and month that a viewer wants."""
+    """Grow a tree of a species, of the height, age, individual and month that a viewer wants."""
     rng = np.random.default_rng(int(choices.individual))
-    tree = grow(choices.tree, choices.height, rng=rng)
+    diameter = stem_of_age(choices.tree, choices.age) if choices.age else None
+    tree = grow(choices.tree, choices.height, diameter, rng=rng)
     species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
@@ -250,6 +252,8 @@ def _controls(
     controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     height = Control('height', 'Height', choices.height, 'Of a tree to grow.', 'm', *_GROWN)
     controls.append(height)
+    age = 'Of a tree to grow, in years; 0 for the stem that is usual for the height.', ''
+    controls.append(Control('age', 'Age', choices.age, *age, 0.0, float(OLDEST)))
     individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
     controls.append(individual)
     year = 'Of a tree to grow: its leaves, also for the wind.', '', FIRST_MONTH, LAST_MONTH

@@ -11,6 +11,7 @@ from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
+from tree_sway.core.checks import number_of
 from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
@@ -111,6 +112,8 @@ class Scene(PlacedTrees):
 
         The rotation is about the vertical, counterclockwise seen from above.
         """
+        for number in (x, y, z, yaw):
+            number_of('moved', number)
         if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
             return self
         c, s = math.cos(yaw), math.sin(yaw)
