@@ -24,6 +24,7 @@ from tree_sway.core.tree.species import Species
 from tree_sway.errors import inside, ParameterError
 
 if TYPE_CHECKING:
+    from tree_sway.core.observe.later_work import Submit
     from tree_sway.core.observe.observed_tree import ObservedTree
 
 
@@ -171,6 +172,7 @@ class Scene(PlacedTrees):
         *,
         is_smoothed: bool = False,
         has_band: bool = False,
+        submit: Submit | None = None,
     ) -> ObservedTree:
         """
         Make the simulator of the one tree with motion sensors on the real one.
@@ -179,7 +181,7 @@ class Scene(PlacedTrees):
         ----------
         settings
             Settings, as for `simulator`.
-        at, rate, is_smoothed, has_band
+        at, rate, is_smoothed, has_band, submit
             Arguments of `ObservedTree`.
 
         Raises
@@ -202,6 +204,7 @@ class Scene(PlacedTrees):
             rate=rate,
             is_smoothed=is_smoothed,
             has_band=has_band,
+            submit=submit,
         )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
