@@ -45,6 +45,7 @@ from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -187,7 +188,7 @@ def build_scene(
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)
         settings = replace(settings, model=model_of(choices.model))
-        return scene.observed(settings, places, RATE, has_band=True)
+        return scene.observed(settings, places, RATE, has_band=True, submit=submit_beside)
     return scene.simulator(settings, model=choices.model)
 
 

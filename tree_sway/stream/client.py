@@ -23,6 +23,7 @@ import aiohttp
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import refuse_other_kind, within
 from tree_sway.errors import FormatError, ParameterError, TransportError
 from tree_sway.stream.by_wind import ByWind, STEP
 from tree_sway.stream.controls import Value
@@ -114,6 +115,7 @@ class StreamClient:
         wind_only: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
     ) -> None:
+        refuse_other_kind('url', url, str, "give 'http://there:8765/'")
         try:
             parts = urlsplit(url)
         except ValueError as error:
@@ -124,8 +126,9 @@ class StreamClient:
                 where='url',
                 cure='give http:// or https:// before the host, as http://there:8765/',
             )
-        if not 0.1 <= rate <= 1000.0:
-            raise ParameterError(f'{rate:g} Hz', where='rate', cure='ask for 0.1 .. 1000 Hz')
+        within('rate', rate, 0.1, 1000.0, 'Hz')
+        if delay is not None:
+            within('delay', delay, 0.0, 60.0, 's')
         path = parts.path.rstrip('/') + '/stream'
         self.url = urlunsplit((_SCHEMES[parts.scheme], parts.netloc, path, '', ''))
         """Address of the stream; its token is sent separately, so that no message shows it."""

@@ -28,6 +28,7 @@ from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.explained_motion import ExplainedMotion
+from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
@@ -89,6 +90,9 @@ class ObservedTree(SwaySimulator):
         Whether stiffness and damping follow the sensors.
     has_band
         Whether it also says how sure it is (`band`).
+    submit
+        Begins a call in another thread, as ``submit`` of a `concurrent.futures.Executor` does, in
+        which gains, mountings and fits are found beside the steps. The motion is the same without.
 
     Raises
     ------
@@ -114,6 +118,7 @@ class ObservedTree(SwaySimulator):
         is_smoothed: bool = False,
         learns: bool = True,
         has_band: bool = False,
+        submit: Submit | None = None,
         cache: ModelCache | None = PREPARED,
         plain: bool = False,
         **changes: Any,
@@ -133,7 +138,7 @@ class ObservedTree(SwaySimulator):
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
-        self._explained = ExplainedMotion()
+        self._explained, self._submit = ExplainedMotion(), submit
         self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
@@ -170,7 +175,9 @@ class ObservedTree(SwaySimulator):
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
-        self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
+        self.observer = Observer(
+            self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed, submit=self._submit
+        )
         """What the sensors tell."""
         self.members: Members | None = None
         """Trees that the real one might be; None without a band."""
@@ -295,7 +302,10 @@ class ObservedTree(SwaySimulator):
         stiffness, damping = np.exp(self._learned).tolist()
         ratio = min(damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
-            self.tune(stiffness_factor=stiffness, damping_ratio=ratio)
+            goal = self.check_tuning(stiffness_factor=stiffness, damping_ratio=ratio)
+            if self._tuning is not None:
+                # So small a change needs no transition, whose every step costs as much.
+                self._tuning.go_to(goal, self.period)
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""
