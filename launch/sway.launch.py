@@ -18,6 +18,7 @@ from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
 from launch_ros.actions import Node
+import yaml
 
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
@@ -92,6 +93,8 @@ def start_nodes(context):
     """Make the nodes that the arguments ask for, and the warnings of former names."""
     given, warnings = arguments_given(context.launch_configurations)
     config = os.path.join(get_package_share_directory(PACKAGE), 'config')
+    if given['params_file']:
+        refuse_params_file(given['params_file'])
     viewer = ['viewer'] if is_true('use_viewer', given['use_viewer']) else []
     nodes = [make_node(name, given, config) for name in SOURCES[given['wind_source']]]
     if given['shard_count'] in ('', '1'):
@@ -177,7 +180,9 @@ def overrides_of(name, given):
         texts = {'file': 'wind_file', 'reader_options': 'reader_options'}
         overrides.update({to: given[each] for to, each in texts.items() if given[each]})
         numbers = {'start': 'playback_start', 'rate': 'playback_rate'}
-        overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
+        overrides.update(
+            {to: number(each, given[each]) for to, each in numbers.items() if given[each]}
+        )
         if given['playback_loop']:
             overrides['loop'] = is_true('playback_loop', given['playback_loop'])
     if name == 'solver':
@@ -186,10 +191,40 @@ def overrides_of(name, given):
         if given['imu']:
             overrides['imu'] = given['imu']
         if given['solver_rate']:
-            overrides['rate'] = float(given['solver_rate'])
+            overrides['rate'] = number('solver_rate', given['solver_rate'])
         if given['pose']:
-            overrides['pose'] = [float(number) for number in given['pose'].split()]
+            overrides['pose'] = [number('pose', each) for each in given['pose'].split()]
     return overrides
+
+
+def refuse_params_file(path):
+    """Refuse a file without parameters: a missing one would be left out with a mere warning."""
+    try:
+        with open(path, encoding='utf-8') as file:
+            content = yaml.safe_load(file)
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        reason = ' '.join(str(error).split())
+        raise ValueError(f"launch argument 'params_file': {path}: {reason}") from None
+    if not has_parameters(content):
+        raise ValueError(
+            f"launch argument 'params_file': {path} has no section ros__parameters; write\n"
+            'solver:\n  ros__parameters:\n    rate: 60.0'
+        )
+
+
+def has_parameters(content):
+    """Return whether a section of a parameter file, or one within it, has parameters."""
+    return isinstance(content, dict) and (
+        'ros__parameters' in content or any(map(has_parameters, content.values()))
+    )
+
+
+def number(name, text):
+    """Return the number of an argument; refuse what is none."""
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"launch argument '{name}': '{text}' is no number") from None
 
 
 def whole(name, text):

@@ -1,12 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that is started and stopped with its node, repeatedly."""
+"""A thread that is started and stopped with its node, repeatedly, and one for calls beside."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import cache
 import threading
+from typing import TypeVar
 
 from tree_sway.errors import TransportError
+
+_T = TypeVar('_T')
 
 _PATIENCE = 6.0
 """Longest wait for the work under way in [s]."""
@@ -44,3 +50,13 @@ class Worker:
     def _run(self) -> None:
         """Work until `_stopping` is set."""
         raise NotImplementedError
+
+
+def submit_beside(call: Callable[[], _T], /) -> Future[_T]:
+    """Begin a call in the one thread for work beside the steps of trees with motion sensors."""
+    return _beside().submit(call)
+
+
+@cache
+def _beside() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1, thread_name_prefix='beside the steps')

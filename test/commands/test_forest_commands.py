@@ -110,7 +110,7 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
         (['info', str(SCAN), '--option', 'up'], 'write NAME=VALUE'),
         (
             ['info', str(SCAN), '--option', 'twig_diameter=x'],
-            "twig_diameter: 'x' is out of range; use 0 to 0.1 m",
+            "twig_diameter: 'x' is not a number; use 0 to 0.1 m",
         ),
         (['info', str(SCAN), '--option', 'tapper=true'], "no option 'tapper'; it has: "),
         (['info', 'benjamina', '--option', 'up=z'], "option 'up' for a built-in tree"),

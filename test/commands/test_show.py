@@ -23,6 +23,7 @@ from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.growth.grow import grow  # noqa: E402
 from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
+from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 
@@ -113,6 +114,20 @@ def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
         starts.append(tree.start.tobytes())
     assert heights == [4.0, 4.0, 5.5]
     assert starts[0] == starts[1] != starts[2]
+
+
+def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
+    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    stems = [
+        show.build_scene(show.Choices('lime', height=9.0, age=age), arguments).tree.base_diameter[
+            0
+        ]
+        for age in (0.0, 15.0, 40.0)
+    ]
+    assert stems[1] < stems[2]
+    assert stems[0] != stems[1]
+    with pytest.raises(ParameterError, match='no curve of growth'):
+        show.build_scene(show.Choices('willow', height=9.0, age=15.0), arguments)
 
 
 def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:

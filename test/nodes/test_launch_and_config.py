@@ -161,6 +161,45 @@ def test_a_number_of_shards_that_is_none_is_named(launch_file, given):
         launch_file.shards_here({'local_shards': ''} | given)
 
 
+@pytest.mark.parametrize(
+    ('node', 'name'),
+    [
+        ('player', 'playback_rate'),
+        ('player', 'playback_start'),
+        ('solver', 'solver_rate'),
+        ('solver', 'pose'),
+    ],
+)
+def test_a_number_that_is_none_is_named(launch_file, node, name):
+    with pytest.raises(ValueError, match=f"launch argument '{name}': 'fast' is no number"):
+        launch_file.overrides_of(node, GIVEN | {name: 'fast'})
+
+
+@pytest.mark.parametrize(
+    ('content', 'reason'),
+    [
+        (None, 'No such file'),
+        ('solver: [1', 'while parsing'),
+        (b'\xff\xfe', 'decode'),
+        ('', 'has no section ros__parameters'),
+        ('solver:\n  rate: 30.0\n', 'has no section ros__parameters'),
+    ],
+)
+def test_a_parameter_file_that_cannot_be_used_is_named(launch_file, tmp_path, content, reason):
+    path = tmp_path / 'mine.yaml'
+    if content is not None:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ValueError, match=rf"argument 'params_file': .*mine[.]yaml:? .*{reason}"):
+        launch_file.refuse_params_file(str(path))
+
+
+def test_a_parameter_file_of_any_namespace_is_used(launch_file, tmp_path):
+    path = tmp_path / 'mine.yaml'
+    for heading in ('solver:', '/**:', '/park:\n solver:'):
+        path.write_text(f'{heading}\n  ros__parameters:\n    rate: 30.0\n')
+        launch_file.refuse_params_file(str(path))
+
+
 def test_former_names_of_arguments_work_and_name_their_successors(launch_file):
     typed = {'source': 'elsewhere', 'shards': '3', 'here': '1', 'tree': 'oak'}
     given, warnings = launch_file.arguments_given(typed)

@@ -22,6 +22,7 @@ from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import doorkeeper  # noqa: E402
 from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
+from tree_sway.page.guard import STATIC  # noqa: E402
 from tree_sway.page.page_client import PageClient  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
@@ -63,11 +64,13 @@ class Viewer:
                 return json.loads(message.data)[key]
 
 
-def run(server: PageServer, script: Callable[[Viewer], Any], **options: Any) -> Any:
+def run(
+    server: PageServer, script: Callable[[Viewer], Any], *, unpacks: bool = True, **options: Any
+) -> Any:
     """Run a script with a connected viewer."""
 
     async def whole() -> Any:
-        async with aiohttp.ClientSession() as session:
+        async with aiohttp.ClientSession(auto_decompress=unpacks) as session:
             async with session.ws_connect(f'{server.url}stream', **options) as ws:
                 return await script(Viewer(session, ws))
 
@@ -327,6 +330,24 @@ def test_the_page_is_sent_packed_and_not_twice(server: PageServer) -> None:
             assert answer.status == 404
 
     run(server, script)
+
+
+def test_what_a_visitor_downloads_is_small(server: PageServer) -> None:
+    """All files of the page, as they are sent: at most 200 kB."""
+    paths = ['', *(f'static/{each.relative_to(STATIC)}' for each in STATIC.rglob('*.*'))]
+
+    async def script(viewer: Viewer) -> int:
+        n_bytes = 0
+        for path in paths:
+            url, packed = f'{server.url}{path}', {'Accept-Encoding': 'gzip'}
+            async with viewer.session.get(url, headers=packed) as answer:
+                assert answer.status == 200, path
+                n_bytes += len(await answer.read())
+        return n_bytes
+
+    n_bytes = run(server, script, unpacks=False)
+    print(f'the page is {1e-3 * n_bytes:.0f} kB')
+    assert 50_000 < n_bytes < 200_000
 
 
 HOSTILE = (

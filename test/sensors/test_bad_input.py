@@ -185,6 +185,10 @@ def test_what_is_no_path_is_refused(text: str) -> None:
         ('modbus:host?speed=0&direction=500', 'registers'),
         ('signalk:host', 'no host'),
         ('weatherlink:', 'no host'),
+        ('weatherlink', 'no host'),
+        ('modbus?speed=1', 'no host'),
+        ('tempest:192.168.1.5', 'whole network; give tempest, without'),
+        ('tempest://192.168.1.5', 'whole network; give tempest, without'),
         ('cumulus:', 'no host'),
     ],
 )

@@ -71,7 +71,7 @@ def test_workers_elsewhere_give_the_same_rows_bit_for_bit(
 
 
 def test_a_killed_worker_loses_nothing(
-    apart: SeparateCluster, tmp_path: Path, monkeypatch
+    apart: SeparateCluster, tmp_path: Path, monkeypatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     asked = cases(tmp_path, 8)
     doomed = apart.start_worker()
@@ -89,6 +89,7 @@ def test_a_killed_worker_loses_nothing(
     rows = run_study(asked, tmp_path / 'cases', workers=1, scheduler=apart.address)
     assert began.is_set()
     assert rows == alone(asked)
+    assert capsys.readouterr().err.count('a worker was ended') == 1
 
 
 def test_the_command_computes_there_and_again_only_what_is_missing(

@@ -172,7 +172,7 @@ def workers_of(parent: int) -> list[int]:
 
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
-def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
+def test_a_killed_worker_loses_nothing_and_is_reported(alone, tmp_path, monkeypatch, capsys):
     killed = []
 
     def kill_one():
@@ -184,6 +184,7 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
     assert killed
     assert len(rows) == 6
     assert rows[:4] == alone
+    assert capsys.readouterr().err.count('a worker was ended') == 1
 
 
 @pytest.fixture

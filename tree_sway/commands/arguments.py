@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 import dataclasses
+import math
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +65,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Open the tree of the arguments, with their wood.
 
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
-    density that is not positive.
+    density that is not finite and above 0.
     """
     wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
@@ -119,10 +120,9 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     given = {name: getattr(arguments, name) for name in ('modulus', 'density')}
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
-        if not 0.0 < value < float('inf'):
-            raise ParameterError(
-                f'{value:g} is not positive', where=f'--{name}', cure='give an SI value'
-            )
+        if not 0.0 < value < math.inf:
+            what = f'{value:g} is not a finite number above 0'
+            raise ParameterError(what, where=f'--{name}', cure='give an SI value')
     return changed
 
 

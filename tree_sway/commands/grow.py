@@ -17,6 +17,7 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.growth.stem_by_age import stem_of_age
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import rooted
@@ -31,11 +32,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('kind', metavar='SPECIES', nargs='?', help=f'one of {", ".join(species_keys())}')
     add('--species', metavar='SPECIES', help='the species as an option')
     add('--height', type=float, required=True, metavar='M', help='height of the tree [m]')
-    add(
+    stem = parser.add_mutually_exclusive_group()
+    stem.add_argument(
         '--diameter',
         type=float,
         metavar='M',
         help='stem diameter at breast height [m]; without it, typical for the height',
+    )
+    stem.add_argument(
+        '--age',
+        type=float,
+        metavar='YEARS',
+        help='years since planting, for the diameter that a street tree then has',
     )
     add('--seed', type=int, default=0, help='random seed (%(default)s)')
     add_output_arguments(parser, OUTPUT_HELP)
@@ -46,10 +54,13 @@ def run(arguments: argparse.Namespace) -> int:
     within('--seed', arguments.seed, 0, 2**63)
     output = output_path(arguments)
     species = species_named(_chosen(arguments))
+    diameter = arguments.diameter
+    if arguments.age is not None:
+        diameter = stem_of_age(species.key, arguments.age)
     tree = grow(
         species.key,
         arguments.height,
-        arguments.diameter,
+        diameter,
         rng=np.random.default_rng(arguments.seed),
     )
     species = rooted(tree, species)

@@ -24,6 +24,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.growth.stem_by_age import OLDEST, stem_of_age
 from tree_sway.core.leaves.calendar import FIRST_MONTH, is_bare, LAST_MONTH, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
@@ -44,6 +45,7 @@ from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -186,14 +188,15 @@ def build_scene(
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)
         settings = replace(settings, model=model_of(choices.model))
-        return scene.observed(settings, places, RATE, has_band=True)
+        return scene.observed(settings, places, RATE, has_band=True, submit=submit_beside)
     return scene.simulator(settings, model=choices.model)
 
 
 def _grown(choices: Choices) -> Scene:
-    """Grow a tree of a species, of the height, individual and month that a viewer wants."""
+    """Grow a tree of a species, of the height, age, individual and month that a viewer wants."""
     rng = np.random.default_rng(int(choices.individual))
-    tree = grow(choices.tree, choices.height, rng=rng)
+    diameter = stem_of_age(choices.tree, choices.age) if choices.age else None
+    tree = grow(choices.tree, choices.height, diameter, rng=rng)
     species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
@@ -249,6 +252,8 @@ def _controls(
     controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     height = Control('height', 'Height', choices.height, 'Of a tree to grow.', 'm', *_GROWN)
     controls.append(height)
+    age = 'Of a tree to grow, in years; 0 for the stem that is usual for the height.', ''
+    controls.append(Control('age', 'Age', choices.age, *age, 0.0, float(OLDEST)))
     individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
     controls.append(individual)
     year = 'Of a tree to grow: its leaves, also for the wind.', '', FIRST_MONTH, LAST_MONTH

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 import math
-from typing import Any, SupportsFloat
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +14,34 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.errors import nearest, ParameterError
 
 
+def number_of(name: str, value: object) -> float:
+    """
+    Return a number, which may be infinite or not-a-number.
+
+    A `ParameterError` refuses text, arrays and other kinds of values.
+    """
+    number = _float_of(value)
+    if number is None:
+        cure = 'give a number, without quotes'
+        raise ParameterError(f'{value!r} is not a number', where=name, cure=cure)
+    return number
+
+
+def _float_of(value: Any) -> float | None:
+    """Return a number; not-a-number beyond the range of floats, None for other kinds of values."""
+    if isinstance(value, float):
+        return value
+    try:
+        return None if isinstance(value, str | bytes) or np.ndim(value) else float(value)
+    except OverflowError:
+        return math.nan
+    except (TypeError, ValueError):
+        return None
+
+
 def within(
     name: str,
-    value: SupportsFloat,
+    value: object,
     low: float,
     high: float,
     unit: str = '',
@@ -26,22 +51,21 @@ def within(
     """
     Return a number if it lies in a closed range; not-a-number lies in none.
 
-    ``above`` refuses the low end itself too. A `ParameterError` gives name, value, range and unit.
+    ``above`` refuses the low end itself too. A `ParameterError` gives name, value, range and unit,
+    or names what is no number.
     """
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not (low <= number <= high) or (above and number == low):
+    number = _float_of(value)
+    if number is None or not low <= number <= high or (above and number == low):
+        fault = 'is not a number' if number is None else 'is out of range'
         lower = f'above {low:g}, up to' if above else f'{low:g} to'
         cure = f'use {lower} {high:g} {unit}'.rstrip()
-        raise ParameterError(f'{value!r} is out of range', where=name, cure=cure)
+        raise ParameterError(f'{value!r} {fault}', where=name, cure=cure)
     return number
 
 
 def whole(name: str, value: object, low: int, high: int) -> int:
     """Return a whole number in a closed range; a `ParameterError` refuses fractions and truths."""
-    number = math.nan if isinstance(value, bool | np.bool_) else within(name, value, low, high)  # type: ignore[arg-type]
+    number = math.nan if isinstance(value, bool | np.bool_) else within(name, value, low, high)
     if not number.is_integer():
         cure = f'use a whole number from {low} to {high}'
         raise ParameterError(f'{name} of {value}', where=name, cure=cure)
@@ -50,10 +74,17 @@ def whole(name: str, value: object, low: int, high: int) -> int:
 
 def refuse_time_step(dt: float) -> None:
     """Refuse a time step [s] that is not finite and above 0."""
-    if not (math.isfinite(dt) and dt > 0.0):
+    if not (math.isfinite(number_of('step', dt)) and dt > 0.0):
         raise ParameterError(
             f'time step of {dt} s', where='step', cure='give a finite one above 0'
         )
+
+
+def refuse_other_kind(name: str, value: object, kind: type, cure: str) -> None:
+    """Refuse a value of another type than the expected one."""
+    if not isinstance(value, kind):
+        what = f'a {type(value).__name__}, where a {kind.__name__} is expected'
+        raise ParameterError(what, where=name, cure=cure)
 
 
 def one_of(name: str, value: object, known: Collection[object]) -> None:

@@ -28,6 +28,13 @@ _ASIAN = (
     (re.compile(rb'(?:\x82[\x9f-\xf1]|\x83[\x40-\x96]){2}'), 'cp932'),
     (re.compile(rb'(?:[\xb0-\xc8][\xa1-\xfe]){2}'), 'cp949'),
 )
+_MARKS = (
+    (b'\xff\xfe\0\0', 'utf-32'),
+    (b'\0\0\xfe\xff', 'utf-32'),
+    (b'\xff\xfe', 'utf-16'),
+    (b'\xfe\xff', 'utf-16'),
+)
+"""Byte order marks; that of UTF-32 begins as that of UTF-16."""
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
 
@@ -67,14 +74,20 @@ def read_head(path: Path) -> str:
 
 def decoded(data: bytes, errors: str = 'strict') -> str:
     """
-    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else a code page of Windows.
+    Return bytes as text: UTF-16 or UTF-32, UTF-8, else a code page of Windows.
 
     That is 932 where kana stand in the text, 949 where Hangul does, else 1252; a spreadsheet
     writes CSV in these.
     ``errors`` is for bytes that are none of them.
     """
-    if data.startswith((b'\xff\xfe', b'\xfe\xff')):
-        return data.decode('utf-16', errors)
+    for mark, encoding in _MARKS:
+        if data.startswith(mark):
+            return data.decode(encoding, errors)
+    # ASCII in UTF-16 has a zero byte beside each letter.
+    odd, even = data[1:200:2], data[:200:2]
+    for zeros, ascii_bytes, encoding in ((odd, even, 'utf-16-le'), (even, odd, 'utf-16-be')):
+        if zeros and not any(zeros) and all(ascii_bytes):
+            return data.decode(encoding, errors)
     try:
         return data.decode('utf-8-sig')
     except UnicodeDecodeError as error:

@@ -68,6 +68,8 @@ class Choices:
         Damping ratio of every mode; 0 for the species' own.
     height
         Height of a tree that is grown in [m].
+    age
+        Age of a tree that is grown in [years]; 0 for the stem that is usual for the height.
     individual
         Which of the trees of that species and height, a whole number as text.
     month
@@ -82,6 +84,7 @@ class Choices:
     model: str = str(Settings().model)
     damping_ratio: float = 0.0
     height: float = 12.0
+    age: float = 0.0
     individual: str = '0'
     month: float = SUMMER
     sensor_at: str = ''

@@ -126,8 +126,9 @@ def read_source_address(text: str) -> SourceAddress:
     the server of the address. Raises a `ParameterError` for text without a scheme.
     """
     scheme = _SCHEME.match(text)
+    name, mark, query = text.partition('?')
     try:
-        parts = urlsplit(text if ':' in text else f'{text.replace("?", ":?", 1)}')
+        parts = urlsplit(text if ':' in name else f'{name}:{mark}{query}')
     except ValueError as error:
         raise ParameterError(f'not an address ({error})', where=text) from None
     if scheme is None:

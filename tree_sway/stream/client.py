@@ -23,6 +23,7 @@ import aiohttp
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import refuse_other_kind, within
 from tree_sway.errors import FormatError, ParameterError, TransportError
 from tree_sway.stream.by_wind import ByWind, STEP
 from tree_sway.stream.controls import Value
@@ -114,6 +115,7 @@ class StreamClient:
         wind_only: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
     ) -> None:
+        refuse_other_kind('url', url, str, "give 'http://there:8765/'")
         try:
             parts = urlsplit(url)
         except ValueError as error:
@@ -124,8 +126,9 @@ class StreamClient:
                 where='url',
                 cure='give http:// or https:// before the host, as http://there:8765/',
             )
-        if not 0.1 <= rate <= 1000.0:
-            raise ParameterError(f'{rate:g} Hz', where='rate', cure='ask for 0.1 .. 1000 Hz')
+        within('rate', rate, 0.1, 1000.0, 'Hz')
+        if delay is not None:
+            within('delay', delay, 0.0, 60.0, 's')
         path = parts.path.rstrip('/') + '/stream'
         self.url = urlunsplit((_SCHEMES[parts.scheme], parts.netloc, path, '', ''))
         """Address of the stream; its token is sent separately, so that no message shows it."""
@@ -188,14 +191,26 @@ class StreamClient:
             certificate is not trusted.
 
         """
+        if not self.has_frames(seconds, frames=frames):
+            what = f'{self.received} frames within {seconds:g} s ({self.problem})'
+            cure = 'start tree-sway show, or check the address'
+            raise TransportError(what, where=self.url, cure=cure)
+
+    def has_frames(self, seconds: float, *, frames: int = 1) -> bool:
+        """
+        Return whether a total number of frames is there, or comes within a time [s].
+
+        Raises
+        ------
+        TransportError
+            The server refuses the token, or its certificate is not trusted.
+
+        """
         with self._more:
             self._more.wait_for(lambda: self.received >= frames or self._refusal, seconds)
             if self.received < frames and self._refusal is not None:
                 raise self._refusal
-            if self.received < frames:
-                what = f'{self.received} frames within {seconds:g} s ({self.problem})'
-                cure = 'start tree-sway show, or check the address'
-                raise TransportError(what, where=self.url, cure=cure)
+            return self.received >= frames
 
     def set(self, name: str, value: Value) -> None:  # noqa: A003
         """

@@ -26,6 +26,7 @@ from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.extras import PACKAGE
+from tree_sway.studies.lost_workers import told_lost_workers
 
 ATTEMPTS = 4
 """Number of workers that a piece of work may end before the study ends."""
@@ -178,33 +179,37 @@ def run_all(
     Yield the results of a function for pieces of work, in the order in which they are finished.
 
     Each piece has a name, which has to be its own, and arguments. What a lost worker had is done
-    by another. Raises a `TransportError` for a piece that ends `ATTEMPTS` workers, or when the
-    scheduler is lost.
+    by another, which is reported on standard error. Raises a `TransportError` for a piece that
+    ends `ATTEMPTS` workers, or when the scheduler is lost.
     """
-    futures = [
-        client.submit(function, *arguments, key=name, pure=False) for name, arguments in work
-    ]
-    waiting = set(futures)
-    try:
-        for future in distributed.as_completed(futures):
-            result = future.result()
-            waiting.discard(future)
-            future.release()  # its result is not kept on the cluster
-            yield result
-    except distributed.KilledWorker as error:
-        raise TransportError(
-            f'a case took down {ATTEMPTS} workers in turn',
-            where=f'case {error.task}',
-            cure='find out what ends them (memory?), use fewer --workers, and run it again',
-        ) from None
-    except (distributed.comm.CommClosedError, distributed.client.FutureCancelledError) as error:
-        raise TransportError(
-            f'the scheduler is lost ({type(error).__name__})',
-            cure='run it again: what is finished is kept',
-        ) from None
-    finally:
-        with suppress(Exception):  # the study has ended in another way, which counts
-            client.cancel(list(waiting), force=True)
+    with told_lost_workers(client, [name for name, _ in work]):
+        futures = [
+            client.submit(function, *arguments, key=name, pure=False) for name, arguments in work
+        ]
+        waiting = set(futures)
+        try:
+            for future in distributed.as_completed(futures):
+                result = future.result()
+                waiting.discard(future)
+                future.release()  # its result is not kept on the cluster
+                yield result
+        except distributed.KilledWorker as error:
+            raise TransportError(
+                f'a case took down {ATTEMPTS} workers in turn',
+                where=f'case {error.task}',
+                cure='find out what ends them (memory?), use fewer --workers, and run it again',
+            ) from None
+        except (
+            distributed.comm.CommClosedError,
+            distributed.client.FutureCancelledError,
+        ) as error:
+            raise TransportError(
+                f'the scheduler is lost ({type(error).__name__})',
+                cure='run it again: what is finished is kept',
+            ) from None
+        finally:
+            with suppress(Exception):  # the study has ended in another way, which counts
+                client.cancel(list(waiting), force=True)
 
 
 @contextmanager

@@ -29,8 +29,9 @@ _LOOK = 0.2
 _REPORT_EVERY = 1.0
 """Interval of reports on `/diagnostics` [s]."""
 
-_SILENT, _PATIENCE = 3.0, 30.0
-"""Time without a first frame after which that is said, and after which it is an error [s]."""
+_SILENT, _UNREACHED, _PATIENCE = 3.0, 12.0, 30.0
+"""Times without a first frame [s] until that is said, and until a page is given up that is not
+reached, or that is connected but sends none."""
 
 _OVERDUE = 2.0
 """Time without a frame after which the remote site counts as lost [s]."""
@@ -53,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:
         relay = Relay(site.node)
         with StreamClient(url, rate=arguments.rate, wind_only=True, on_frame=relay.take) as client:
-            _wait_for(client)
+            wait_for_frames(client)
             print(f'relaying the wind of {client.url}', flush=True)
             end = time.monotonic() + seconds
             while not ending.is_asked and time.monotonic() < end:
@@ -63,18 +64,29 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _wait_for(client: StreamClient) -> None:
-    """Wait for the first frame; say after some seconds why there is none yet."""
-    began = time.monotonic()
-    try:
-        client.wait(_SILENT)
+def wait_for_frames(client: StreamClient) -> None:
+    """
+    Wait for the first frame; say after some seconds why there is none yet.
+
+    Raises
+    ------
+    TransportError
+        The server refuses, is not reached, or has no frame to send.
+
+    """
+    if client.has_frames(_SILENT):
         return
-    except TransportError:
-        if time.monotonic() - began < _SILENT:
-            raise  # the server refuses: waiting does not help
-        problem = client.problem or 'no answer'
+    problem = client.problem or 'no answer'
     print(f'waiting for {client.url} ({problem}); Ctrl-C ends it', flush=True)
-    client.wait(_PATIENCE - _SILENT)
+    if client.has_frames(_UNREACHED - _SILENT):
+        return
+    if client.state != 'open':
+        raise TransportError(
+            f'not reached within {_UNREACHED:g} s ({client.problem or "no answer"})',
+            where=client.url,
+            cure='check the address, and that tree-sway show or the node viewer runs there',
+        )
+    client.wait(_PATIENCE - _UNREACHED)
 
 
 def with_token(url: str, token: str) -> str:

@@ -32,6 +32,7 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
+from tree_sway.worker import submit_beside
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
@@ -132,7 +133,7 @@ class SolverNode(TreeSwayNode):
         places = places_of(self.values['imu'])
         settings = self._settings()
         self.simulator: Simulator = (
-            source.observed(settings, places, self.values['rate'])
+            source.observed(settings, places, self.values['rate'], submit=submit_beside)
             if places
             else source.simulator(settings, **self.values.subset('tolerance'))
         )

@@ -6,7 +6,8 @@
 The true tree is made up: the model with all coordinates, its wood softer by a fifth, its damping
 higher by half, gusts that reach it limb by limb. Each row has one number of sensors: dynamic error
 of all tips and roughness, at once and smoothed, the correlation of the stem's tip, the share of
-the time that the band of 80 % holds the tips, and the time of a step, median and 99th percentile.
+the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
+and the time per step of the thread that finds gains, mountings and fits beside the steps.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip.
@@ -48,6 +49,7 @@ _HEAD = (
     'held',
     'us/step',
     'us 99 %',
+    'us beside',
     'notes',
 )
 _RECORD_HEAD = (
@@ -171,6 +173,7 @@ def _print(name: str, sensors: str, score: Score) -> None:
         *(f'{each:.3f}' for each in figures),
         f'{score.cost:.0f}',
         f'{score.worst:.0f}',
+        f'{score.beside:.0f}',
     ]
     print(','.join([*row, '; '.join(score.notes)]))
     sys.stdout.flush()

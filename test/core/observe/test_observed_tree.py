@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
@@ -25,6 +26,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
+from tree_sway.worker import submit_beside
 
 DT, SECONDS = 1.0 / 60.0, 70
 LEARNED = 30 * 60
@@ -89,10 +91,12 @@ class Replay(NamedTuple):
     sway_band: Floats
 
 
-def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
+def replayed(
+    motion: SensedMotion | None, *, learns: bool = False, submit: Submit | None = None
+) -> Replay:
     twin = ObservedTree(
         TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True,
+        has_band=True, submit=submit,
     )  # fmt: skip
     wind, block = truth().wind, np.empty((TREE.n_segments, 7))
     tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
@@ -128,6 +132,11 @@ def dynamic_error(tips: Floats, late: int = 0) -> float:
 @cache
 def good() -> Replay:
     return replayed(measured())
+
+
+@cache
+def learning() -> Replay:
+    return replayed(measured(), learns=True)
 
 
 @cache
@@ -209,11 +218,18 @@ def test_a_hostile_sensor_does_not_move_the_tree_beyond_its_storms(size: float) 
 
 
 def test_it_learns_stiffness_and_damping() -> None:
-    twin, tips, *_ = replayed(measured(), learns=True)
+    twin, tips, *_ = learning()
     fit = twin.observer.fit
     assert fit is not None
     assert fit.stiffness == pytest.approx(0.85, abs=0.1)
     assert dynamic_error(tips) < 0.6 * dynamic_error(alone().tips)
+
+
+def test_the_motion_is_the_same_with_work_beside_the_steps() -> None:
+    _twin, tips, late, band, _ = replayed(measured(), learns=True, submit=submit_beside)
+    np.testing.assert_array_equal(tips, learning().tips)
+    np.testing.assert_array_equal(late, learning().late)
+    np.testing.assert_array_equal(band, learning().band)
 
 
 def test_a_state_carries_the_correction() -> None:

@@ -9,6 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.identification.calibration import calibrate
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import RESTARTED
 from tree_sway.core.scene.make import make_simulator
@@ -17,7 +19,11 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
-from tree_sway.errors import ParameterError, TreeError
+from tree_sway.core.wind.averaging import WindAverage
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import ParameterError, StateError, TreeError
+from tree_sway.files.models.model_writer import write_model
+from tree_sway.stream.client import StreamClient
 
 DT = 1.0 / 60.0
 KINDS = (0, 4, 'branch', 'full', 'auto', 'forest')
@@ -196,3 +202,83 @@ def test_a_tree_without_any_drag_stays_at_rest(fork, model):
     for _ in range(60):
         assert sim.step((9.0, 4.0, 1.0), DT) == 0
     assert sim.place() == pytest.approx(rest, abs=1e-12)
+
+
+NO_NUMBERS = ('3', None, b'3', [1.0], {}, 1j)
+
+
+@pytest.mark.parametrize('value', NO_NUMBERS, ids=repr)
+def test_what_is_no_number_is_named(fork, value):
+    sim = simulator(fork(), 2)
+    place = PlacedTree('one', fork())
+    wind = np.zeros((60, 3))
+    for call in (
+        lambda: sim.step((1.0, 2.0, 3.0), value),
+        lambda: grow('oak', value, rng=5),
+        lambda: simulate_turbulence(value, rate=10.0, duration=5.0, rng=5),
+        lambda: simulate_turbulence(5.0, rate=value, duration=5.0, rng=5),
+        lambda: calibrate(fork(), None, value),
+        lambda: make_simulator(fork(), model='auto', tolerance=value),
+        lambda: make_simulator(fork(), model='auto', budget=value),
+        lambda: Settings(gravity=value),
+        lambda: Settings(max_wind=value),
+        lambda: replace(place, x=value),
+        lambda: replace(place, scale=value),
+        lambda: Scene([place]).moved(value),
+        lambda: WindAverage().add(value, (1.0, 2.0, 3.0)),
+        lambda: WindAverage().mean(value, 2.0),
+        lambda: simulate(fork(), wind, model=2, rate=value),
+    ):
+        with pytest.raises(ParameterError, match='is not a number'):
+            call()
+
+
+@pytest.mark.parametrize('rng', [None, 'a', -1, 1.5, True, [1], np.random.RandomState(1)])
+def test_randomness_comes_of_a_generator_or_its_seed(rng):
+    for call in (
+        lambda: grow('oak', 3.0, rng=rng),
+        lambda: simulate_turbulence(5.0, rate=10.0, duration=5.0, rng=rng),
+    ):
+        with pytest.raises(ParameterError, match=r'rng: .*give numpy.random.default_rng\(5\)'):
+            call()
+
+
+def test_a_seed_is_its_generator():
+    of_seed = simulate_turbulence(5.0, rate=10.0, duration=5.0, rng=5)
+    of_generator = simulate_turbulence(5.0, rate=10.0, duration=5.0, rng=np.random.default_rng(5))
+    assert (of_seed == of_generator).all()
+    one = grow('oak', 3.0, rng=np.int64(5))
+    assert (one.start == grow('oak', 3.0, rng=np.random.default_rng(5)).start).all()
+
+
+@pytest.mark.parametrize('state', [None, 'a', 3, np.zeros(4)])
+def test_what_is_no_state_is_refused(sim, state):
+    with pytest.raises(StateError, match='where a TreeState is expected'):
+        sim.set_state(state)
+
+
+def test_what_is_of_another_type_is_named(fork):
+    place = PlacedTree('one', fork())
+    for call in (
+        lambda: Settings(in_leaf='no'),
+        lambda: Settings(profile=None),
+        lambda: replace(place, leaf_on=-1),
+        lambda: replace(place, name=None),
+        lambda: Scene(None),
+        lambda: calibrate(fork(), None, 1.0, branch=3),
+        lambda: simulate(fork(), np.zeros((9, 3)), model=2, motion=3),
+        lambda: simulate(fork(), np.zeros((9, 3)), model=2, motion='a'),
+        lambda: write_model('tree.npz', fork()),
+        lambda: StreamClient(None),
+        lambda: StreamClient('http://there', rate='3'),
+        lambda: StreamClient('http://there', delay=-1.0),
+    ):
+        with pytest.raises(ParameterError):
+            call()
+
+
+def test_numbers_beyond_floats_are_refused(fork):
+    sim = simulator(fork(), 2)
+    for call in (lambda: sim.step((1.0, 2.0, 3.0), 10**400), lambda: grow('oak', 10**400, rng=1)):
+        with pytest.raises(ParameterError, match=r'time step of 1000|height nan'):
+            call()

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 import json
 import math
 import zipfile
@@ -94,11 +95,22 @@ def test_another_species_is_set_up_anew(file):
     [
         (lambda path: path.write_bytes(path.read_bytes()[:900]), 'zip'),
         (lambda path: path.write_text('hello'), 'zip'),
+        (lambda path: rewritten(path, mass=np.array('x')), 'settings or arrays'),
+        (lambda path: rewritten(path, mass=np.array(1j)), 'settings or arrays'),
+        (lambda path: rewritten(path, drag_law=np.full(3, 1j)), 'settings or arrays'),
+        (lambda path: rewritten(path, drag_law=np.ones((1, 3))), 'settings or arrays'),
+        (lambda path: rewritten(path, branch_keys=np.array(['x'] * 5)), 'settings or arrays'),
+        (lambda path: rewritten(path, stiffness=np.array(1.0)), 'settings or arrays'),
+        (lambda path: edited(path, 'tree_start', 2, 1e300), 'tree_start has a number'),
+        (lambda path: with_about(path, species=None), 'or arrays: None in place'),
+        (lambda path: with_about(path, settings={'profile': 3}), 'or arrays: 3 in place'),
+        (lambda path: with_about(path, settings={'max_wind': True}), 'max_wind is True'),
+        (lambda path: with_about(path, settings={'gravity': 10**400}), 'too large'),
         (lambda path: rewritten(path, about=None), 'no JSON'),
         (lambda path: rewritten(path, about=np.ones(2)), 'no text about it'),
         (lambda path: with_about(path, format='glTF'), 'another format'),
         (lambda path: with_about(path, version=VERSION + 1), f'version {VERSION + 1}'),
-        (lambda path: with_about(path, species={'key': 3}), 'tree or settings'),
+        (lambda path: with_about(path, species={'key': 3}), 'tree, settings or arrays'),
         (lambda path: with_about(path, settings={'gravity': -1.0}), 'gravity'),
         (lambda path: with_about(path, branch_names=['stem']), 'branch names'),
         (lambda path: with_about(path, digest='0' * 16), 'not those that were written'),
@@ -169,3 +181,14 @@ def test_the_newest_models_of_files_are_kept(fork):
         models.add(str(number), arrays)
     assert models.read('0') is None
     assert models.read('39') is arrays
+
+
+def test_a_file_with_any_damaged_byte_is_refused_or_the_same(file):
+    whole = file.read_bytes()
+    rest = make_simulator(read_model(file)).place()
+    for position in range(0, len(whole), len(whole) // 400):
+        damaged = bytearray(whole)
+        damaged[position] ^= 1 << (position % 8)
+        file.write_bytes(damaged)
+        with suppress(FormatError):
+            assert (make_simulator(read_model(file)).place() == rest).all()

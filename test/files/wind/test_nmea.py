@@ -70,10 +70,15 @@ def test_left_and_right_of_the_bow(body, velocity):
 @pytest.mark.parametrize(
     ('line', 'refusal'),
     [
-        ('$IIVWR,190.0,L,5.0,M', "angle '190.0', side 'L'"),
-        ('$IIVWR,90.0,X,5.0,M', "angle '90.0', side 'X'"),
-        ('$IIVWR,90.0,R,5.0,C', 'no speed'),
+        ('$IIVWR,190.0,L,5.0,M', "no usable angle up to 180: '190.0'"),
+        ('$IIVWR,90.0,X,5.0,M', "no side L or R: 'X'"),
+        ('$IIVWR,90.0,R,5.0,C', 'no speed with a unit'),
         ('$IIVWT,90.0,R,-5.0,M', 'speed is -5 m/s'),
+        ('$IIMWV,,R,12.0,N,A', 'no angle, the field is empty'),
+        ('$IIMWV,270,R,,N,A', 'no speed, the field is empty'),
+        ('$IIMWV,270,R,12.0,X,A', "no unit K, M, N or S: 'X'"),
+        ('$IIMWD,,T,,M,10.0,N,5.1,M', 'no direction, the field is empty'),
+        ('$IIMWD,45.0,T,,M,,N,fast,M', "no usable speed: 'fast'"),
         ('$IIMWV,270,R,12.0,N,A*1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A*+1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A' + ',' * 2000, 'a line of 2021 characters'),

@@ -20,6 +20,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
@@ -28,6 +29,7 @@ from tree_sway.stream.protocol import (  # noqa: E402
     PAUSED,
     WIND_LOST,
 )
+from tree_sway_ros.commands.relay import wait_for_frames  # noqa: E402
 from tree_sway_ros.process.composition import Composition  # noqa: E402
 from tree_sway_ros.process.listener import Listener  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
@@ -155,6 +157,36 @@ def test_an_address_where_nobody_listens_is_said_while_it_waits() -> None:
         assert f'waiting for wss://localhost:{port}/stream (' in relay.stdout.readline()
         relay.terminate()
         assert relay.wait(DEADLINE) == 0
+
+
+class Waiting:
+    """A client whose server is not reached, or sends nothing; time passes as it is waited for."""
+
+    url, problem = 'ws://there:8765/stream', 'Connect call failed'
+
+    def __init__(self, state: str) -> None:
+        self.state, self.waited = state, 0.0
+
+    def has_frames(self, seconds: float) -> bool:
+        self.waited += seconds
+        return False
+
+    def wait(self, seconds: float) -> None:
+        self.waited += seconds
+        raise TransportError('0 frames')
+
+
+@pytest.mark.parametrize(
+    ('state', 'seconds', 'reason'),
+    [('lost', 12.0, 'not reached within 12 s [(]Connect call'), ('open', 30.0, '0 frames')],
+)
+def test_a_server_that_is_never_reached_is_given_up(
+    state: str, seconds: float, reason: str
+) -> None:
+    client = Waiting(state)
+    with pytest.raises(TransportError, match=reason):
+        wait_for_frames(client)  # type: ignore[arg-type]
+    assert client.waited == seconds
 
 
 @pytest.mark.usefixtures('own_domain')

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers
+from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import TreeState
@@ -99,7 +99,8 @@ class AdaptiveSimulator(SwaySimulator):
         """Make the tree on all coordinates, and choose for the expected wind."""
         super().__init__(prepared, plain=plain)
         self._estimator = ErrorEstimator(self.tree, self._bank, self._drag_law)
-        self.tolerance, self.budget = tolerance, budget
+        self.tolerance = within('tolerance', tolerance, 0.0, math.inf, 'm')
+        self.budget = within('budget', budget, 0.0, math.inf, 'us')
         self.cost_scale = 1.0
         """Measured cost over estimated cost; set once it is measured."""
         self._touched_for = 0.0

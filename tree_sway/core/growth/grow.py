@@ -19,11 +19,13 @@ import math
 import numpy as np
 
 from tree_sway.core.beams.greenhill import greenhill_length
+from tree_sway.core.checks import number_of
 from tree_sway.core.growth.benjamina import grow_benjamina
 from tree_sway.core.growth.broadleaf import grow_broadleaf
 from tree_sway.core.growth.conifer import grow_conifer
 from tree_sway.core.growth.forms import broadleaf_form, changed_form, conifer_form
 from tree_sway.core.growth.goldcrest import grow_goldcrest
+from tree_sway.core.random_source import generator_of
 from tree_sway.core.tree.crown_allometry import crown_change
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
@@ -39,7 +41,7 @@ def grow(
     height: float,
     diameter: float | None = None,
     *,
-    rng: np.random.Generator,
+    rng: np.random.Generator | int,
     name: str | None = None,
 ) -> Tree:
     """
@@ -55,7 +57,7 @@ def grow(
         Diameter in [m] at breast height, 1.3 m; at the base of a pot plant and of a tree below
         2.6 m. From the height if None.
     rng
-        Source of randomness; the same state gives the same tree.
+        Source of randomness, or its seed; the same state gives the same tree.
     name
         Name of the tree; the key of the species if None.
 
@@ -69,18 +71,19 @@ def grow(
     SpeciesError
         If the species is unknown.
     ParameterError
-        If height or diameter is out of range, or the stem would buckle.
+        If height or diameter is out of range, the stem would buckle, or a type is wrong.
 
     """
     wood = species_named(species)
     species = wood.key
     kind = wood.habit
     refuse_height(wood, height)
+    random = generator_of(rng)
     usual = height / _slenderness(kind, species, height)
     if diameter is None:
         diameter = usual
     thinnest, thickest = stem_range(wood, height)
-    if not thinnest <= diameter <= thickest:
+    if not thinnest <= number_of('diameter', diameter) <= thickest:
         why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
         what = f'diameter {diameter:.4g} m at a height of {height:g} m {why}'
         cure = f'give {thinnest:.3g} to {thickest:.3g} m'
@@ -88,19 +91,20 @@ def grow(
     change = crown_change(species, height, usual, diameter)
     if kind == 'conifer':
         conifer = changed_form(conifer_form(species), change)
-        tree = grow_conifer(rng, height, diameter, species, conifer)
+        tree = grow_conifer(random, height, diameter, species, conifer)
     elif kind == 'broadleaf':
         broadleaf = changed_form(broadleaf_form(species), change)
-        tree = grow_broadleaf(rng, height, diameter, species, broadleaf)
+        tree = grow_broadleaf(random, height, diameter, species, broadleaf)
     else:
         generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
-        tree = generator(rng, height, diameter, species)
+        tree = generator(random, height, diameter, species)
     return replace(tree, name=name or species)
 
 
 def refuse_height(wood: Species, height: float) -> None:
     """Raise a `ParameterError` for a height [m] that `grow` does not give a species."""
     low, high = _HEIGHTS[wood.habit]
+    height = number_of('height', height)
     if not low <= height <= high:
         what = f"height {height:g} m is out of range for the habit '{wood.habit}'"
         raise ParameterError(what, where='height', cure=f'give {low:g} to {high:g} m')

@@ -109,7 +109,7 @@ def calibrate(
     tree, species = tree_and_species(tree, species)
     settings = in_season(tree, species, settings or Settings())
     if branch is not None and branch not in tree.branch_names:
-        cure = nearest(branch, tree.branch_names) or f'the first is {tree.branch_names[0]}'
+        cure = nearest(str(branch), tree.branch_names) or f'the first is {tree.branch_names[0]}'
         raise ParameterError(f"no branch '{branch}'", where=tree.name, cure=cure)
     model = _ScaledTree(tree, species, settings, branch)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import one_of, within
+from tree_sway.core.checks import one_of, refuse_other_kind, within
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
@@ -104,13 +104,16 @@ class Settings:
     max_wind: float = FASTEST_WIND
 
     def __post_init__(self) -> None:
-        """Raise a `ParameterError` for a value out of its range."""
+        """Raise a `ParameterError` for a value out of its range, or of a wrong type."""
         object.__setattr__(self, 'model', model_of(self.model))
+        known = self.__dataclass_fields__
         for name, (low, high, unit, above) in _RANGES.items():
             value = getattr(self, name)
-            if value is not None:
+            if value is not None or known[name].default is not None:
                 within(name, value, low, high, unit, above=above)
         one_of('enrich', self.enrich, ENRICHED)
+        one_of('in_leaf', self.in_leaf, (True, False, None))
+        refuse_other_kind('profile', self.profile, WindProfile, 'give WindProfile(...)')
         if self.volume_stiffness and self.model != 'branch':
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",

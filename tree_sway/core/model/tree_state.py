@@ -55,6 +55,12 @@ def fill_memory(memory: Sequence[NDArray[Any]], values: Floats) -> None:
 
 def refuse_other_state(state: TreeState, own: TreeState) -> None:
     """Refuse a state that is not finite, or of another tree or model, by a `StateError`."""
+    if not isinstance(state, TreeState):
+        raise StateError(
+            f'a {type(state).__name__}, where a TreeState is expected',
+            where=own.tree,
+            cure='set what state() of the same simulator returned',
+        )
     for what, theirs, mine in (
         ('tree', state.tree, own.tree),
         ('model', state.model, own.model),

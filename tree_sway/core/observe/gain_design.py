@@ -16,9 +16,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.core.observe.steady_filter import filter_in_parts, SteadyFilter, told_shares
+from tree_sway.core.observe.steady_filter import (
+    filter_in_parts,
+    SteadyFilter,
+    SwayLaw,
+    told_shares,
+)
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 NOISE, _DOUBTED = 3.5, 8.0
@@ -29,6 +35,9 @@ _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 Shares of the variance of a coordinate that the sensors take away below and above which its
 correction is not applied, and applied whole.
 """
+
+_DUE = 45
+"""Steps after which new gains are in use: their parts are fewer."""
 
 
 class Gains(NamedTuple):
@@ -57,6 +66,8 @@ class GainDesign:
         Sensors, and how each is moved by the coordinates of the model.
     lag
         Steps by which the smoothed motion is late.
+    submit
+        As `LaterWork` takes it.
 
     """
 
@@ -66,46 +77,41 @@ class GainDesign:
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
         lag: int,
+        submit: Submit | None = None,
     ) -> None:
         self._unknown, self._tracks, self._places = unknown, tracks, places
-        self._lag = lag
+        self._lag, self._submit = lag, submit
         self._wanted: tuple[int, ...] = ()
-        self._parts: Iterator[Gains | None] | None = None
+        self._work: LaterWork[Gains] | None = None
         self.used: tuple[int, ...] = ()
         """Sensors for which gains are found, and which are all in use."""
 
     def advance(self) -> Gains | None:
-        """Find a part of the gains where others are needed; return them when they are found."""
+        """Find gains where others are needed; return them when they are due."""
         in_use = tuple(k for k, track in enumerate(self._tracks) if track.in_use)
         if not in_use:
             self.stop()
             return None
-        if self._parts is None and in_use == self.used and not self._unknown.is_outdated:
+        if self._work is None and in_use == self.used and not self._unknown.is_outdated:
             return None
-        if self._parts is None or in_use != self._wanted:
-            self._wanted, self._parts = in_use, self._in_parts(in_use)
-        found = next(self._parts)
+        if self._work is None or in_use != self._wanted:
+            self._wanted, self._work = in_use, self._begin(in_use)
+        found = self._work.advance()
         if found is not None:
-            self._parts, self.used = None, found.used
+            self._work, self.used = None, found.used
         return found
 
     def stop(self) -> None:
         """Give up what was found."""
-        self.used, self._parts = (), None
+        self.used, self._work = (), None
 
-    def _in_parts(self, used: tuple[int, ...]) -> Iterator[Gains | None]:
-        """Find the gains of some sensors; None until they are found."""
+    def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
+        """Begin to find the gains of some sensors."""
         law = self._unknown.find()
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        for doubted in filter_in_parts(law, sensed, _DOUBTED * noise):
-            yield None
-            if doubted is not None:
-                told = told_shares(doubted)
-        trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
-        for gains in filter_in_parts(law, sensed, NOISE * noise, self._lag):
-            yield None if gains is None else Gains(used, noise, gains, trust)
+        return LaterWork(_in_parts(used, law, sensed, noise, self._lag), _DUE, self._submit)
 
     def felt(self, which: int) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -116,3 +122,16 @@ class GainDesign:
         felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
         uses = list(track.uses)
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
+
+
+def _in_parts(
+    used: tuple[int, ...], law: SwayLaw, sensed: Floats, noise: Floats, lag: int
+) -> Iterator[Gains | None]:
+    """Find the gains of some sensors; None until they are found."""
+    for doubted in filter_in_parts(law, sensed, _DOUBTED * noise):
+        yield None
+        if doubted is not None:
+            told = told_shares(doubted)
+    trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
+    for gains in filter_in_parts(law, sensed, NOISE * noise, lag):
+        yield None if gains is None else Gains(used, noise, gains, trust)

@@ -27,7 +27,9 @@ from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.dragged_motion import DraggedMotion
 from tree_sway.core.observe.explained_motion import ExplainedMotion
+from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
@@ -89,6 +91,9 @@ class ObservedTree(SwaySimulator):
         Whether stiffness and damping follow the sensors.
     has_band
         Whether it also says how sure it is (`band`).
+    submit
+        Begins a call in another thread, as ``submit`` of a `concurrent.futures.Executor` does, in
+        which gains, mountings and fits are found beside the steps. The motion is the same without.
 
     Raises
     ------
@@ -114,6 +119,7 @@ class ObservedTree(SwaySimulator):
         is_smoothed: bool = False,
         learns: bool = True,
         has_band: bool = False,
+        submit: Submit | None = None,
         cache: ModelCache | None = PREPARED,
         plain: bool = False,
         **changes: Any,
@@ -133,7 +139,7 @@ class ObservedTree(SwaySimulator):
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
-        self._explained = ExplainedMotion()
+        self._explained, self._submit = ExplainedMotion(), submit
         self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
@@ -146,7 +152,7 @@ class ObservedTree(SwaySimulator):
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
         n = self.observer.count
         self._corrected = self._swing[0][:n], self._swing[1][:n]
-        self._added = np.zeros((2, n))
+        self._added = np.zeros((2, len(self._swing[0])))
         self._limit = self._storm_energy()
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
@@ -170,8 +176,11 @@ class ObservedTree(SwaySimulator):
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
-        self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
+        self.observer = Observer(
+            self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed, submit=self._submit
+        )
         """What the sensors tell."""
+        self._dragged = DraggedMotion(self.observer, 1.0 / rate)
         self.members: Members | None = None
         """Trees that the real one might be; None without a band."""
         if self._has_band:
@@ -244,7 +253,8 @@ class ObservedTree(SwaySimulator):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step as `SwaySimulator.step`, then correct the motion."""
         x, y, z = three_numbers('wind', wind_mean)
-        swing, (eta, rate), added = self._swing, self._corrected, self._added
+        swing, added = self._swing, self._added
+        eta, rate, _ = swing
         eta -= added[0]
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
@@ -255,6 +265,7 @@ class ObservedTree(SwaySimulator):
             status = super().step((x, y, z), dt)
         if status & RESTARTED:
             added[:] = 0.0
+            self._dragged.reset()
             self.observer.reset()
         self.now = self.now + dt if self._given is None else self._given
         self._given = None
@@ -262,14 +273,17 @@ class ObservedTree(SwaySimulator):
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
         speed = math.hypot(*self._last_wind)
-        added[:] = self.observer.step(self.now, speed, swing, n_periods)
-        self._bound(added)
+        correction = self.observer.step(self.now, speed, swing, n_periods)
+        self._bound(correction)
+        added[:] = self._dragged.step(correction[1], n_periods)
+        self.observer.note_dragged(added[0])
+        added[:, : self.observer.count] += correction
         if self.members is not None:
             self.members.step(swing, self._last_wind[:2])
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
-            self._explained.note(dt, self.observer.stiffness, eta, added[0])
+            self._explained.note(dt, self.observer.stiffness, self._corrected[0], correction[0])
         self._followed += dt
         if self._followed >= _FOLLOWED_EVERY:
             self._followed = 0.0
@@ -295,7 +309,10 @@ class ObservedTree(SwaySimulator):
         stiffness, damping = np.exp(self._learned).tolist()
         ratio = min(damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
-            self.tune(stiffness_factor=stiffness, damping_ratio=ratio)
+            goal = self.check_tuning(stiffness_factor=stiffness, damping_ratio=ratio)
+            if self._tuning is not None:
+                # So small a change needs no transition, whose every step costs as much.
+                self._tuning.go_to(goal, self.period)
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""
@@ -315,6 +332,7 @@ class ObservedTree(SwaySimulator):
         super().reset()
         self._crown.reset()
         self._added[:] = 0.0
+        self._dragged.reset()
         self.observer.reset()
         if self.members is not None:
             self.members.reset()

@@ -27,6 +27,7 @@ from tree_sway.core.observe.correction_energy import find_energies
 from tree_sway.core.observe.disturbance import Disturbance
 from tree_sway.core.observe.estimate import Estimate
 from tree_sway.core.observe.gain_design import GainDesign, Gains, NOISE
+from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.running_fit import RunningFit
 from tree_sway.core.observe.sensor_place import place_motion
 from tree_sway.core.observe.sensor_readings import LATEST, SensorReadings
@@ -64,6 +65,8 @@ class Observer:
         Time step in [s].
     is_smoothed
         Whether the smoothed state is kept too.
+    submit
+        As `LaterWork` takes it.
 
     """
 
@@ -74,6 +77,7 @@ class Observer:
         dt: float,
         *,
         is_smoothed: bool = False,
+        submit: Submit | None = None,
     ) -> None:
         self.tracks, self._dt = list(tracks), dt
         m = simulator.banks[0].oscillators.shapes.shape[1]
@@ -83,10 +87,10 @@ class Observer:
         frequency = float(simulator.frequencies(1)[0])
         with one_thread():
             self._unknown = UnknownMotion(simulator, n, dt)
-            self._readings = SensorReadings(self._unknown, self.tracks, places, dt)
-        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt)
+            self._readings = SensorReadings(self._unknown, self.tracks, places, dt, submit)
+        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
         lag = SMOOTHED_LAG if is_smoothed else 0
-        self._design = GainDesign(self._unknown, self.tracks, places, lag)
+        self._design = GainDesign(self._unknown, self.tracks, places, lag, submit)
         self._smoothed = SmoothedMotion(m, n) if is_smoothed else None
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None
@@ -117,6 +121,16 @@ class Observer:
     def stiffness(self) -> Floats:
         """Stiffness of the coordinates that are corrected [1/s^2], (count,)."""
         return self._unknown.stiffness
+
+    @property
+    def all_stiffness(self) -> Floats:
+        """Stiffness of all coordinates of the model [1/s^2], (m,)."""
+        return self._unknown.all_stiffness
+
+    @property
+    def forces(self) -> Disturbance | None:
+        """What the wind does not tell, in the wind of the last gains; None before any."""
+        return self._unknown.forces
 
     @property
     def damping(self) -> Floats:
@@ -279,6 +293,11 @@ class Observer:
         """Displacements of `LATE_STEPS` ago by what was measured since, (m,), reused."""
         assert self._smoothed is not None
         return self._smoothed.displacements
+
+    def note_dragged(self, displacements: Floats) -> None:
+        """Note what the correction has moved by drag at this step, (m,)."""
+        if self._smoothed is not None:
+            self._smoothed.add_computed(self._step, displacements)
 
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""

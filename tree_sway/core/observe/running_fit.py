@@ -4,16 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.sensor_spectrum import SensorSpectrum
 from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
+from tree_sway.core.observe.tree_fit import fits, N_CANDIDATES, Spectrum, TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 _FIRST, _LATER = 40.0, 1.4
@@ -38,6 +39,8 @@ class RunningFit:
         First frequency of the model in [Hz].
     dt
         Time step in [s].
+    submit
+        As `LaterWork` takes it.
 
     """
 
@@ -48,13 +51,14 @@ class RunningFit:
         places: Sequence[PlaceMotion],
         frequency: float,
         dt: float,
+        submit: Submit | None = None,
     ) -> None:
-        self._unknown, self._tracks = unknown, tracks
+        self._unknown, self._tracks, self._submit = unknown, tracks, submit
         n = unknown.count
         self._places = [each.first(n) for each in places]
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
-        self._parts: Iterator[TreeFit | None] | None = None
+        self._work: LaterWork[TreeFit] | None = None
         self._fit_after = _FIRST
         self.found: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
@@ -70,11 +74,11 @@ class RunningFit:
                 spectrum.skip()
 
     def advance(self, used: Sequence[int]) -> None:
-        """Fit a part, or begin a fit by the sensors in use once there is enough motion."""
-        if self._parts is not None:
-            found = next(self._parts, None)
+        """Go on with a fit, or begin one by the sensors in use once there is enough motion."""
+        if self._work is not None:
+            found = self._work.advance()
             if found is not None:
-                self.found, self._parts = found, None
+                self.found, self._work = found, None
             return
         measured = [k for k in used if self._spectra[k].count]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
@@ -85,13 +89,14 @@ class RunningFit:
         if any(not each.count and each.until_first < _SOON for each in spectra):
             return
         self._fit_after = _LATER * seconds
-        self._parts = fits(
+        parts = fits(
             [self._spectrum(k) for k in measured],
             self._stiffness,
             self._damping,
             forces.air_damping,
             forces.covariance,
         )
+        self._work = LaterWork(parts, N_CANDIDATES * len(measured) + 1, self._submit)
 
     def _spectrum(self, which: int) -> Spectrum:
         """Spectrum of a sensor, and its rows by the model as it was made."""

@@ -15,14 +15,18 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.lateness import Lateness
+from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
-from tree_sway.core.observe.sensor_track import ROWS, sensed_rows, SensorTrack
+from tree_sway.core.observe.sensor_track import FoundMounting, ROWS, sensed_rows, SensorTrack
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 LATEST = 30
 """Largest number of steps by which sensors are read late."""
 
 _KEPT = 64
+
+_MOUNTED_AFTER = 12
+"""Steps after which a mounting that is looked for is known."""
 
 
 class SensorReadings:
@@ -37,6 +41,8 @@ class SensorReadings:
         Sensors, and how each is moved by the coordinates of the model.
     dt
         Time step in [s].
+    submit
+        As `LaterWork` takes it.
 
     """
 
@@ -46,9 +52,11 @@ class SensorReadings:
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
         dt: float,
+        submit: Submit | None = None,
     ) -> None:
         self._unknown, self._tracks, self._places = unknown, tracks, places
-        self._dt = dt
+        self._dt, self._submit = dt, submit
+        self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self.lateness = Lateness(len(tracks), dt, LATEST)
         """Steps by which sensors are read late."""
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
@@ -106,11 +114,21 @@ class SensorReadings:
             return False
         slot, when = (step - late) % _KEPT, time - late * self._dt
         self.forces = self._forces[slot]
-        # To find a mounting takes milliseconds: one at a step.
-        due = next((track for track in self._tracks if track.is_due), None)
-        if due is not None:
-            due.align()
+        self._find_mounting()
         sensed = self._sensed[slot]
         for k, track in enumerate(self._tracks):
             self.is_known[k] = track.read(when, sensed[k], self._beyond[k])
         return True
+
+    def _find_mounting(self) -> None:
+        """Go on with finding a mounting, or begin with that of the next sensor that is due."""
+        if self._search is None:
+            due = next((track for track in self._tracks if track.is_due), None)
+            if due is None:
+                return
+            self._search = due, LaterWork(due.search(), _MOUNTED_AFTER, self._submit)
+        track, work = self._search
+        found = work.advance()
+        if found is not None:
+            self._search = None
+            track.take(found)

@@ -10,9 +10,10 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -139,6 +140,26 @@ def read_motion(
         kept_computed[row, i] = computed[i]
     find_beyond(mounting, values, computed, moved, beyond)
     return True
+
+
+class FoundMounting(NamedTuple):
+    """How a sensor is mounted, and its mean difference from the model then, (9,)."""
+
+    alignment: Alignment
+    bias: Floats
+
+
+def _mountings(
+    sensed: Floats, computed: Floats, reference: Floats | None, window: int
+) -> Iterator[FoundMounting]:
+    """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
+    upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
+    found = align(sensed, upright, free, reference, window)
+    bias = np.zeros(9)
+    if not found.problem:
+        model = upright if found.has_gravity else free
+        bias = (found.motion(sensed) - model).mean(axis=0)
+    yield FoundMounting(found, bias)
 
 
 class SensorTrack:
@@ -290,25 +311,26 @@ class SensorTrack:
         """Whether it has seen enough motion for its mounting to be found again."""
         return self._count >= self._next_fit
 
-    def align(self) -> None:
-        """Find its mounting from the motion so far."""
+    def search(self) -> Iterator[FoundMounting]:
+        """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self._count)
         n = min(self._count, len(self._sensed))
-        sensed, computed = self._sensed[:n], self._computed[:n].T
-        upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-        found = align(sensed, upright, free, self.sensor.reference, self._window)
-        self.alignment = found
+        sensed, computed = self._sensed[:n].copy(), self._computed[:n].T.copy()
+        return _mountings(sensed, computed, self.sensor.reference, self._window)
+
+    def take(self, mounting: FoundMounting) -> None:
+        """Read the sensor by another mounting from now on."""
+        found = self.alignment = mounting.alignment
         if found.problem:
             self.in_use = False
             return
-        model = as_felt(computed, has_gravity=found.has_gravity).T
         self.uses = self._uses()
         self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
-        mounting = self._mounting
-        mounting[:9], mounting[9:11] = found.turn.ravel(), found.scale
-        mounting[11] = GRAVITY if found.has_gravity else 0.0
+        written = self._mounting
+        written[:9], written[9:11] = found.turn.ravel(), found.scale
+        written[11] = GRAVITY if found.has_gravity else 0.0
         self._fitted_rows = slice(3 * self.fitted, 3 * self.fitted + 3)
-        self.bias[:] = (found.motion(sensed) - model).mean(axis=0)
+        self.bias[:] = mounting.bias
         self.in_use = not self._is_refused
 
     def judge(self, size: float) -> None:

@@ -37,6 +37,9 @@ STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
 _STIFFNESSES = np.geomspace(0.5, 1.8, 53)
 _DAMPINGS = np.geomspace(0.35, 3.0, 9)
 _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
+N_CANDIDATES = len(_STIFFNESSES) * len(_DAMPINGS)
+"""Number of candidates of a fit: its parts are one for each and each sensor."""
+
 _MOST_DRAG = 2.0
 
 _LEAST = 1e-4

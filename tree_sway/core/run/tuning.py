@@ -116,9 +116,9 @@ class LiveTuning:
             )
         return goal
 
-    def go_to(self, goal: Tuning) -> None:
-        """Start the transition to a checked tuning with the next step."""
-        self.goal, self._left = goal, GLIDE
+    def go_to(self, goal: Tuning, within: float = GLIDE) -> None:
+        """Start the transition to a checked tuning, of a time in [s], with the next step."""
+        self.goal, self._left = goal, within
 
     def step(self, dt: float) -> bool:
         """Continue the transition by a step [s]; return whether the coefficients have changed."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.checks import within
+from tree_sway.core.checks import number_of, one_of, refuse_other_kind, within
 from tree_sway.core.model.settings import model_of, Settings
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.grown_tree import tree_and_species
@@ -73,14 +73,17 @@ class PlacedTree:
 
     def __post_init__(self) -> None:
         """Check the values."""
+        refuse_other_kind('name', self.name, str, 'give the name of the tree')
         tree, species = tree_and_species(self.tree, self.species)
         object.__setattr__(self, 'tree', tree)
         object.__setattr__(self, 'species', species)
         pose = (self.x, self.y, self.z, self.yaw)
-        if not all(map(math.isfinite, pose)):
+        numbers = [number_of(f'{self.name}: pose', each) for each in pose]
+        if not all(map(math.isfinite, numbers)):
             what = f'a pose of {pose[:3]} m and {self.yaw} rad'
             raise ParameterError(what, where=self.name, cure='give finite numbers')
         within(f'{self.name}: scale', self.scale, SMALLEST, LARGEST)
+        one_of(f'leaf_on of {self.name}', self.leaf_on, (True, False, None))
         if self.model is not None:
             with inside(self.name):
                 object.__setattr__(self, 'model', model_of(self.model))

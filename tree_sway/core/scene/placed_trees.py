@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,6 +35,9 @@ class PlacedTrees:
 
     def __post_init__(self) -> None:
         """Check the trees."""
+        if not isinstance(self.trees, Iterable):
+            what = f'a {type(self.trees).__name__}, where a list of trees is expected'
+            raise ParameterError(what, where='trees', cure='give [PlacedTree(name, tree, x, y)]')
         object.__setattr__(self, 'trees', tuple(self.trees))
         if not self.trees:
             raise TreeError('no trees', where=self.name, cure='give at least one')

@@ -11,6 +11,7 @@ from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
+from tree_sway.core.checks import number_of
 from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
@@ -23,6 +24,7 @@ from tree_sway.core.tree.species import Species
 from tree_sway.errors import inside, ParameterError
 
 if TYPE_CHECKING:
+    from tree_sway.core.observe.later_work import Submit
     from tree_sway.core.observe.observed_tree import ObservedTree
 
 
@@ -110,6 +112,8 @@ class Scene(PlacedTrees):
 
         The rotation is about the vertical, counterclockwise seen from above.
         """
+        for number in (x, y, z, yaw):
+            number_of('moved', number)
         if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
             return self
         c, s = math.cos(yaw), math.sin(yaw)
@@ -168,6 +172,7 @@ class Scene(PlacedTrees):
         *,
         is_smoothed: bool = False,
         has_band: bool = False,
+        submit: Submit | None = None,
     ) -> ObservedTree:
         """
         Make the simulator of the one tree with motion sensors on the real one.
@@ -176,7 +181,7 @@ class Scene(PlacedTrees):
         ----------
         settings
             Settings, as for `simulator`.
-        at, rate, is_smoothed, has_band
+        at, rate, is_smoothed, has_band, submit
             Arguments of `ObservedTree`.
 
         Raises
@@ -199,6 +204,7 @@ class Scene(PlacedTrees):
             rate=rate,
             is_smoothed=is_smoothed,
             has_band=has_band,
+            submit=submit,
         )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:

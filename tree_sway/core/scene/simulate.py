@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.checks import within
+from tree_sway.core.checks import refuse_other_kind, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.observed_tree import ObservedTree
@@ -141,6 +141,9 @@ class Rig:
         bare, species = tree_and_species(tree)
         chosen = settings_with(settings, changes)
         self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
+        refuse_other_kind('motion', motion, Sequence, 'give a list of PlacedMotion')
+        for each in motion:
+            refuse_other_kind('motion', each, PlacedMotion, 'give a list of PlacedMotion')
         self.motion = motion
         self.simulator: SwaySimulator
         if motion or band:

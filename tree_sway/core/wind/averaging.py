@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.checks import number_of, three_numbers, within
 from tree_sway.core.wind.curve import WindCurve
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
@@ -107,10 +107,11 @@ class WindAverage:
         Raises
         ------
         ParameterError
-            If the sample is not three numbers.
+            If the sample is not three numbers, or the time none.
 
         """
         value = np.array(three_numbers('wind', vector))
+        time = number_of('time', time)
         if time <= self._newest or not (math.isfinite(time) and np.isfinite(value).all()):
             self.refused += 1
             return False
@@ -151,6 +152,7 @@ class WindAverage:
             If the step is not finite or ends before it starts.
 
         """
+        start, end = number_of('start', start), number_of('end', end)
         if not (math.isfinite(start) and start <= end < math.inf):
             raise ParameterError(f'no step from {start} to {end}', where='wind average')
         self._clamp_clock(start)

@@ -3,10 +3,12 @@
 """
 A tree as rigid bodies on hinges, for engines of rigid bodies.
 
-Each segment is a body, with two hinges across it where it begins and none along it: wood does not
-twist here. The bending of a segment is divided between the hinges at its two ends by linear shape
-functions; the part at a tip is lost. One factor on all springs then gives the first natural
-frequency of the simulator, with weight and twist.
+Each segment is a body on hinges where it begins: two across it, and one along it, about which wood
+twists. The bending of a segment is divided between the hinges at its two ends by linear shape
+functions; the part at a tip is lost. Springs hold the tree in its rest shape under weight, which
+pulls it further over as it leans. One factor on all springs then gives the first natural frequency
+of the simulator; it is near 1. Engines whose joints have two axes get neither twist nor weight,
+and the factor makes up for both.
 """
 
 from __future__ import annotations
@@ -14,23 +16,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 import math
 import re
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density, SHARED_AT
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
 _MARGIN = 0.95
 """Largest step, as a share of the step at which the fastest motion becomes unstable."""
 _FASTEST_TO = 1e-3
 """Relative tolerance of the fastest eigenvalue."""
+_FREQUENCY_TO = 1e-6
+"""Relative tolerance of the slowest eigenvalue."""
+_MOST_TRIALS = 8
+_GRAVITY = 9.81
 _N_POINTS = 4
 """Points of integration by Gauss and Legendre on each half of a segment."""
 
@@ -52,7 +59,11 @@ class HingedTree:
     inertia
         Inertia about the centre, along the segment and across it [kg m^2], (n, 2).
     stiffness
-        Stiffness of each of the two hinges [N m/rad], (n,).
+        Stiffness of the hinges about the axes y and z and, of three, x of the segment [N m/rad],
+        (n, 2) or (n, 3).
+    reference
+        Angles at which the springs have no moment, since they carry the weight at rest [rad], as
+        `stiffness`; 0 without weight.
     drag_area
         Drag coefficient times area of the segment with its leaves, in wind of `SHARED_AT` across
         it [m^2], (n,).
@@ -70,6 +81,7 @@ class HingedTree:
     centre: Floats
     inertia: Floats
     stiffness: Floats
+    reference: Floats
     drag_area: Floats
     damping_time: float
     largest_step: float
@@ -99,47 +111,82 @@ def poses_on_parents(tree: Tree, poses: Floats) -> Floats:
     return np.where(parent[:, None] < 0, poses, np.hstack([position, orientation]))
 
 
-def hinged_tree(simulator: SwaySimulator) -> HingedTree:
-    """Divide the tree of a simulator into bodies on hinges."""
+def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) -> HingedTree:
+    """Divide the tree of a simulator into bodies on three hinges, or on two without weight."""
     tree = simulator.tree
     settings = simulator.settings
     species = simulator.models[0].species
     bodies = _bodies(tree, species.density, _spread(tree, settings.leaf_mass))
-    compliance = _compliance(tree, species.modulus)
-    compliance[0] += 1.0 / (settings.root_stiffness or species.root_stiffness)
-    slowest, fastest = _extreme_eigenvalues(1.0 / compliance, _mass_matrix(tree, bodies))
+    hinges = _Hinges.of(tree, 3 if has_twist_and_weight else 2)
+    springs = _springs(
+        tree, species, settings.root_stiffness or species.root_stiffness, hinges.axes.shape[1]
+    )
+    mass_matrix = _mass_matrix(tree, bodies, hinges)
+    moment = np.zeros(springs.shape)
+    weight_stiffness = sparse.csc_matrix(mass_matrix.shape)
+    if has_twist_and_weight:
+        moment, weight_stiffness = _weight(tree, bodies, hinges)
     circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
-    factor = circular_frequency**2 / slowest
-    damping_time = 2.0 * simulator.check_tuning().damping_ratio / circular_frequency
-    limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(factor * fastest))
+    factor, share = _factor_on_springs(
+        springs, weight_stiffness, mass_matrix, circular_frequency**2
+    )
+    damping_ratio = simulator.check_tuning().damping_ratio
+    damping_time = 2.0 * damping_ratio / (circular_frequency * share)
+    fastest = factor * _fastest(springs, mass_matrix)
+    limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(fastest))
+    stiffness = factor * springs
     return HingedTree(
         names=plain_names(tree),
         poses=poses_on_parents(tree, tree.rest_poses),
         mass=bodies.mass,
         centre=bodies.centre,
         inertia=bodies.inertia,
-        stiffness=factor / compliance,
+        stiffness=stiffness,
+        reference=-moment / stiffness,
         drag_area=_drag_area(simulator),
         damping_time=damping_time,
         largest_step=_MARGIN * limit,
     )
 
 
-def _extreme_eigenvalues(stiffness: Floats, mass_matrix: sparse.csc_matrix) -> tuple[float, float]:
-    """Lowest and highest squared circular frequency [1/s^2] of hinges of a stiffness (n,)."""
-    springs = sparse.diags(np.repeat(stiffness, 2)).tocsc()
+def _factor_on_springs(
+    springs: Floats,
+    weight_stiffness: sparse.csc_matrix,
+    mass_matrix: sparse.csc_matrix,
+    wanted: float,
+) -> tuple[float, float]:
+    """
+    Find the factor on springs that gives the slowest mode a squared circular frequency [1/s^2].
+
+    By Newton's method: the eigenvalue changes with the factor by the energy of the springs in the
+    mode. The second figure is the share of the mode's stiffness that springs have; the rest, below
+    0 where the tree stands, is that of the weight.
+    """
+    stiffness = sparse.diags(springs.ravel()).tocsc()
+    factor, share = 1.0, 1.0
+    for _ in range(_MOST_TRIALS):
+        total = factor * stiffness + weight_stiffness
+        (slowest,), mode = eigsh(total, 1, M=mass_matrix, sigma=-wanted)
+        of_springs = float(mode[:, 0] @ (stiffness @ mode[:, 0]))  # modes have a mass of 1
+        factor += (wanted - slowest) / of_springs
+        share = factor * of_springs / wanted
+        if abs(slowest / wanted - 1.0) < _FREQUENCY_TO:
+            break
+    return factor, share
+
+
+def _fastest(springs: Floats, mass_matrix: sparse.csc_matrix) -> float:
+    """Highest squared circular frequency [1/s^2] on springs."""
+    stiffness = sparse.diags(springs.ravel()).tocsc()
     # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
     factors = splu(
         mass_matrix, 'MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options={'SymmetricMode': True}
     )
     inverse = LinearOperator(mass_matrix.shape, factors.solve, dtype=np.float64)
-    slowest = _eigenvalue(springs, M=mass_matrix, sigma=0.0)
-    fastest = _eigenvalue(springs, M=mass_matrix, Minv=inverse, tol=_FASTEST_TO)
-    return slowest, fastest
-
-
-def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:
-    return float(eigsh(matrix, 1, return_eigenvectors=False, **options)[0])
+    found = eigsh(
+        stiffness, 1, M=mass_matrix, Minv=inverse, tol=_FASTEST_TO, return_eigenvectors=False
+    )
+    return float(found[0])
 
 
 def _spread(tree: Tree, leaves: Floats | None) -> Floats:
@@ -182,6 +229,16 @@ class _Points(NamedTuple):
         return cls(share, part, diameter)
 
 
+def _springs(tree: Tree, wood: Species, root_stiffness: float, n_axes: int) -> Floats:
+    """Stiffness of the hinges [N m/rad], (n, n_axes): two of bending, and one of twist."""
+    compliance = _compliance(tree, wood.modulus)
+    # A round section has twice the second moment for twist that it has for bending.
+    twist = 2.0 * wood.shear_ratio / compliance
+    compliance[0] += 1.0 / root_stiffness
+    bending = 1.0 / compliance
+    return np.stack([bending, bending, twist], axis=1)[:, :n_axes]
+
+
 def _compliance(tree: Tree, modulus: float) -> Floats:
     """Rotation of each hinge per moment [rad/N/m], (n,)."""
     points = _Points.of(tree)
@@ -221,31 +278,83 @@ def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     return _Bodies(mass, centre, np.stack([2.0 * disc, across], axis=1))
 
 
-def _mass_matrix(tree: Tree, bodies: _Bodies) -> sparse.csc_matrix:
+class _Hinges(NamedTuple):
     """
-    Mass matrix of the hinges at rest, (2 n, 2 n), two after two as the segments are.
+    Axes of the hinges at rest, and which of them carry which bodies.
+
+    ``axes``: unit vectors of the hinges of each segment in the order of the joints, (n, k, 3).
+    ``hinge`` and ``body``: each pair of a segment and one that it carries or is, (p,).
+    """
+
+    axes: Floats
+    hinge: Ints
+    body: Ints
+
+    @classmethod
+    def of(cls, tree: Tree, n_axes: int) -> _Hinges:
+        """Return the hinges of a tree about y, z and, of three, x of its segments."""
+        frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+        axes = np.stack([frame[:, :, 1], frame[:, :, 2], frame[:, :, 0]], axis=1)[:, :n_axes]
+        chains: list[list[int]] = []
+        for segment, parent in enumerate(tree.segment_parent.tolist()):
+            chains.append([*(chains[parent] if parent >= 0 else ()), segment])
+        body = np.repeat(np.arange(tree.n_segments), [len(chain) for chain in chains])
+        hinge = np.concatenate([np.array(chain) for chain in chains])
+        return cls(axes, hinge, body)
+
+    def numbers(self, segment: Ints) -> Ints:
+        """Return the numbers of the hinges of segments, (p, k)."""
+        n_axes = self.axes.shape[1]
+        return np.asarray(n_axes * segment[:, None] + np.arange(n_axes))
+
+
+def _mass_matrix(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> sparse.csc_matrix:
+    """
+    Mass matrix of the hinges at rest, (k n, k n), in the order of the segments.
 
     It is J^T M J, with the Jacobian J of the bodies' motions by the rates of the hinges from the
     root to each body.
     """
     n = tree.n_segments
-    axes = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
-    chains: list[list[int]] = []
-    for segment, parent in enumerate(tree.segment_parent.tolist()):
-        chains.append([*(chains[parent] if parent >= 0 else ()), segment])
-    body = np.repeat(np.arange(n), [len(chain) for chain in chains])
-    hinge = np.concatenate([np.array(chain) for chain in chains])
-    centre = tree.start + bodies.centre[:, None] * axes[:, :, 0]
-    hinge_axes = np.stack([axes[hinge, :, 1], axes[hinge, :, 2]], axis=1)
-    lever = centre[body] - tree.start[hinge]
-    speed = np.cross(hinge_axes, lever[:, None])
-    spin = np.einsum('kij,khi->khj', axes[body], hinge_axes)  # about the body's own axes
-    column = (2 * hinge[:, None] + np.arange(2)).ravel()
-    row = np.repeat(body, 2)
+    frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+    centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
+    axes = hinges.axes[hinges.hinge]
+    lever = centre[hinges.body] - tree.start[hinges.hinge]
+    speed = np.cross(axes, lever[:, None])
+    spin = np.einsum('kij,khi->khj', frame[hinges.body], axes)  # about the body's own axes
+    column = hinges.numbers(hinges.hinge).ravel()
+    row = np.repeat(hinges.body, axes.shape[1])
+    size = axes.shape[1] * n
     along, across = bodies.inertia.T
-    total = sparse.csc_matrix((2 * n, 2 * n))
+    total = sparse.csc_matrix((size, size))
     for axis, inertia in enumerate((along, across, across)):
         for rate, weight in ((speed, bodies.mass), (spin, inertia)):
-            jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), (row, column)), (n, 2 * n))
+            jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), (row, column)), (n, size))
             total += jacobian.T @ sparse.diags(weight) @ jacobian
     return total
+
+
+def _weight(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> tuple[Floats, sparse.csc_matrix]:
+    """
+    Moments of the weight about the hinges at rest [N m], (n, k), and its stiffness, (k n, k n).
+
+    With r the sum of mass times lever of all that a hinge j carries, the potential grows by
+    g e_z (a_j x r) per angle, and that by g e_z (a_i x (a_j x r)) per angle of a hinge i below it.
+    """
+    frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+    centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
+    lever = centre[hinges.body] - tree.start[hinges.hinge]
+    carried = np.zeros((tree.n_segments, 3))
+    np.add.at(carried, hinges.hinge, bodies.mass[hinges.body, None] * lever)
+    turned = np.cross(hinges.axes, carried[:, None])
+    moment = -_GRAVITY * turned[:, :, 2]
+    lower, upper = hinges.axes[hinges.hinge], turned[hinges.body]
+    change = np.cross(lower[:, :, None], upper[:, None])[..., 2] * _GRAVITY
+    # Hinges of one segment turn one after another.
+    n_axes = hinges.axes.shape[1]
+    change[hinges.hinge == hinges.body] *= np.triu(np.ones((n_axes, n_axes)))
+    row = np.repeat(hinges.numbers(hinges.hinge), n_axes, axis=1).ravel()
+    column = np.tile(hinges.numbers(hinges.body), n_axes).ravel()
+    size = n_axes * tree.n_segments
+    half = sparse.csc_matrix((change.ravel(), (row, column)), (size, size))
+    return moment, half + half.T - sparse.diags(half.diagonal())

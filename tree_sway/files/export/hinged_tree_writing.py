@@ -3,9 +3,10 @@
 """
 A tree on hinges as MJCF, which MuJoCo reads, and as SDF, which Gazebo and Drake read.
 
-The rest shape is that of the tree under its own weight, so gravity is taken off its bodies.
-Segments touch other things, and not each other in MuJoCo. There the wind of the model's options
-moves the tree: each segment is an ellipsoid in air with the drag of its wood and leaves.
+The rest shape is that of the tree under its own weight. In MJCF springs carry the weight, and wood
+twists; the joints of SDF have two axes and no weight: gravity is taken off its bodies. Segments
+touch other things, and not each other in MuJoCo. There the wind of the model's options moves the
+tree: each segment is an ellipsoid in air with the drag of its wood and leaves.
 
 MuJoCo's drag is ``rho C A |v| v`` without 1/2, along the air, and its area A is nearly the whole
 one in oblique winds, where ours is ``|v_n| v_n`` of the air across the segment. The coefficient
@@ -33,11 +34,16 @@ _BEARINGS = 12
 _NOT_IN_XML = re.compile('[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]')
 
 _BODY = """\
-<body name="{name}" pos="{place}" quat="{wxyz}" gravcomp="1">
+<body name="{name}" pos="{place}" quat="{wxyz}">
 <inertial pos="{centre} 0 0" mass="{mass}" diaginertia="{turning} {across} {across}"/>
-<joint name="{name}_y" axis="0 1 0" stiffness="{stiffness}" damping="{damping}"/>
-<joint name="{name}_z" axis="0 0 1" stiffness="{stiffness}" damping="{damping}"/>
+{joints}
 <geom fromto="0 0 0 {length} 0 0" size="{radius}" fluidcoef="{drag} 0 0 0 0"/>"""
+
+_JOINT = """\
+<joint name="{name}_{axis}" axis="{along}" stiffness="{stiffness}" springref="{reference}" \
+damping="{damping}"/>"""
+_AXES = {'y': '0 1 0', 'z': '0 0 1', 'x': '1 0 0'}
+"""Axes of the hinges of a segment in its frame, in the order of `HingedTree.stiffness`."""
 
 _SHAPE = """\
 <{kind} name="{kind}"><pose>{middle} 0 0 0 1.5707963 0</pose>
@@ -63,7 +69,10 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as MJCF, MuJoCo's model file."""
     tree, hinged = simulator.tree, hinged_tree(simulator)
     inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
-    texts = [_BODY.format_map(values) for values in _values(tree, hinged)]
+    texts = [
+        _BODY.format_map({**values, 'joints': _joints(hinged, segment)})
+        for segment, values in enumerate(_values(tree, hinged))
+    ]
     for body in range(tree.n_segments - 1, -1, -1):  # children come after their parents
         text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
         inside[int(tree.segment_parent[body])].append(text)
@@ -86,7 +95,7 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
 
 def sdf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
-    tree, hinged = simulator.tree, hinged_tree(simulator)
+    tree, hinged = simulator.tree, hinged_tree(simulator, has_twist_and_weight=False)
     return '\n'.join(
         [
             '<sdf version="1.9">',
@@ -119,7 +128,8 @@ def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
         'place': hinged.poses[:, :3], 'xyzw': hinged.poses[:, 3:],
         'wxyz': hinged.poses[:, [6, 3, 4, 5]], 'centre': hinged.centre, 'mass': hinged.mass,
         'turning': hinged.inertia[:, 0], 'across': hinged.inertia[:, 1],
-        'stiffness': hinged.stiffness, 'damping': hinged.damping_time * hinged.stiffness,
+        'stiffness': hinged.stiffness[:, 0],
+        'damping': hinged.damping_time * hinged.stiffness[:, 0],
         'length': tree.length, 'middle': 0.5 * tree.length,
         'radius': radius, 'drag': _drag_coefficients(tree, hinged.drag_area, radius),
     }  # fmt: skip
@@ -131,6 +141,20 @@ def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
             'parent': carrier or 'world',
             **{name: _text(column[i]) for name, column in columns.items()},
         }
+
+
+def _joints(hinged: HingedTree, segment: int) -> str:
+    """Return the joints of a segment as MJCF."""
+    stiffness, reference = hinged.stiffness[segment], hinged.reference[segment]
+    joints = []
+    for hinge, (axis, along) in enumerate(_AXES.items()):
+        values = {
+            'stiffness': _text(stiffness[hinge]),
+            'damping': _text(hinged.damping_time * stiffness[hinge]),
+            'reference': _text(reference[hinge]),
+        }
+        joints.append(_JOINT.format(name=hinged.names[segment], axis=axis, along=along, **values))
+    return '\n'.join(joints)
 
 
 def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:

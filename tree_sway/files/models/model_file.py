@@ -24,7 +24,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.tree.tree import Tree, tree_in_order
 from tree_sway.core.tree.wood import Species
-from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.errors import FormatError, inside, TreeSwayError
 from tree_sway.files.paths import path_of
 
 SUFFIX = '.npz'
@@ -43,6 +43,8 @@ TREE = ('start', 'end', *_DIAMETERS, *_INDICES)
 """Fields of a `Tree` that are arrays of the file."""
 
 _TEXT_LIMIT = 1 << 24
+_FARTHEST = 1e9
+"""Bound of all numbers of a tree: coordinates in [m], diameters in [m], indices."""
 
 
 def read_model(path: str | Path) -> SwayModel:
@@ -64,10 +66,13 @@ def read_model(path: str | Path) -> SwayModel:
             leaves = {name: arrays.pop(name) for name in LEAVES if name in arrays}
             species = _made(Species, about['species'])
             settings = replace(_made(Settings, about['settings']), **leaves)
-        except (LookupError, TypeError, ValueError, ParameterError) as error:
-            raise _damaged(f'its tree or settings: {error}') from None
-        model = SwayModel.of_arrays(arrays, tree, species, settings)
-        if model.digest() != about.get('digest'):
+            model = SwayModel.of_arrays(arrays, tree, species, settings)
+            digest = model.digest()
+        except FormatError:
+            raise
+        except (LookupError, TypeError, ValueError, OverflowError, TreeSwayError) as error:
+            raise _damaged(f'its tree, settings or arrays: {error}') from None
+        if digest != about.get('digest'):
             raise _damaged('numbers that are not those that were written')
         return model
 
@@ -83,8 +88,10 @@ def _read_arrays(path: Path) -> dict[str, NDArray[Any]]:
             )
         with np.load(path) as file:
             return dict(file)
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
-        raise _damaged(str(error)) from None
+    except FormatError:
+        raise
+    except Exception as error:  # what readers raise for damaged archives is of any kind
+        raise _damaged(f'{type(error).__name__}: {error}') from None
 
 
 def _read_about(text: NDArray[Any]) -> dict[str, Any]:
@@ -145,7 +152,7 @@ def _check_tree(arrays: Mapping[str, NDArray[Any]], names: Sequence[str]) -> Non
         expected = np.int64 if name in _INDICES else np.float64
         if array.dtype != expected or array.shape != shapes.get(name, (count,)):
             raise _damaged(f'tree_{name} is {array.dtype} of shape {array.shape}')
-        if not np.isfinite(array).all() or (name in _DIAMETERS and array.min() <= 0.0):
+        if not (np.abs(array) < _FARTHEST).all() or (name in _DIAMETERS and array.min() <= 0.0):
             raise _damaged(f'tree_{name} has a number that no tree has')
     parent, before = arrays['segment_parent'], np.arange(-1, count - 1)
     is_base = np.isin(before + 1, first[1:])
@@ -155,6 +162,8 @@ def _check_tree(arrays: Mapping[str, NDArray[Any]], names: Sequence[str]) -> Non
 
 def _made(kind: Any, values: Mapping[str, Any]) -> Any:
     """Make a dataclass of numbers and texts that `write_model` wrote; others are refused."""
+    if not isinstance(values, dict):
+        raise TypeError(f'{values!r:.40} in place of the fields of {kind.__name__}')
     hints, given = get_type_hints(kind), {}
     for name, value in values.items():
         hint = hints[name]
@@ -164,9 +173,9 @@ def _made(kind: Any, values: Mapping[str, Any]) -> Any:
             given[name] = tuple(float(each) for each in value)
         elif value == 'inf':
             given[name] = math.inf
-        elif hint is float:
+        elif hint is float and not isinstance(value, bool):
             given[name] = float(value)
-        elif hint in (bool, str) and not isinstance(value, hint):
+        elif hint in (float, bool, str) and not isinstance(value, hint):
             raise ValueError(f'{name} is {value!r:.40}')
         else:
             given[name] = value

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway.core.checks import refuse_other_kind
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.files.models.model_file import FORMAT, LEAVES, TREE, VERSION
 from tree_sway.files.whole_file import whole_file
@@ -27,6 +28,7 @@ def write_model(path: str | Path, model: SwayModel) -> None:
         A file that cannot be written.
 
     """
+    refuse_other_kind('model', model, SwayModel, 'give the result of prepare')
     tree, settings = model.tree, model.settings
     about = {
         'format': FORMAT,

@@ -115,8 +115,12 @@ def _mwv(fields: list[str], heading: float) -> Velocity | str:
         return f"status is '{fields[4][:8]}', not A"
     angle, speed, unit = finite(fields[0]), finite(fields[2]), _UNITS.get(fields[3])
     bearing = None if angle is None else degrees_to_bearing(angle)
-    if bearing is None or speed is None or unit is None or speed < 0.0:
-        return f"angle '{fields[0][:8]}', speed '{fields[2][:8]}', unit '{fields[3][:8]}'"
+    if bearing is None:
+        return _lacking('angle', fields[0])
+    if speed is None or speed < 0.0:
+        return _lacking('speed', fields[2])
+    if unit is None:
+        return f"no unit K, M, N or S: '{fields[3][:8]}'"
     return velocity_of_bearing(speed * unit, bearing + heading)
 
 
@@ -130,8 +134,10 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
     if bearing is None and magnetic is not None:
         needle = degrees_to_bearing(magnetic)
         bearing = None if needle is None else needle + declination
-    if bearing is None or speed is None or speed < 0.0:
-        return f"direction '{fields[0][:8]}', speed '{fields[6][:8]}'"
+    if bearing is None:
+        return _lacking('direction', fields[0] or fields[2])
+    if speed is None or speed < 0.0:
+        return _lacking('speed', fields[6] or fields[4])
     return velocity_of_bearing(speed, bearing)
 
 
@@ -158,12 +164,19 @@ def _vwr(fields: list[str], heading: float) -> Velocity | str:
         for speed, unit in zip(fields[2::2], fields[3::2], strict=False)
     )
     speed = next((s * unit for s, unit in speeds if s is not None and unit is not None), None)
-    if angle is None or not 0.0 <= angle <= 180.0 or side not in ('L', 'R'):
-        return f"angle '{fields[0][:8]}', side '{side[:8]}'"
+    if angle is None or not 0.0 <= angle <= 180.0:
+        return _lacking('angle up to 180', fields[0])
+    if side not in ('L', 'R'):
+        return f"no side L or R: '{side[:8]}'"
     if speed is None or speed < 0.0:
-        return 'no speed' if speed is None else f'speed is {speed:g} m/s'
+        return 'no speed with a unit' if speed is None else f'speed is {speed:g} m/s'
     turn = angle * pi / 180.0
     return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
+
+
+def _lacking(what: str, text: str) -> str:
+    """Reason of a refusal: a field is empty, or not what it should be."""
+    return f"no usable {what}: '{text[:8]}'" if text else f'no {what}, the field is empty'
 
 
 _READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}

@@ -162,7 +162,7 @@ function showPanel() {
 /** Hide the controls that have no effect. */
 function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
-  for (const name of ["height", "individual", "month"]) panel.hide(name, !status.is_grown);
+  for (const name of ["height", "age", "individual", "month"]) panel.hide(name, !status.is_grown);
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */

@@ -32,6 +32,7 @@ function textOf({ name, unit }, value) {
   if (name === "month") {
     return new Date(2001, Math.min(11, Math.floor(value) - 1), 15).toLocaleString(language(), { month: "long" });
   }
+  if (name === "age") return value < 1 ? word("age_usual") : `${Math.round(value)}`;
   if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
   if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();

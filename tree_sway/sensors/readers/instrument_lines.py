@@ -104,7 +104,7 @@ class InstrumentLines:
 
 def _of_sensor_line(said: SensorLine) -> Reading:
     if said.velocity is None:
-        return Refusal(said.kind, said.refusal.split("'")[0].strip())
+        return Refusal(said.kind, said.refusal.split("'")[0].rstrip(': '))
     return of_velocity(said.kind, said.velocity)
 
 

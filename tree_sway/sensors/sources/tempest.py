@@ -25,6 +25,8 @@ _KIND = 'rapid_wind'
 
 def open_tempest(address: SourceAddress) -> Source:
     """Open the hubs of this network: ``tempest``, or one station by its ``serial`` number."""
+    if address.host or address.place:
+        raise address.error('its hub sends to the whole network', 'give tempest, without a place')
     serial = address.text_of('serial')
     port = address.whole('port', _PORT, 1, 65_535)
 

@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
+from tree_sway.core.random_source import generator_of
 
 # IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
@@ -161,7 +162,7 @@ def along_bearing(record: Floats, bearing_to: float) -> Floats:
 
 
 def simulate_turbulence(
-    mean_speed: float, *, rate: float, duration: float, rng: np.random.Generator,
+    mean_speed: float, *, rate: float, duration: float, rng: np.random.Generator | int,
     height: float = 10.0, intensity: float | None = None, bearing_to: float = 0.5 * np.pi,
 ) -> Floats:  # fmt: skip
     """
@@ -177,7 +178,7 @@ def simulate_turbulence(
         Length of the record in [s]; one shorter than `SHORTEST_PERIOD` is cut from a period of
         that length, so that it has the slow part of the spectrum too.
     rng
-        Source of the phases.
+        Source of the phases, or its seed.
     bearing_to
         Direction of the mean wind, clockwise from north in [rad]; the default is a westerly.
 
@@ -198,6 +199,6 @@ def simulate_turbulence(
     within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
     n_samples = max(round(rate * duration), 1)
     n_period = max(n_samples, int(np.ceil(rate * SHORTEST_PERIOD)), 4)
-    wind = turbulence.record(n_period, rate, rng)[:n_samples]
+    wind = turbulence.record(n_period, rate, generator_of(rng))[:n_samples]
     wind[:, 0] += mean_speed
     return along_bearing(wind, bearing_to)

@@ -148,8 +148,25 @@ def fill_heights(
     n_found, n_kept = int(is_found.sum()), int(columns.is_kept.sum())
     if n_found:
         which = 'heights' if n_found == n_kept else f'{n_found} of {n_kept} heights'
-        columns.note(f'{which} are those of grown trees of these stems, as the table has none')
+        columns.note(
+            f'{which} are those of grown trees of these stems, as the table has none'
+            f'{_unread_height(columns, np.flatnonzero(is_found).tolist())}'
+        )
     return is_found.tolist()
+
+
+def _unread_height(columns: InventoryColumns, rows: list[int]) -> str:
+    """Tell the first height with digits that is no number, such as a date; empty without one."""
+    index = _height_column(columns)
+    if index is None:
+        return ''
+    numbers, _ = columns.numbers(index)
+    for row in rows:
+        text = columns.table.cells(index, [row])[0]
+        if np.isnan(numbers[row]) and any(map(str.isdigit, text)):
+            name, line = columns.table.columns[index], columns.table.numbers[row]
+            return f" that can be read; {columns.table.row_name} {line}: {name} is '{text[:40]}'"
+    return ''
 
 
 def _why_no_size(columns: InventoryColumns, row: int) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from itertools import islice
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.extras import cure_of_missing
@@ -16,6 +17,7 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES, reason_of
 
 _QUANTITIES = ('species', 'genus', 'height', 'diameter', 'girth', 'x', 'latitude', 'place')
+_CHUNK = 1 << 20
 _HEADER = 20
 """Rows that may stand above the header, such as a title."""
 
@@ -35,6 +37,10 @@ def read_spreadsheet(path: Path) -> TextTable:
     try:
         book = load_workbook(path, read_only=True, data_only=True)
         sheets = [list(_rows(sheet)) for sheet in book.worksheets]
+        if _has_formulas(path):
+            formulas = load_workbook(path, read_only=True).worksheets
+            for rows, sheet in zip(sheets, formulas, strict=True):
+                _tell_formulas(rows, sheet)
     except Exception as error:  # of zip, of XML, of the format: openpyxl has no root of its own
         what = f'no spreadsheet that can be read: {reason_of(error)}'
         raise FormatError(what, where=str(path), cure='save it as .xlsx or .csv again') from None
@@ -57,6 +63,25 @@ def _n_known(cells: list[str]) -> int:
     """Count of the quantities of an inventory that a row names."""
     names = [cell for cell in cells if cell]
     return sum(any(rank_of(name, each) is not None for name in names) for each in _QUANTITIES)
+
+
+def _has_formulas(path: Path) -> bool:
+    """Whether the file may have formulas: they are read from it a second time."""
+    with ZipFile(path) as archive:
+        for name in archive.namelist():
+            if name.startswith('xl/worksheets/') and name.endswith('.xml'):
+                with archive.open(name) as sheet:
+                    if any(b'</f>' in line for line in iter(lambda: sheet.read(_CHUNK), b'')):
+                        return True
+    return False
+
+
+def _tell_formulas(rows: list[list[str]], sheet: Any) -> None:
+    """Put formulas that no program has calculated yet in place of their empty cells."""
+    for cells, written in zip(rows, sheet.iter_rows(values_only=True), strict=False):
+        for column, formula in enumerate(written[: len(cells)]):
+            if not cells[column] and isinstance(formula, str) and formula.startswith('='):
+                cells[column] = f'formula {formula}, not calculated'
 
 
 def _rows(sheet: Any) -> Any:

@@ -1,0 +1,42 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Workers that end in the middle of their work: said at the first one, and counted."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
+import sys
+from typing import Any
+
+_TOPIC = 'all'
+"""Topic of a Dask scheduler on which it reports every change of a worker."""
+
+
+@contextmanager
+def told_lost_workers(client: Any, names: Collection[str]) -> Iterator[None]:
+    """Report workers that end inside the block while they have one of some pieces of work."""
+    lost = list[str]()
+
+    def hear(event: tuple[float, Any]) -> None:
+        message = event[1]
+        if not isinstance(message, dict) or message.get('action') != 'remove-worker':
+            return
+        if not set(names).isdisjoint(message.get('processing-tasks', ())):
+            lost.append(str(message.get('worker')))
+            if len(lost) == 1:
+                _say('a worker was ended (out of memory?): another one does its cases again')
+
+    client.subscribe_topic(_TOPIC, hear)
+    try:
+        yield
+    finally:
+        with suppress(Exception):  # the scheduler may be lost
+            client.unsubscribe_topic(_TOPIC)
+    if len(lost) > 1:
+        _say(f'{len(lost)} workers were ended; what they had was done again by others')
+
+
+def _say(text: str) -> None:
+    if sys.stderr is not None:
+        print(text, file=sys.stderr, flush=True)
