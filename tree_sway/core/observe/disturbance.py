@@ -57,20 +57,25 @@ class Disturbance:
 
     ``covariance`` is of the modal forces, (m, m), and ``gusts`` its part by unknown gusts;
     ``air_damping`` the damping of each coordinate by the mean wind in [1/s], (m,), and ``speed``
-    that wind in [m/s].
+    that wind in [m/s]; ``drag`` is the force on each coordinate of the model against the rate of
+    another in [1/s], (all, all).
     """
 
     covariance: Floats
     gusts: Floats
     air_damping: Floats
     speed: float
+    drag: Floats
 
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
     branches = simulator.banks[0].branches
-    slope, moved = _branch_slopes(simulator, speed, count)
-    air_damping = np.einsum('bim,bim->m', slope, moved)
+    n_all = simulator.banks[0].oscillators.shapes.shape[1]
+    all_slopes, moved = _branch_slopes(simulator, speed, n_all)
+    drag = np.tensordot(all_slopes, moved, axes=((0, 1), (0, 1)))
+    air_damping = np.diag(drag)[:count].copy()
+    slope = all_slopes[:, :, :count]
 
     limb = _limbs(simulator)[simulator.tree.branch_of_segment[branches['first']]]
     n_limbs = int(limb.max()) + 1
@@ -96,7 +101,7 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     by_gusts = covariance.copy()
     gusts = np.square(GUST * speed * whole).sum(axis=0)
     _add_wood(covariance, gusts, simulator, air_damping)
-    return Disturbance(covariance, by_gusts, air_damping, speed)
+    return Disturbance(covariance, by_gusts, air_damping, speed, drag)
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:

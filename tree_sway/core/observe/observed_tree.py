@@ -27,6 +27,7 @@ from tree_sway.core.checks import array_to_read, three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.dragged_motion import DraggedMotion
 from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
@@ -151,7 +152,7 @@ class ObservedTree(SwaySimulator):
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
         n = self.observer.count
         self._corrected = self._swing[0][:n], self._swing[1][:n]
-        self._added = np.zeros((2, n))
+        self._added = np.zeros((2, len(self._swing[0])))
         self._limit = self._storm_energy()
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
@@ -179,6 +180,7 @@ class ObservedTree(SwaySimulator):
             self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed, submit=self._submit
         )
         """What the sensors tell."""
+        self._dragged = DraggedMotion(self.observer, 1.0 / rate)
         self.members: Members | None = None
         """Trees that the real one might be; None without a band."""
         if self._has_band:
@@ -259,7 +261,8 @@ class ObservedTree(SwaySimulator):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step as `SwaySimulator.step`, then correct the motion."""
         x, y, z = three_numbers('wind', wind_mean)
-        swing, (eta, rate), added = self._swing, self._corrected, self._added
+        swing, added = self._swing, self._added
+        eta, rate, _ = swing
         eta -= added[0]
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
@@ -270,6 +273,7 @@ class ObservedTree(SwaySimulator):
             status = super().step((x, y, z), dt)
         if status & RESTARTED:
             added[:] = 0.0
+            self._dragged.reset()
             self.observer.reset()
         self.now = self.now + dt if self._given is None else self._given
         self._given = None
@@ -277,14 +281,17 @@ class ObservedTree(SwaySimulator):
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
         speed = math.hypot(*self._last_wind)
-        added[:] = self.observer.step(self.now, speed, swing, n_periods)
-        self._bound(added)
+        correction = self.observer.step(self.now, speed, swing, n_periods)
+        self._bound(correction)
+        added[:] = self._dragged.step(correction[1], n_periods)
+        self.observer.note_dragged(added[0])
+        added[:, : self.observer.count] += correction
         if self.members is not None:
             self.members.step(swing, self._last_wind[:2])
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
-            self._explained.note(dt, self.observer.stiffness, eta, added[0])
+            self._explained.note(dt, self.observer.stiffness, self._corrected[0], correction[0])
         self._followed += dt
         if self._followed >= _FOLLOWED_EVERY:
             self._followed = 0.0
@@ -333,6 +340,7 @@ class ObservedTree(SwaySimulator):
         super().reset()
         self._crown.reset()
         self._added[:] = 0.0
+        self._dragged.reset()
         self.observer.reset()
         if self.members is not None:
             self.members.reset()

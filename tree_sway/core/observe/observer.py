@@ -123,6 +123,16 @@ class Observer:
         return self._unknown.stiffness
 
     @property
+    def all_stiffness(self) -> Floats:
+        """Stiffness of all coordinates of the model [1/s^2], (m,)."""
+        return self._unknown.all_stiffness
+
+    @property
+    def forces(self) -> Disturbance | None:
+        """What the wind does not tell, in the wind of the last gains; None before any."""
+        return self._unknown.forces
+
+    @property
     def damping(self) -> Floats:
         """Damping of all coordinates by the wood [1/s], (m,)."""
         return self._unknown.all_damping
@@ -283,6 +293,11 @@ class Observer:
         """Displacements of `LATE_STEPS` ago by what was measured since, (m,), reused."""
         assert self._smoothed is not None
         return self._smoothed.displacements
+
+    def note_dragged(self, displacements: Floats) -> None:
+        """Note what the correction has moved by drag at this step, (m,)."""
+        if self._smoothed is not None:
+            self._smoothed.add_computed(self._step, displacements)
 
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""

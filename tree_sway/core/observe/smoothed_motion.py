@@ -56,6 +56,10 @@ class SmoothedMotion:
         """Note the displacements that the model has in the wind alone at a step, (m,)."""
         self._computed[step % _KEPT] = eta
 
+    def add_computed(self, step: int, eta: Floats) -> None:
+        """Add to the displacements of a step, (m,)."""
+        self._computed[step % _KEPT] += eta
+
     def note_estimated(self, first: int, last: int, eta: Floats | float) -> None:
         """Note the estimated differences, (count,) or 0, of the steps from first to last."""
         for step in range(first, last + 1):
