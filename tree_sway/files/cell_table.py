@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 
 from tree_sway.files.table_file import TextTable
@@ -31,3 +31,17 @@ def table_of_cells(
     return TextTable(
         tuple(columns), lines, texts, split, source, units=tuple(units), row_name=row_name
     )
+
+
+NumberedRow = tuple[int, Sequence[str]]
+"""Number of a line in the file, from 1, and the cells of that line."""
+
+
+def table_of_lines(
+    columns: Sequence[str], rows: Iterable[NumberedRow], source: str, units: Sequence[str] = ()
+) -> TextTable:
+    """Return a table from the lines of a file that have a row."""
+    numbered = list(rows)
+    numbers = [number for number, _ in numbered]
+    cells = [row for _, row in numbered]
+    return table_of_cells(columns, cells, source, numbers, units)

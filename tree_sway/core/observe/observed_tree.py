@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.checks import array_to_read, three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
@@ -232,12 +232,20 @@ class ObservedTree(SwaySimulator):
         Offer a record of a sensor, sample by sample as the steps reach its times.
 
         Times are in [s] after `reset`, (n,); the quantities, (n, 3) and (n, 4), are those of
-        `offer`.
+        `offer`. A `ParameterError` names an array of another shape, or without numbers.
         """
-        order = np.argsort(time, kind='stable')
-        given = {'acceleration': acceleration, 'rate': rate, 'orientation': orientation}
-        rows = {key: each[order] for key, each in given.items() if each is not None}
-        self._records[name] = _Record(np.asarray(time, dtype=np.float64)[order], rows)
+        times = array_to_read(f'{name}: time', time, (np.size(time),))
+        order = np.argsort(times, kind='stable')
+        rows = {
+            key: array_to_read(f'{name}: {key}', each, (len(times), width))[order]
+            for key, each, width in (
+                ('acceleration', acceleration, 3),
+                ('rate', rate, 3),
+                ('orientation', orientation, 4),
+            )
+            if each is not None
+        }
+        self._records[name] = _Record(times[order], rows)
 
     def _offer_records(self, until: float) -> None:
         """Offer the samples of all records up to a time in [s]."""

@@ -11,10 +11,10 @@ is the unit (Cumulus Wiki, "Realtime.txt"). Decimals have a comma where the comp
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import re
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import NumberedRow, table_of_lines
 from tree_sway.files.column_names import unit_known
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
@@ -40,12 +40,9 @@ def _is_log(lines: Sequence[str]) -> bool:
 
 
 def _read_log(lines: list[str], source: str) -> TextTable:
-    numbers, rows = list[int](), list[list[str]]()
-    for number, line in enumerate(lines, start=1):
-        if line.strip():
-            numbers.append(number)
-            rows.append(_row_of_log(line.strip()))
-    return table_of_cells(_LOG_NAMES, rows, source, numbers)
+    numbered = enumerate(lines, start=1)
+    rows = [(number, _row_of_log(line.strip())) for number, line in numbered if line.strip()]
+    return table_of_lines(_LOG_NAMES, rows, source)
 
 
 def _row_of_log(line: str) -> list[str]:
@@ -68,16 +65,19 @@ def _is_realtime(lines: Sequence[str]) -> bool:
 
 
 def _read_realtime(lines: list[str], source: str) -> TextTable:
-    numbers, rows = list[int](), list[list[str]]()
-    unit = ''
+    first = fields_of_realtime(lines[0])
+    assert first is not None
+    unit = first[UNIT]
+    units = ('', unit, unit, 'deg')
+    return table_of_lines(_LOG_NAMES[1:], _rows_of_realtime(lines), source, units)
+
+
+def _rows_of_realtime(lines: Sequence[str]) -> Iterator[NumberedRow]:
     for number, line in enumerate(lines, start=1):
         fields = fields_of_realtime(line)
         if fields is not None:
-            unit = unit or fields[UNIT]
             stamp = _stamp(fields[0], fields[1])
-            numbers.append(number)
-            rows.append([stamp, fields[SPEED], fields[GUST], fields[BEARING]])
-    return table_of_cells(_LOG_NAMES[1:], rows, source, numbers, ('', unit, unit, 'deg'))
+            yield number, [stamp, fields[SPEED], fields[GUST], fields[BEARING]]
 
 
 CUMULUS_LOG = Layout('cumulus log', _is_log, _read_log)

@@ -11,9 +11,9 @@ a typical year are of several years: the first row's year counts for all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import NumberedRow, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -29,16 +29,19 @@ def _is_epw(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    numbers, rows = list[int](), list[list[str]]()
+    return table_of_lines(_NAMES, _rows(lines), source, _UNITS)
+
+
+def _rows(lines: Sequence[str]) -> Iterator[NumberedRow]:
     year = lines[_HEADER].partition(',')[0].strip()
     for number, line in enumerate(lines[_HEADER:], start=_HEADER + 1):
         cells = [cell.strip() for cell in line.split(',')]
         if len(cells) > _SPEED:
             month, day, hour = (cell.zfill(2) for cell in cells[1:4])
-            wind = ['' if cell == _MISSING else cell for cell in cells[_DIRECTION : _SPEED + 1]]
-            numbers.append(number)
-            rows.append([f'{year}-{month}-{day} {hour}:00', *wind])
-    return table_of_cells(_NAMES, rows, source, numbers, _UNITS)
+            stamp = f'{year}-{month}-{day} {hour}:00'
+            direction = '' if cells[_DIRECTION] == _MISSING else cells[_DIRECTION]
+            speed = '' if cells[_SPEED] == _MISSING else cells[_SPEED]
+            yield number, [stamp, direction, speed]
 
 
 EPW = Layout('epw', _is_epw, _read)

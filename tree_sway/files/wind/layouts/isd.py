@@ -11,11 +11,10 @@ year, month, day, hour, four others, direction, speed in 0.1 m/s, two others; -9
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 import re
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import NumberedRow, table_of_lines
 from tree_sway.files.table_file import split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -33,18 +32,21 @@ def _has_wnd(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    split = partial(split_row, separator=',')
-    names = list(split(lines[0]))
-    date, wind = names.index('DATE'), names.index('WND')
+    return table_of_lines(_COLUMNS, _rows(lines), source, _UNITS)
+
+
+def _rows(lines: Sequence[str]) -> Iterator[NumberedRow]:
+    names = list(split_row(lines[0], ','))
+    date = names.index('DATE')
+    wind = names.index('WND')
     gust = names.index('OC1') if 'OC1' in names else len(names)
-    numbers, rows = list[int](), list[list[str]]()
     for number, line in enumerate(lines[1:], start=2):
-        cells = split(line)
+        cells = split_row(line, ',')
         if len(cells) > max(date, wind):
-            numbers.append(number)
-            of_gust = cells[gust] if gust < len(cells) else ''
-            rows.append([cells[date], *_wind(cells[wind]), _known(of_gust.split(',')[0], '9999')])
-    return table_of_cells(_COLUMNS, rows, source, numbers, _UNITS)
+            speed, direction = _wind(cells[wind])
+            gust_cell = cells[gust] if gust < len(cells) else ''
+            gust_speed = _known(gust_cell.partition(',')[0], '9999')
+            yield number, [cells[date], speed, direction, gust_speed]
 
 
 def _wind(cell: str) -> tuple[str, str]:
@@ -68,15 +70,18 @@ def _is_lite(lines: Sequence[str]) -> bool:
 
 
 def _read_lite(lines: list[str], source: str) -> TextTable:
-    numbers, rows = list[int](), list[list[str]]()
+    return table_of_lines(_COLUMNS, _rows_of_lite(lines), source, _UNITS)
+
+
+def _rows_of_lite(lines: Sequence[str]) -> Iterator[NumberedRow]:
     for number, line in enumerate(lines, start=1):
         cells = line.split()
         if len(cells) == 12:
             year, month, day, hour = cells[:4]
             stamp = f'{year}-{month}-{day}T{hour}:00'
-            numbers.append(number)
-            rows.append([stamp, _known(cells[8], '-9999'), _known(cells[7], '-9999'), ''])
-    return table_of_cells(_COLUMNS, rows, source, numbers, _UNITS)
+            direction = _known(cells[7], '-9999')
+            speed = _known(cells[8], '-9999')
+            yield number, [stamp, speed, direction, '']
 
 
 ISD_CSV = Layout('isd', _has_wnd, _read)

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import re
 
 from tree_sway.errors import FormatError
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -51,13 +51,13 @@ def _read(lines: list[str], source: str) -> TextTable:
         _column(elements, labels, _GUST, ()),
         _column(elements, labels, mean, (_QUALITY,)),
     ]
-    numbers, rows = list[int](), list[list[str]]()
+    rows = []
     for number, row in enumerate(cells[first:], start=first + 1):
         if _ROW.match(row[0]):
             speed, direction, gust, quality = (_cell(row, column) for column in columns)
-            numbers.append(number)
-            rows.append([row[0], '' if quality in _DOUBTFUL else speed, direction, gust])
-    return table_of_cells(_NAMES, rows, source, numbers, _UNITS)
+            known_speed = '' if quality in _DOUBTFUL else speed
+            rows.append((number, [row[0], known_speed, direction, gust]))
+    return table_of_lines(_NAMES, rows, source, _UNITS)
 
 
 def _column(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -44,14 +44,13 @@ def _read(lines: list[str], source: str) -> TextTable:
         found = [place for place, name in enumerate(names) if name.endswith(ending)]
         places += found[:1]
         columns += [quantity] * len(found[:1])
-    numbers, rows = list[int](), list[list[str]]()
+    rows = []
     for number, line in enumerate(lines[header + 1 :], start=header + 2):
         cells = line.split(',')
         if len(cells) == len(names):
-            numbers.append(number)
-            rows.append([cells[place].strip() for place in places])
+            rows.append((number, [cells[place].strip() for place in places]))
     found_units = ['', *(units[place] if place < len(units) else '' for place in places[1:])]
-    return table_of_cells(columns, rows, source, numbers, found_units)
+    return table_of_lines(columns, rows, source, found_units)
 
 
 METEOBLUE = Layout('meteoblue', _is_meteoblue, _read)

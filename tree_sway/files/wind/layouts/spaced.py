@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import re
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -47,9 +47,7 @@ def _read(lines: list[str], source: str) -> TextTable:
     # Of NDBC's two columns mm and MM one is the minute; units of the time are its parts.
     names = ['minute' if name == 'mm' else name for name in columns]
     units = ['' if name in _CLOCK else unit for name, unit in zip(names, units, strict=False)]
-    return table_of_cells(
-        names, [cells for _, cells in rows], source, [number for number, _ in rows], units
-    )
+    return table_of_lines(names, rows, source, units)
 
 
 SPACED = Layout('spaced', _has_names, _read)

@@ -16,17 +16,26 @@ from functools import partial
 from tree_sway.files.table_file import split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
+_HEADER = 4
+
 
 def _is_toa5(lines: Sequence[str]) -> bool:
-    return len(lines) > 3 and lines[0].lstrip('"').startswith('TOA5')
+    return len(lines) >= _HEADER and lines[0].lstrip('"').startswith('TOA5')
 
 
 def _read(lines: list[str], source: str) -> TextTable:
     split = partial(split_row, separator=',')
-    stored = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
-    texts = [lines[number - 1] for number in stored]
-    names, units = tuple(split(lines[1])), tuple(split(lines[2]))
-    return TextTable(names, stored, texts, split, source, 2, 3, units)
+    rows = [number for number in range(_HEADER, len(lines)) if lines[number].strip()]
+    return TextTable(
+        columns=tuple(split(lines[1])),
+        numbers=[number + 1 for number in rows],
+        texts=[lines[number] for number in rows],
+        split=split,
+        source=source,
+        header_line=2,
+        unit_line=3,
+        units=tuple(split(lines[2])),
+    )
 
 
 TOA5 = Layout('toa5', _is_toa5, _read)

@@ -10,15 +10,14 @@ was set to, which the file does not say.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import zip_longest
+from itertools import compress, zip_longest
 import re
 
-from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.cell_table import table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
-_GAPS = re.compile(r'\t|\s{2,}')
 _WIND = ('Date', 'Time', 'Wind Speed', 'Wind Dir', 'Hi Speed')
 
 
@@ -28,14 +27,13 @@ def _has_two_lines(lines: Sequence[str]) -> bool:
 
 def _read(lines: list[str], source: str) -> TextTable:
     names = _names(lines[0], lines[1])
-    at = [index for index, name in enumerate(names) if name in _WIND]
-    numbers, rows = list[int](), list[list[str]]()
+    wanted = [name in _WIND for name in names]
+    rows = []
     for number, line in enumerate(lines[2:], start=3):
-        cells = [cell.strip() for cell in (line.split('\t') if '\t' in line else line.split())]
+        cells = line.split('\t') if '\t' in line else line.split()
         if len(cells) == len(names):
-            numbers.append(number)
-            rows.append([cells[index] for index in at])
-    return table_of_cells([names[index] for index in at], rows, source, numbers)
+            rows.append((number, [cell.strip() for cell in compress(cells, wanted)]))
+    return table_of_lines(list(compress(names, wanted)), rows, source)
 
 
 def _names(above: str, below: str) -> list[str]:
@@ -44,10 +42,10 @@ def _names(above: str, below: str) -> list[str]:
         pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
         return [' '.join(f'{a} {b}'.split()) for a, b in pairs]
     spans = [match.span() for match in re.finditer(r'\S+', below)]
-    words = [(m.start(), m.end(), m[0]) for m in re.finditer(r'\S+', above)]
+    words = list(re.finditer(r'\S+', above))
     names = []
     for begin, end in spans:
-        over = [word for first, last, word in words if first < end and last > begin]
+        over = [word[0] for word in words if word.start() < end and word.end() > begin]
         names.append(' '.join([*over[:1], below[begin:end]]))
     return names
 
