@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 import tracemalloc
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -254,6 +254,26 @@ def test_a_bad_wind_is_refused_and_counted() -> None:
     assert np.isfinite(twin.band()).all()
     twin.reset()
     assert not twin.rotations().any()
+
+
+@pytest.mark.parametrize(
+    ('name', 'value'),
+    [
+        ('time', 'x'),
+        ('time', None),
+        ('time', [0.0, 0.1]),
+        ('acceleration', 'x'),
+        ('acceleration', np.zeros((3, 2))),
+        ('acceleration', np.zeros((9, 3))),
+        ('rate', np.zeros(3)),
+        ('orientation', np.zeros((3, 3))),
+    ],
+)
+def test_a_record_whose_arrays_do_not_fit_is_refused(name: str, value: Any) -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    record = {'time': np.arange(3.0), 'acceleration': np.zeros((3, 3)), name: value}
+    with pytest.raises(ParameterError, match=r'phone: (time|acceleration|rate|orientation): '):
+        twin.replay('phone', **record)
 
 
 def test_models_without_coordinates_are_refused() -> None:

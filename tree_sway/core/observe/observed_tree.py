@@ -23,13 +23,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.checks import array_to_read, three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.dragged_motion import DraggedMotion
 from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.later_work import Submit
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
@@ -231,12 +232,20 @@ class ObservedTree(SwaySimulator):
         Offer a record of a sensor, sample by sample as the steps reach its times.
 
         Times are in [s] after `reset`, (n,); the quantities, (n, 3) and (n, 4), are those of
-        `offer`.
+        `offer`. A `ParameterError` names an array of another shape, or without numbers.
         """
-        order = np.argsort(time, kind='stable')
-        given = {'acceleration': acceleration, 'rate': rate, 'orientation': orientation}
-        rows = {key: each[order] for key, each in given.items() if each is not None}
-        self._records[name] = _Record(np.asarray(time, dtype=np.float64)[order], rows)
+        times = array_to_read(f'{name}: time', time, (np.size(time),))
+        order = np.argsort(times, kind='stable')
+        rows = {
+            key: array_to_read(f'{name}: {key}', each, (len(times), width))[order]
+            for key, each, width in (
+                ('acceleration', acceleration, 3),
+                ('rate', rate, 3),
+                ('orientation', orientation, 4),
+            )
+            if each is not None
+        }
+        self._records[name] = _Record(times[order], rows)
 
     def _offer_records(self, until: float) -> None:
         """Offer the samples of all records up to a time in [s]."""
@@ -439,6 +448,29 @@ class ObservedTree(SwaySimulator):
         It is that of the last half minute in which a sensor was in use, 1 before any was.
         """
         return self._explained.share
+
+    @property
+    def learned(self) -> LearnedTree | None:
+        """What the sensors have told about the tree; None before the first fit."""
+        fit = self.observer.fit
+        if fit is None:
+            return None
+        tunable = self._bank.oscillators.tunable
+        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+        weight = float(tunable.weight[slowest])
+        wood = (float(tunable.stiffness[slowest]) - weight) / math.exp(self._learned[0])
+        # The slowest coordinate is nearly the first mode: Rayleigh's quotient, as in `LiveTuning`.
+        ratio = (fit.stiffness * wood + weight) / (wood + weight)
+        return LearnedTree(
+            float(self.frequencies(1)[0]) * math.sqrt(ratio),
+            fit.stiffness,
+            fit.stiffness_error,
+            fit.damping,
+            fit.damping_error,
+            fit.drag,
+            fit.drag_error,
+            fit.hours,
+        )
 
     @property
     def problems(self) -> list[str]:
