@@ -20,17 +20,18 @@ from tree_sway.core.observe.simulated_sensor import SimulatedSensor
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.trees.source import open_tree
 
 DT = 1.0 / 60.0
 
 
-def recorded(folder: Path) -> Floats:
+def recorded(folder: Path, seconds: float = 45.0) -> Floats:
     """Write a wind and the motion of a softer tree in it; return its displacements, (n, 3)."""
     tree, species = builtin_tree('goldcrest'), species_named('goldcrest')
     softer = replace(species, modulus=0.8 * species.modulus)
     sim = make_simulator(tree, softer, model=40, crown_coherence=0.3)
     rng = np.random.default_rng(3)
-    wind = simulate_turbulence(4.0, rate=60.0, duration=45.0, rng=rng)
+    wind = simulate_turbulence(4.0, rate=60.0, duration=seconds, rng=rng)
     segment = place_on(tree, f'{tree.branch_names[0]}:0.6').segment
     tips, poses = np.empty((len(wind), 3)), np.empty((len(wind), 7))
     for k, each in enumerate(wind):
@@ -74,9 +75,37 @@ def test_the_motion_follows_the_recording(
     assert errors[1] < 0.5 * errors[0]
 
 
+def test_a_tree_with_what_was_learned_opens_like_any_tree(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recorded(tmp_path, 75.0)
+    at = f'{builtin_tree("goldcrest").branch_names[0]}:0.6'
+    command = ['simulate', 'goldcrest', '--wind', 'wind.csv', '--motion', 'motion.csv']
+    assert main([*command, '--at', at, '--learn', 'own.twin.yaml', '-o', 'twin.csv']) == 0
+    assert 'own.twin.yaml: goldcrest' in capsys.readouterr().out
+    softer = open_tree('own.twin.yaml').species.modulus / species_named('goldcrest').modulus
+    assert softer == pytest.approx(0.8, abs=0.08)
+    assert main(['info', 'own.twin.yaml']) == 0
+    assert f'stiffness {softer:.3g} times' in capsys.readouterr().out
+
+
+def test_without_enough_sway_no_tree_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recorded(tmp_path, 10.0)
+    command = ['simulate', 'goldcrest', '--wind', 'wind.csv', '--motion', 'motion.csv']
+    assert main([*command, '--at', '1.0', '--learn', 'own.yaml', '-o', 'twin.csv']) == 0
+    assert 'own.yaml is not written' in capsys.readouterr().err
+    assert not Path('own.yaml').exists()
+
+
 @pytest.mark.parametrize(
     ('extra', 'what'),
     [
+        (['--learn', 'own.yaml'], 'no motion sensor to learn from'),
+        (['--motion', 'motion.csv', '--at', '1.0', '--learn', 'own.glb'], 'cannot store'),
         (['--motion', 'motion.csv'], '1 --motion and 0 --at'),
         (['--motion', 'motion.csv', '--at', '99'], 'the stem has no height'),
         (['--motion', 'missing.csv', '--at', '0.3'], 'missing.csv'),

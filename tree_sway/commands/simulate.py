@@ -20,6 +20,11 @@ from tree_sway.commands.arguments import (
     output_path,
 )
 from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.learn_argument import (
+    add_learn_argument,
+    check_learn_argument,
+    write_learned,
+)
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
@@ -60,6 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='also write within which bounds the tips and the moment of the real tree are for '
         '80 %% of the time, by the spreads of wood, damping, drag, leaves and gusts',
     )  # fmt: skip
+    add_learn_argument(parser)
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 
 
@@ -67,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Simulate the tree and write its motion."""
     output = Path(output_path(arguments))
     refuse_no_table(output)
+    check_learn_argument(arguments)
     refuse_unused_wind(arguments)
     tree_file = opened_tree(arguments)
     names = tree_file.tree.branch_names
@@ -89,6 +96,8 @@ def run(arguments: argparse.Namespace) -> int:
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
         print(f'note: {note}', file=sys.stderr)
+    if arguments.learn is not None:
+        write_learned(arguments.learn, tree_file, record.learned, chosen_leaves(arguments))
     print(f'{output}: {record}')
     print(exposure)
     print(record.strength)

@@ -16,7 +16,6 @@ import errno
 import json
 import logging
 import socket
-import ssl
 import threading
 import time
 

@@ -159,7 +159,9 @@ def twin_score(
         late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
     if (fit := twin.observer.fit) is not None:
-        notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
+        notes.append(
+            f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}, drag {fit.drag:.2f}'
+        )
     held = _held(tips, true.tips, bands) if has_band else np.nan
     return Score(
         error, roughness, late_error, late_roughness, stem, held, *_costs(spent), beside,

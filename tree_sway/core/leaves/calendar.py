@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from tree_sway.core.checks import within
-from tree_sway.core.leaves.foliage import foliage_of
+from tree_sway.core.leaves.foliage import foliage_of, stem_section
 from tree_sway.core.tree.look import Color, Look
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
@@ -23,7 +23,10 @@ from tree_sway.core.tree.tree import Tree
 FIRST_MONTH, LAST_MONTH, SUMMER = 1.0, 13.0, 7.5
 """Begin and end of the year, and a time when trees are in full leaf, in months from 1."""
 
-_UNFOLDING, _TURNING, _FALL = (4.6, 5.5), (9.9, 10.9), (10.5, 11.7)
+_UNFOLDING = (4.6, 5.5)
+_YOUNG = (4.6, 6.2)
+_TURNING = (9.9, 10.9)
+_FALL = (10.5, 11.7)
 """Begin and end of each phase, in months."""
 _BARE = 0.02
 """Share of the leaves below which a tree is bare."""
@@ -38,7 +41,9 @@ def leaf_share(species: Species, month: float) -> float:
     within('month', month, FIRST_MONTH, LAST_MONTH)
     if species.leaves.is_evergreen:
         return 1.0
-    return _passed(_UNFOLDING, month) * (1.0 - _passed(_FALL, month))
+    unfolded = _passed(_UNFOLDING, month)
+    fallen = _passed(_FALL, month)
+    return unfolded * (1.0 - fallen)
 
 
 def is_bare(species: Species, month: float) -> bool:
@@ -57,28 +62,36 @@ def species_in_month(species: Species, tree: Tree, month: float) -> Species:
     colored = replace(species, look=_look_in_month(species, month))
     if share == 1.0 or is_bare(species, month):
         return colored
-    section = 0.25 * np.pi * float(tree.base_diameter[0]) ** 2
-    whole = float(foliage_of(tree, traits=species.leaves).area.sum())
-    leaves = replace(species.leaves, area_per_section=share * whole / section)
-    bare, in_leaf = species.damping_bare, species.damping_in_leaf
-    return replace(colored, leaves=leaves, damping_in_leaf=bare + share * (in_leaf - bare))
+    area_in_summer = float(foliage_of(tree, traits=species.leaves).area.sum())
+    area_per_section = share * area_in_summer / stem_section(tree)
+    added_damping = share * (species.damping_in_leaf - species.damping_bare)
+    return replace(
+        colored,
+        leaves=replace(species.leaves, area_per_section=area_per_section),
+        damping_in_leaf=species.damping_bare + added_damping,
+    )
 
 
 def _look_in_month(species: Species, month: float) -> Look:
     """Young leaves are fresh, old ones turn."""
-    look, turned = species.look, _passed(_TURNING, month)
+    look = species.look
     if species.leaves.is_evergreen:
         return look
-    young = 1.0 - _passed((_UNFOLDING[0], _UNFOLDING[1] + 0.7), month)
+    young = 1.0 - _passed(_YOUNG, month)
     green = _mixed(look.green, look.fresh, young)
     if look.autumn is None:
         return replace(look, green=green)
-    fresh = _mixed(look.fresh, look.autumn, turned)
-    return replace(look, green=_mixed(green, look.autumn, turned), fresh=fresh)
+    turned = _passed(_TURNING, month)
+    return replace(
+        look,
+        green=_mixed(green, look.autumn, turned),
+        fresh=_mixed(look.fresh, look.autumn, turned),
+    )
 
 
 def _mixed(one: Color, other: Color, share: float) -> Color:
-    red, green, blue = ((1.0 - share) * a + share * b for a, b in zip(one, other, strict=True))
+    mixed = (1.0 - share) * np.array(one) + share * np.array(other)
+    red, green, blue = mixed.tolist()
     return red, green, blue
 
 

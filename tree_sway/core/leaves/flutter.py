@@ -31,35 +31,38 @@ FLUTTER_GAIN = float(np.sqrt(2.0) / (740.0**2 * AIR_VISCOSITY * np.pi))
 LARGEST_ANGLE = 0.7
 """Amplitude at which flutter levels off in [rad]."""
 
+_LAW = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
+
 
 def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
     """Amplitude of the flutter [rad] in air at a speed [m/s], for a stalk's frequency [Hz]."""
-    u = np.asarray(speed, dtype=np.float64)
-    free = FLUTTER_GAIN * u * u / np.asarray(frequency, dtype=np.float64)
-    return np.asarray(LARGEST_ANGLE * np.tanh(free / LARGEST_ANGLE))
+    speeds = np.asarray(speed, dtype=np.float64)
+    frequencies = np.asarray(frequency, dtype=np.float64)
+    unlimited = FLUTTER_GAIN * speeds * speeds / frequencies
+    return np.asarray(LARGEST_ANGLE * np.tanh(unlimited / LARGEST_ANGLE))
 
 
 def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floats:
     """Angle of each cluster about its stalk [rad], at a time [s] in air past each [m/s], (m,)."""
-    swing = np.sin(2.0 * np.pi * clusters.frequency * time + clusters.phase)
-    return np.asarray(flutter_amplitude(speed, clusters.frequency) * swing)
+    amplitude = flutter_amplitude(speed, clusters.frequency)
+    phase = 2.0 * np.pi * clusters.frequency * time + clusters.phase
+    return np.asarray(amplitude * np.sin(phase))
 
 
 def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
     """Pose block (m, 7) of the clusters, from the segments' (n, 7) and angles [rad], (m,)."""
-    from scipy.spatial.transform import (
-        Rotation,  # it takes long to load, and only drawing needs it
-    )
+    # It takes long to load, and only drawing needs it.
+    from scipy.spatial.transform import Rotation
 
-    carrier = poses[clusters.segment]
-    turn = Rotation.from_quat(carrier[:, 3:])
-    flutter = np.zeros((len(clusters.segment), 3))
-    flutter[:, 0] = angle
-    own = Rotation.from_quat(clusters.orientation[:, [1, 2, 3, 0]])
-    block = np.empty((len(clusters.segment), 7))
-    block[:, :3] = carrier[:, :3] + turn.apply(clusters.offset)
-    block[:, 3:] = (turn * own * Rotation.from_rotvec(flutter)).as_quat()
-    return block
+    start = poses[clusters.segment, :3]
+    rotation_of_segment = Rotation.from_quat(poses[clusters.segment, 3:])
+    orientation_xyzw = clusters.orientation[:, [1, 2, 3, 0]]
+    rotation_at_rest = Rotation.from_quat(orientation_xyzw)
+    about_stalk = np.zeros_like(start)
+    about_stalk[:, 0] = angle
+    rotation = rotation_of_segment * rotation_at_rest * Rotation.from_rotvec(about_stalk)
+    position = start + rotation_of_segment.apply(clusters.offset)
+    return np.hstack([position, rotation.as_quat()])
 
 
 def leaf_list(clusters: LeafClusters) -> dict[str, object]:
@@ -69,7 +72,12 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
     and its two constants.
     """
-    columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
-    law = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
-    flutter = {'law': law, 'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
-    return {**columns, 'flutter': flutter}
+    described: dict[str, object] = {
+        name: np.round(values, 4).tolist() for name, values in vars(clusters).items()
+    }
+    described['flutter'] = {
+        'law': _LAW,
+        'gain': FLUTTER_GAIN,
+        'largest_angle': LARGEST_ANGLE,
+    }
+    return described

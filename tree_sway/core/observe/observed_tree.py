@@ -30,6 +30,7 @@ from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.dragged_motion import DraggedMotion
 from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.later_work import Submit
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
@@ -447,6 +448,29 @@ class ObservedTree(SwaySimulator):
         It is that of the last half minute in which a sensor was in use, 1 before any was.
         """
         return self._explained.share
+
+    @property
+    def learned(self) -> LearnedTree | None:
+        """What the sensors have told about the tree; None before the first fit."""
+        fit = self.observer.fit
+        if fit is None:
+            return None
+        tunable = self._bank.oscillators.tunable
+        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+        weight = float(tunable.weight[slowest])
+        wood = (float(tunable.stiffness[slowest]) - weight) / math.exp(self._learned[0])
+        # The slowest coordinate is nearly the first mode: Rayleigh's quotient, as in `LiveTuning`.
+        ratio = (fit.stiffness * wood + weight) / (wood + weight)
+        return LearnedTree(
+            float(self.frequencies(1)[0]) * math.sqrt(ratio),
+            fit.stiffness,
+            fit.stiffness_error,
+            fit.damping,
+            fit.damping_error,
+            fit.drag,
+            fit.drag_error,
+            fit.hours,
+        )
 
     @property
     def problems(self) -> list[str]:

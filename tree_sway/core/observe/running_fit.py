@@ -95,6 +95,7 @@ class RunningFit:
             self._damping,
             forces.air_damping,
             forces.covariance,
+            1.0 if self.found is None else self.found.drag,
         )
         self._work = LaterWork(parts, N_CANDIDATES * len(measured) + 1, self._submit)
 

@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.load_spreads import DRAG
 from tree_sway.core.observe.sensor_spectrum import Waves
 from tree_sway.core.setup.one_thread import one_thread
 
@@ -40,7 +41,10 @@ _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
 N_CANDIDATES = len(_STIFFNESSES) * len(_DAMPINGS)
 """Number of candidates of a fit: its parts are one for each and each sensor."""
 
-_MOST_DRAG = 2.0
+_MOST_DRAG, _LEAST_DRAG = 2.0, 0.2
+
+_GUST_ERROR = 0.15
+"""Error of the drag, of its logarithm, for gusts at the anemometer are not those of the crown."""
 
 _LEAST = 1e-4
 """Least variance of a pattern of static bends that counts, over the largest [-]."""
@@ -57,7 +61,7 @@ square over 22 fits of six kinds of tree).
 
 class TreeFit(NamedTuple):
     """
-    Factors on stiffness and damping of the model, their relative errors, and the hours behind.
+    Factors on stiffness, damping and drag of the model, their errors, and the hours behind.
 
     The errors are standard deviations; ``hours`` the length of the motion.
     """
@@ -66,6 +70,8 @@ class TreeFit(NamedTuple):
     damping: float
     stiffness_error: float
     damping_error: float
+    drag: float
+    drag_error: float
     hours: float
 
 
@@ -90,6 +96,7 @@ def fits(
     damping: Floats,
     air_damping: Floats,
     covariance: Floats,
+    drag: float = 1.0,
 ) -> Iterator[TreeFit | None]:
     """
     Try one candidate after the other, a sensor at a time; the fit is yielded last, before it None.
@@ -102,26 +109,53 @@ def fits(
         Stiffness [1/s^2] and damping [1/s] of wood and air of the coordinates, (m,).
     covariance
         Covariance of the unknown forces, (m, m).
+    drag
+        Factor on the damping by the air, as the drag of the last fit.
 
     """
     bends, sizes = _patterns(covariance, stiffness)
     sensors = [_Misfit(each, bends * sizes, stiffness) for each in spectra]
     table = np.zeros((len(_STIFFNESSES), len(_DAMPINGS), len(_SLOPES)))
+    # Information on the logarithm of the drag, and that times the logarithm.
+    told = np.zeros((2, *table.shape))
     for i, stiff in enumerate(_STIFFNESSES.tolist()):
         for j, damped in enumerate(_DAMPINGS.tolist()):
-            damping_there = damped * damping + air_damping
+            damping_there = damped * damping + drag * air_damping
             for each in sensors:
                 with one_thread():
-                    table[i, j] += each.of(stiff, damping_there)
+                    misfit, drags, known = each.of(stiff, damping_there)
+                table[i, j] += misfit
+                told[0, i, j] += known
+                told[1, i, j] += known * np.log(np.maximum(drags, _LEAST_DRAG))
                 yield None
             prior = (math.log(stiff) / STIFFNESS_SPREAD) ** 2
             table[i, j] += 0.5 * (prior + (math.log(damped) / DAMPING_SPREAD) ** 2)
-    weight = np.exp(table.min() - table).sum(axis=2)
-    weight /= weight.sum()
+    weight_of_slope = np.exp(table.min() - table)
+    weight_of_slope /= weight_of_slope.sum()
+    weight = weight_of_slope.sum(axis=2)
     hours = max(each.seconds for each in spectra) / 3600.0
     first = _mean(np.log(_STIFFNESSES), weight.sum(axis=1))
     second = _mean(np.log(_DAMPINGS), weight.sum(axis=0))
-    yield TreeFit(math.exp(first[0]), math.exp(second[0]), first[1], second[1], hours)
+    third = _drag(*(told * weight_of_slope).reshape(2, -1).sum(axis=1).tolist())
+    yield TreeFit(
+        math.exp(first[0]),
+        math.exp(second[0]),
+        first[1],
+        second[1],
+        math.exp(third[0]),
+        third[1],
+        hours,
+    )
+
+
+def _drag(information: float, weighted: float) -> tuple[float, float]:
+    """Logarithm of the drag and its error, by what the motion tells and by its spread."""
+    prior = 1.0 / DRAG**2
+    if information <= 0.0:
+        return 0.0, DRAG
+    measured = 1.0 / (1.0 / information + _GUST_ERROR**2)
+    both = prior + measured
+    return measured * (weighted / information) / both, math.sqrt(1.0 / both)
 
 
 def _mean(values: Floats, weight: Floats) -> tuple[float, float]:
@@ -178,9 +212,9 @@ class _Misfit:
         self._by_stiffer = by_force * stiffness
         self._by_force = by_force.sum(axis=2)[..., None]
 
-    def of(self, stiff: float, damping: Floats) -> Floats:
+    def of(self, stiff: float, damping: Floats) -> tuple[Floats, Floats, Floats]:
         """
-        Return -ln p of the spectrum for each slope of the gusts, (s,).
+        Return -ln p, the drag and the information on its logarithm for each slope, (s,) each.
 
         Parameters
         ----------
@@ -215,4 +249,6 @@ class _Misfit:
         left = told - 2.0 * drag * common + drag * drag * alone
         logs = np.log(shaped).sum(axis=(1, 2))
         logs += len(w) * np.log(np.maximum(left, 1e-300)).sum(axis=1)
-        return np.asarray(_INDEPENDENT * self._n_stretches * logs)
+        count = _INDEPENDENT * self._n_stretches
+        known = (alone / np.maximum(left, 1e-300)).sum(axis=1)
+        return count * logs, drag[:, 0], count * len(w) * drag[:, 0] ** 2 * known

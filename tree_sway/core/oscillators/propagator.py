@@ -87,39 +87,72 @@ def fill_propagator(
     Arguments are those of `propagator`, not checked. Returned is the index of the first oscillator
     whose coefficients are all zero (its row is set to no motion), or -1.
     """
-    i, c, k, most = inertia, damping, stiffness, max(dt, 1.0)
+    i = inertia
+    c = damping
+    k = stiffness
+    longest = max(dt, 1.0)
     with np.errstate(all='ignore'):
-        moves = (i > 0.0) & (c * dt < 1e150 * i)
-        moves &= np.maximum(k * dt, most) * most / i < 1e300
-        flows = ~moves & (c > 0.0) & (np.maximum(k, 1.0) * most / c < 1e300)
-        is_static = ~moves & ~flows & (k > 0.0)
-        refused = np.flatnonzero(~(moves | flows | is_static))
+        is_damped_finitely = c * dt < 1e150 * i
+        largest_of_inertia = np.maximum(k * dt, longest) * longest / i
+        has_inertia = (i > 0.0) & is_damped_finitely & (largest_of_inertia < 1e300)
+        largest_of_damping = np.maximum(k, 1.0) * longest / c
+        is_overdamped = ~has_inertia & (c > 0.0) & (largest_of_damping < 1e300)
+        is_static = ~has_inertia & ~is_overdamped & (k > 0.0)
         out[:] = 0.0
-        out[moves] = _second_order(i[moves], c[moves], k[moves], dt).T
-        out[flows] = _first_order(c[flows], k[flows], dt).T
-        out[is_static, 3] = 1.0 / k[is_static]
-        out[is_static, 7] = 1.0 / (k[is_static] * dt)
-        out[is_static, 6] = -out[is_static, 7]
+        out[has_inertia] = _second_order(i[has_inertia], c[has_inertia], k[has_inertia], dt).T
+        out[is_overdamped] = _first_order(c[is_overdamped], k[is_overdamped], dt).T
+        out[is_static] = _static(k[is_static], dt).T
+    refused = np.flatnonzero(~(has_inertia | is_overdamped | is_static))
     out[refused, 0] = 1.0
     return int(refused[0]) if len(refused) else -1
 
 
 def _second_order(i: Floats, c: Floats, k: Floats, h: float) -> Floats:
     """Oscillators with inertia, (8, n): divided differences to moment coefficients."""
-    alpha, kappa = 0.5 * c * h / i, k * h * h / i
-    phases = scaled_discriminant(i, c, k, h, alpha, kappa)
-    g, d, s, p, q, p_minus_q = exponential_differences(alpha, kappa, *phases)
+    alpha = 0.5 * c * h / i
+    kappa = k * h * h / i
+    discriminant = scaled_discriminant(i, c, k, h, alpha, kappa)
+    g, d, s, p, q, p_minus_q = exponential_differences(alpha, kappa, *discriminant)
+    angle_by_moment = h * h / i
+    velocity_by_moment = h / i
     return np.stack(
-        [g, h * s, h * h / i * p_minus_q, h * h / i * q,
-         -kappa * s / h, d, h / i * (s - p), h / i * p]
-    )  # fmt: skip
+        [
+            g,
+            h * s,
+            angle_by_moment * p_minus_q,
+            angle_by_moment * q,
+            -kappa * s / h,
+            d,
+            velocity_by_moment * (s - p),
+            velocity_by_moment * p,
+        ]
+    )
 
 
 def _first_order(c: Floats, k: Floats, h: float) -> Floats:
     """No inertia, (8, n): k2 x' + k1 x = M, so that the velocity follows from the moments."""
-    z, none = -k / c * h, np.zeros_like(c)
-    f1, f2, decay = phi1(z), phi2(z), np.exp(z)
+    z = -k / c * h
+    none = np.zeros_like(c)
+    decay = np.exp(z)
+    whole = phi1(z)
+    of_end = phi2(z)
+    of_start = whole - of_end
     return np.stack(
-        [decay, none, h / c * (f1 - f2), h / c * f2,
-         -k / c * decay, none, z * (f1 - f2) / c, f1 / c]
-    )  # fmt: skip
+        [
+            decay,
+            none,
+            h / c * of_start,
+            h / c * of_end,
+            -k / c * decay,
+            none,
+            z * of_start / c,
+            whole / c,
+        ]
+    )
+
+
+def _static(k: Floats, h: float) -> Floats:
+    """No inertia and no damping, (8, n): the response to the moment, ``x = M / k1``."""
+    none = np.zeros_like(k)
+    rate = 1.0 / (k * h)
+    return np.stack([none, none, none, 1.0 / k, none, none, -rate, rate])

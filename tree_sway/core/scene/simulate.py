@@ -201,6 +201,7 @@ class Rig:
         means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
         radius = 0.5 * float(tree.base_diameter[0])
         per_moment = radius / (self.reductions.species.modulus * np.pi / 4.0 * radius**4)
+        tip_band, moment_band = map(np.array, zip(*bands, strict=True)) if bands else (None, None)
         return SwayRecord(
             tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
@@ -210,7 +211,9 @@ class Rig:
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(simulator),
             ),
-            *(np.array(column) for column in zip(*bands, strict=True)),
+            tip_band,
+            moment_band,
+            learned=simulator.learned if isinstance(simulator, ObservedTree) else None,
         )  # fmt: skip
 
     def strength_curve(

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.strength.strength_use import StrengthUse
 
 _SIDES = ('east', 'north')
@@ -53,6 +54,8 @@ class SwayRecord:
     tip_band, moment_band
         Bounds within which the real tree is for 80 % of the time, lower and upper, of ``tips``,
         (t, 2, k, 3), and of ``base_moment``, (t, 2, 3); None where they were not asked for.
+    learned
+        What motion sensors told about the tree; None without them, or before the first fit.
 
     """
 
@@ -70,6 +73,7 @@ class SwayRecord:
     notes: tuple[str, ...] = ()
     tip_band: Floats | None = None
     moment_band: Floats | None = None
+    learned: LearnedTree | None = None
 
     def columns(self) -> dict[str, Floats]:
         """Return every column, (t,), under its name with its unit, such as ``time [s]``."""

@@ -11,11 +11,13 @@ table.
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import yaml
 
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
@@ -25,9 +27,13 @@ from tree_sway.files.yaml_document import tree_schema
 _DUMPER: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
 
 
-def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
+def yaml_of_tree(
+    tree: Tree, species: Species | None = None, learned: LearnedTree | None = None
+) -> str:
     """
     Return a tree as YAML text, with its wood where it differs from the table.
+
+    ``learned`` is what motion sensors told, and in the species already.
 
     Raises
     ------
@@ -47,6 +53,7 @@ def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
         'name': tree.name,
         'species': species.key,
         **({'wood': wood} if wood else {}),
+        **({'learned': asdict(learned)} if learned else {}),
         'branches': [_branch(tree, branch) for branch in range(tree.n_branches)],
     }
     text: str = yaml.dump(

@@ -24,6 +24,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import FormatError, SpeciesError
 from tree_sway.files.paths import is_file, path_of
@@ -57,7 +58,9 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     values, species = document.values, species_of(document)
     name = values.get('name', default_name)
     tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
-    return TreeFile(tree, species, source)
+    learned = values.get('learned')
+    notes = () if learned is None else (str(LearnedTree(**learned)),)
+    return TreeFile(tree, species, source, notes)
 
 
 def is_species_file(name: str) -> bool:

@@ -1,0 +1,63 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What motion sensors have told about a tree, and its species with that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from tree_sway.core.tree.species import Species
+
+
+@dataclass(frozen=True)
+class LearnedTree:
+    """
+    Factors over the tree before, each with the standard deviation of its logarithm.
+
+    Parameters
+    ----------
+    frequency
+        First natural frequency with the learned stiffness in [Hz].
+    stiffness, stiffness_error
+        Factor on the modulus and on the stiffness of the roots [-].
+    damping, damping_error
+        Factor on the damping ratio of the season [-].
+    drag, drag_error
+        Factor on the drag [-].
+    hours
+        Length of the motion that it was learned from in [h].
+
+    """
+
+    frequency: float
+    stiffness: float
+    stiffness_error: float
+    damping: float
+    damping_error: float
+    drag: float
+    drag_error: float
+    hours: float
+
+    def __str__(self) -> str:
+        """Return it as a sentence."""
+        # The frequency goes with the root of the stiffness.
+        of_frequency = 50.0 * self.stiffness_error
+        return (
+            f'learned from {self.hours:.2g} h of motion: first frequency '
+            f'{self.frequency:.4g} Hz +- {of_frequency:.1f} %, stiffness {self.stiffness:.3g} '
+            f'times that before +- {100.0 * self.stiffness_error:.1f} %, damping '
+            f'{self.damping:.3g} times +- {100.0 * self.damping_error:.0f} %, drag '
+            f'{self.drag:.3g} times +- {100.0 * self.drag_error:.0f} %'
+        )
+
+    def of(self, species: Species, *, in_leaf: bool) -> Species:
+        """Return a species with what was learned in a season."""
+        damping = 'damping_in_leaf' if in_leaf else 'damping_bare'
+        changes = {
+            'modulus': self.stiffness * species.modulus,
+            'root_stiffness': self.stiffness * species.root_stiffness,
+            damping: min(self.damping * getattr(species, damping), 1.0),
+            'drag_coefficient': self.drag * species.drag_coefficient,
+            'bare_drag_coefficient': self.drag * species.bare_drag_coefficient,
+        }
+        return replace(species, **changes, is_estimate=False)  # type: ignore[arg-type]
