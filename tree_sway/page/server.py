@@ -37,6 +37,8 @@ LARGEST_MESSAGE = 4096
 STATUS_PERIOD = 0.5
 """Interval of the status, and of the search for clients that do not read [s]."""
 
+_CLOSING_TIME = 2.0
+"""Time in which a page that is sent away may answer before its socket is closed [s]."""
 _START_TIMEOUT = 10.0
 _BACKLOG = 256
 _MOST_WAITING = 3
@@ -313,7 +315,7 @@ class PageServer:
         if len(self._clients) >= self.settings.max_clients:
             return self._guard.refused(503, 'too many pages are connected')
         socket = web.WebSocketResponse(
-            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=2.0
+            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=_CLOSING_TIME
         )
         await socket.prepare(request)
         may_control = self._guard.may_control(request)
