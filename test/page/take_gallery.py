@@ -160,6 +160,7 @@ def take(view: View, tree: str, path: Path) -> None:
     session = Session(lambda wanted: show.build_scene(wanted, arguments), choices, wind)
     controls = page_controls(choices, wind) if view.has_cards else ()
     panel = ControlPanel(controls, session.apply, session.pull)
+    panel.update(session.values())
     with PageServer(PageSettings(port=0), panel, session.status) as server:
         session.serve(server)
         try:

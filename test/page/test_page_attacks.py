@@ -24,7 +24,7 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import access, doorkeeper, guard  # noqa: E402
 from tree_sway.page.access import make_token, read_token  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
@@ -276,6 +276,20 @@ def is_closed(connection: socket.socket) -> bool:
         return False
     except ConnectionError:
         return True
+
+
+def test_files_that_are_no_certificate_are_named(
+    tmp_path: Path, certificate: tuple[str, str]
+) -> None:
+    wrong, missing = tmp_path / 'wrong.pem', tmp_path / 'missing.pem'
+    wrong.write_text('no certificate')
+    certified, key = certificate
+    for files in ((wrong, key), (certified, wrong), (missing, key), (certified, certified)):
+        settings = PageSettings(port=0, certificate=str(files[0]), private_key=str(files[1]))
+        with pytest.raises(TransportError, match='no certificate with its private key') as caught:
+            PageServer(settings)
+        assert caught.value.where == f'{files[0]} and {files[1]}'
+        assert 'PEM' in caught.value.cure
 
 
 def test_sockets_that_never_shake_hands_are_counted_and_closed(
