@@ -21,6 +21,7 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.growth.grow import grow  # noqa: E402
 from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
@@ -99,8 +100,8 @@ def test_what_cannot_be_served_is_refused_in_words(
 def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> None:
     """Its trees have models of their own, and are as many as the file has."""
     choices, wind = show.Choices('stand.yaml', '1', str(USUAL)), SimulatedWind(6.0)
-    of_a_tree = {each.name for each in show._controls(choices, wind)}
-    of_a_stand = {each.name for each in show._controls(choices, wind, is_one_tree=False)}
+    of_a_tree = {each.name for each in page_controls(choices, wind)}
+    of_a_stand = {each.name for each in page_controls(choices, wind, is_one_tree=False)}
     assert of_a_tree - of_a_stand == {'model', 'count'}
 
 
@@ -153,7 +154,7 @@ def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
 def test_only_a_species_that_is_no_built_in_tree_is_grown(tree: str, is_grown: bool) -> None:
     choices = show.Choices(tree)
     assert choices.is_grown is is_grown
-    controls = {each.name: each for each in show._controls(choices, SimulatedWind(6.0))}
+    controls = {each.name: each for each in page_controls(choices, SimulatedWind(6.0))}
     offered = controls['tree'].choices
     assert tree in offered
     assert {'oak', 'spruce', 'ginkgo', 'benjamina'} <= set(offered)

@@ -17,14 +17,15 @@ import ssl
 import subprocess
 import threading
 import time
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway.page import access, doorkeeper  # noqa: E402
+from tree_sway.errors import ParameterError, TransportError  # noqa: E402
+from tree_sway.page import access, doorkeeper, guard  # noqa: E402
 from tree_sway.page.access import make_token, read_token  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
@@ -277,6 +278,20 @@ def is_closed(connection: socket.socket) -> bool:
         return True
 
 
+def test_files_that_are_no_certificate_are_named(
+    tmp_path: Path, certificate: tuple[str, str]
+) -> None:
+    wrong, missing = tmp_path / 'wrong.pem', tmp_path / 'missing.pem'
+    wrong.write_text('no certificate')
+    certified, key = certificate
+    for files in ((wrong, key), (certified, wrong), (missing, key), (certified, certified)):
+        settings = PageSettings(port=0, certificate=str(files[0]), private_key=str(files[1]))
+        with pytest.raises(TransportError, match='no certificate with its private key') as caught:
+            PageServer(settings)
+        assert caught.value.where == f'{files[0]} and {files[1]}'
+        assert 'PEM' in caught.value.cure
+
+
 def test_sockets_that_never_shake_hands_are_counted_and_closed(
     certificate: tuple[str, str],
     monkeypatch: pytest.MonkeyPatch,
@@ -518,14 +533,19 @@ def test_a_cookie_replaces_the_token_of_the_address(is_viewer: bool) -> None:
 
 
 def test_guesses_of_a_token_are_slowed_by_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(monotonic=lambda: now)
+    monkeypatch.setattr(guard, 'time', clock)
+    now = 100.0
     with PageServer(PageSettings(port=0, token=TOKEN)) as server:
         for number in range(access.GUESSES):
             assert status_of(server.port, f'/?token=guess{number}') == 403
         assert status_of(server.port, '/?token=another') == 429
         assert status_of(server.port, f'/?token={TOKEN}') == 429  # else it would be an answer
         assert status_of(server.port, '/') == 403  # which is no guess
-        monkeypatch.setattr(access, 'GUESSING_TIME', 0.0)
-        until(lambda: status_of(server.port, f'/?token={TOKEN}') == 200)
+        now += 0.9 * access.GUESSING_TIME
+        assert status_of(server.port, f'/?token={TOKEN}') == 429
+        now += 0.2 * access.GUESSING_TIME
+        assert status_of(server.port, f'/?token={TOKEN}') == 200
 
 
 def test_an_old_cookie_is_one_guess() -> None:

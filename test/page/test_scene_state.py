@@ -297,3 +297,14 @@ def test_a_seedling_has_no_more_clusters_of_leaves_than_leaves() -> None:
     assert leaves is not None
     # Its leaves have 0.14 m^2, each about 0.09 m long and half as wide.
     assert 20 < len(leaves.size) < 80
+
+
+@pytest.mark.long
+def test_a_frame_of_the_stand_is_as_large_as_the_page_says() -> None:
+    page = (HERE.parents[1] / 'doc' / 'streaming.md').read_text('utf-8')
+    scene = open_scene(HERE.parents[1] / 'config' / 'stand.yaml')
+    state = SceneState(scene.simulator())
+    frame_size = decode_description(state.description).frame_size
+    n_poses = sum(each.tree.n_segments for each in scene.trees)
+    assert f'| the same as a frame of the stream | {frame_size:,} |' in page
+    assert f'| {28 + 56 * n_poses:,} |' in page

@@ -396,15 +396,19 @@ def test_what_is_no_request_is_closed(
 
 
 @pytest.mark.parametrize('frame', BAD_FRAMES, ids=range(len(BAD_FRAMES)))
-def test_bad_frames_are_closed(server: PageServer, frame: bytes) -> None:
+def test_bad_frames_are_closed(
+    server: PageServer, frame: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server_module, '_CLOSING_TIME', 0.2)
     assert is_closed_by_the_server(server.port, UPGRADE, frame)
     until(lambda: server.n_clients == 0)
 
 
 def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
-    server: PageServer, caplog: pytest.LogCaptureFixture
+    server: PageServer, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     caplog.set_level('CRITICAL', 'aiohttp.server')  # or what is logged is kept
+    monkeypatch.setattr(server_module, '_CLOSING_TIME', 0.2)
     attacks = [(HOSTILE[0],), (HOSTILE[2],), *((UPGRADE, frame) for frame in BAD_FRAMES)]
 
     def attack() -> None:

@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 import ssl
 
+from tree_sway.errors import TransportError
+
 USUAL_PORT = 8765
 
 
@@ -52,12 +54,19 @@ class PageSettings:
 
         Raises
         ------
-        OSError
+        TransportError
             Files that cannot be read, or are no certificate and key.
 
         """
         if not self.certificate:
             return None
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-        context.load_cert_chain(self.certificate, self.private_key or None)
+        try:
+            context.load_cert_chain(self.certificate, self.private_key or None)
+        except OSError as error:
+            raise TransportError(
+                f'no certificate with its private key ({error.strerror or error})',
+                where=' and '.join(filter(None, (self.certificate, self.private_key))),
+                cure='give two PEM files, as doc/share_a_page.md makes them',
+            ) from None
         return context

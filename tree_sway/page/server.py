@@ -37,6 +37,8 @@ LARGEST_MESSAGE = 4096
 STATUS_PERIOD = 0.5
 """Interval of the status, and of the search for clients that do not read [s]."""
 
+_CLOSING_TIME = 2.0
+"""Time in which a page that is sent away may answer before its socket is closed [s]."""
 _START_TIMEOUT = 10.0
 _BACKLOG = 256
 _MOST_WAITING = 3
@@ -64,6 +66,11 @@ class PageServer:
     critical_winds
         Band of the critical wind of each tree by its name [m/s], by which viewers colour trees.
 
+    Raises
+    ------
+    TransportError
+        Files that are no certificate and key.
+
     Examples
     --------
     >>> with PageServer(PageSettings()) as server:
@@ -80,7 +87,7 @@ class PageServer:
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
-        self.settings = settings
+        self.settings, self._tls = settings, settings.tls()
         self.port = USUAL_PORT if settings.port is None else settings.port
         """Port that the server is bound to."""
         self._panel = panel or ControlPanel()
@@ -106,8 +113,7 @@ class PageServer:
         Raises
         ------
         TransportError
-            The address cannot be bound, the TLS files cannot be used, or the server does not start
-            in time.
+            The address cannot be bound, or the server does not start in time.
 
         """
         self._thread.start()
@@ -232,12 +238,11 @@ class PageServer:
         runner = self._runner()
         await runner.setup()
         assert runner.server is not None
-        tls = self.settings.tls()
         with self._listener() as listener:
             listener.setblocking(False)
             self.port = self._guard.port = listener.getsockname()[1]
             tasks = [
-                self._loop.create_task(self._doors.admit(listener, runner.server, tls)),
+                self._loop.create_task(self._doors.admit(listener, runner.server, self._tls)),
                 self._loop.create_task(self._send_status()),
             ]
             self._started.set()
@@ -310,7 +315,7 @@ class PageServer:
         if len(self._clients) >= self.settings.max_clients:
             return self._guard.refused(503, 'too many pages are connected')
         socket = web.WebSocketResponse(
-            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=2.0
+            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=_CLOSING_TIME
         )
         await socket.prepare(request)
         may_control = self._guard.may_control(request)

@@ -9,7 +9,8 @@ motion of each, at the state in the middle of the step, and is constant over the
 **Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
 wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
 in light wind, where the last step's load is close enough, once. Rotations beyond the limit of a
-step are clamped and counted.
+step are clamped and counted. Leaves that swing many times a step may still feed their motion where
+a step is 2 ms or less and the wind 20 m/s or more; 1/240 s has not been seen to.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -33,6 +34,7 @@ from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
+from tree_sway.core.run.table_model import middle_of_step, propagators_of
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
 
@@ -88,7 +90,7 @@ class Law(NamedTuple):
     whole: Floats
     """Propagator of a step, (m, 8)."""
     half: Floats
-    """Propagator of half a step, (m, 8)."""
+    """Propagator to the middle of a step as `middle_of_step`, (m, 8)."""
     springs: Floats
     """Stiffness and damping of the coordinates, then memory of `_add_inertia`, (5 + q, m)."""
     inertia_slopes: Floats
@@ -129,6 +131,9 @@ class FullBank(Branchwise, ModalCoordinates):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
+        middle = middle_of_step(propagators_of(self), dt)
+        self.half[:] = 0.0
+        self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt
         self._springs[0], self._springs[1] = self.stiffness, self.damping
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)

@@ -24,14 +24,18 @@ UP = np.array([0.0, 0.0, 1.0])
 def direction_of(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
     """Return the unit vectors (..., 3) of headings given in [rad]."""
     across = np.cos(elevation)
-    headings = [across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)]
-    return np.stack(headings, axis=-1)
+    x = across * np.cos(azimuth)
+    y = across * np.sin(azimuth)
+    z = np.sin(elevation)
+    return np.stack([x, y, z], axis=-1)
 
 
 def heading_of(direction: Floats) -> tuple[float, float]:
     """Azimuth and elevation in [rad] of a vector (3,)."""
     x, y, z = direction
-    return float(np.arctan2(y, x)), float(np.arctan2(z, np.hypot(x, y)))
+    azimuth = np.arctan2(y, x)
+    elevation = np.arctan2(z, np.hypot(x, y))
+    return float(azimuth), float(elevation)
 
 
 def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
@@ -40,20 +44,28 @@ def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
 
     The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
     """
-    x, y, z = axis
+    x, y, _ = axis
     across = float(np.hypot(x, y))
-    right, ahead = (y / across, -x / across) if across > 1e-6 else (0.0, -1.0)
-    level = np.array([right, ahead, 0.0])
-    upward = np.array([ahead * z, -right * z, right * y - ahead * x])
-    side = np.cos(azimuth) * level + np.sin(azimuth) * upward
+    right = np.array([0.0, -1.0, 0.0])
+    if across > 1e-6:
+        right = np.array([y / across, -x / across, 0.0])
+    upward = np.cross(right, axis)
+    side = np.cos(azimuth) * right + np.sin(azimuth) * upward
     return np.asarray(np.cos(polar) * axis + np.sin(polar) * side)
 
 
 def grow_axis(
-    origin: Floats, azimuth: float, elevation: tuple[float, float], length: float, n_segments: int,
-    rng: np.random.Generator, *, wander: float = 0.0, unevenness: float = 0.15,
+    origin: Floats,
+    azimuth: float,
+    elevation: tuple[float, float],
+    length: float,
+    n_segments: int,
+    rng: np.random.Generator,
+    *,
+    wander: float = 0.0,
+    unevenness: float = 0.15,
     floor: float = -np.inf,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """
     Draw the nodes (n_segments + 1, 3) [m] of a shoot whose elevation turns evenly.
 
@@ -75,12 +87,19 @@ def grow_axis(
     """
     steps = 1.0 + unevenness * rng.uniform(-1.0, 1.0, n_segments)
     steps *= length / steps.sum()
-    drift = np.cumsum(wander * rng.standard_normal((n_segments, 2)), axis=0)
-    elevations = np.linspace(elevation[0], elevation[1], n_segments) + drift[:, 0]
+
+    changes = wander * rng.standard_normal((n_segments, 2))
+    up_drift, side_drift = np.cumsum(changes, axis=0).T
+    elevations = np.linspace(elevation[0], elevation[1], n_segments) + up_drift
     # A given change of azimuth bends a steep shoot less; undo that, but bounded towards the
     # vertical.
-    azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
-    path = np.cumsum(steps[:, None] * direction_of(azimuths, elevations), axis=0)
+    level_part = np.maximum(np.cos(elevations), 0.3)
+    azimuths = azimuth + side_drift / level_part
+
+    segments = steps[:, None] * direction_of(azimuths, elevations)
+    path = np.cumsum(segments, axis=0)
     nodes = np.vstack([origin, origin + path])
     sunk = np.flatnonzero(nodes[2:, 2] < floor)
-    return nodes[: sunk[0] + 2] if len(sunk) else nodes
+    if len(sunk):
+        return nodes[: sunk[0] + 2]
+    return nodes

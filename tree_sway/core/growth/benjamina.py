@@ -20,6 +20,11 @@ from tree_sway.core.tree.tree import Tree
 N_STEMS = 5
 _UPRIGHT = np.pi / 2.0
 _N_NODES = 10
+_BRANCHING = (3, 4, 5, 5, 6, 7, 7, 8, 9, 9, 10, 10)
+"""Node of a stem that each of its branches grows from."""
+
+_SIDES = (0.15, np.pi - 0.15)
+"""Azimuths of twigs about their branch, right and left in turn, in [rad]."""
 
 
 def grow_benjamina(
@@ -33,27 +38,36 @@ def grow_benjamina(
 
     def add_stem(at: int, azimuth: float, lean: float) -> None:
         """Add one stem with its branches; lean 0 is the leader, which stays upright longest."""
-        first = _UPRIGHT - lean * rng.uniform(0.18, 0.30)
-        ends = first, _UPRIGHT - lean * rng.uniform(0.1, 0.35)
-        length, origin = rng.uniform(0.78, 1.0) if lean else 1.02, skeleton.shoots[stock].nodes[at]
-        nodes = grow_axis(origin, azimuth, ends, length, _N_NODES, rng, wander=0.03)
-        stem, roll = skeleton.add(nodes, stock, at), rng.uniform(0.0, 2.0 * np.pi)
-        for i, node in enumerate((3, 4, 5, 5, 6, 7, 7, 8, 9, 9, 10, 10)):
+        at_foot = _UPRIGHT - lean * rng.uniform(0.18, 0.30)
+        at_top = _UPRIGHT - lean * rng.uniform(0.1, 0.35)
+        length = rng.uniform(0.78, 1.0) if lean else 1.02
+        origin = skeleton.shoots[stock].nodes[at]
+        elevations = (at_foot, at_top)
+        nodes = grow_axis(origin, azimuth, elevations, length, _N_NODES, rng, wander=0.03)
+        stem = skeleton.add(nodes, stock, at)
+        roll = rng.uniform(0.0, 2.0 * np.pi)
+        for i, node in enumerate(_BRANCHING):
             # Branches shorten to the top; away from the middle of the plant there is light.
-            length = 0.50 * (1.0 - 0.6 * (node / _N_NODES)) * rng.uniform(0.8, 1.2)
-            angle, along = rng.uniform(0.5, 0.9), skeleton.shoots[stem].tangent(node)
-            heading = aim(along, angle, roll + i * GOLDEN_ANGLE)
-            heading = heading + 1.5 * nodes[node] * np.array([1.0, 1.0, 0.0])
-            add_branch(stem, node, heading_of(heading), length)
+            full_length = 0.50 * (1.0 - 0.6 * (node / _N_NODES))
+            length = full_length * rng.uniform(0.8, 1.2)
+            angle = rng.uniform(0.5, 0.9)
+            along = skeleton.shoots[stem].tangent(node)
+            direction = aim(along, angle, roll + i * GOLDEN_ANGLE)
+            outward = nodes[node] * np.array([1.0, 1.0, 0.0])
+            add_branch(stem, node, heading_of(direction + 1.5 * outward), length)
 
     def add_branch(stem: int, at: int, heading: tuple[float, float], length: float) -> None:
         """Add a branch that rises, arches over and hangs, with its twigs."""
-        ends = min(heading[1], 1.0), rng.uniform(-1.35, -1.0)
-        origin, segments = skeleton.shoots[stem].nodes[at], 6 if length > 0.2 else 5
-        axis = grow_axis(origin, heading[0], ends, length, segments, rng, wander=0.06, floor=0.12)
-        branch, sides = skeleton.add(axis, stem, at), (0.15, np.pi - 0.15)
-        twig = 0.06 + 0.1 * length
-        add_twigs(skeleton, branch, twig, 0.7, sides, first_node=2, lift=-0.75)
+        azimuth, elevation = heading
+        elevations = (min(elevation, 1.0), rng.uniform(-1.35, -1.0))
+        origin = skeleton.shoots[stem].nodes[at]
+        n_segments = 6 if length > 0.2 else 5
+        nodes = grow_axis(
+            origin, azimuth, elevations, length, n_segments, rng, wander=0.06, floor=0.12
+        )
+        branch = skeleton.add(nodes, stem, at)
+        twig_length = 0.06 + 0.1 * length
+        add_twigs(skeleton, branch, twig_length, 0.7, _SIDES, first_node=2, lift=-0.75)
 
     stock = skeleton.add(grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 0.07, 2, rng))
     facing = rng.uniform(0.0, 2.0 * np.pi)

@@ -28,22 +28,30 @@ def grow_goldcrest(
     species: str = 'goldcrest',
 ) -> Tree:
     """Grow a narrow cone of steep short branches; the diameter is that of the stem at its base."""
-    skeleton, upright = Skeleton(), (_UPRIGHT, _UPRIGHT)
+    skeleton = Skeleton()
 
     def add_branch(at: int, azimuth: float, here: float) -> None:
         """Add a branch at a relative height of the stem, reaching for the surface of the cone."""
         length = (0.26 * (1.0 - here) + 0.03) * rng.uniform(0.88, 1.08)
         # The lowest are the longest, below the others; all turn up at the end.
         spread = rng.uniform(0.55, 0.75) + 0.3 * max(0.0, 1.0 - 4.0 * here)
-        ends = (_UPRIGHT - spread, _UPRIGHT - 0.3 * spread)
-        segments = 6 if here < 0.6 else 4 if here < 0.85 else 3
+        elevations = (_UPRIGHT - spread, _UPRIGHT - 0.3 * spread)
+        n_segments = 3
+        if here < 0.6:
+            n_segments = 6
+        elif here < 0.85:
+            n_segments = 4
         origin = skeleton.shoots[stem].nodes[at]
-        axis = grow_axis(origin, azimuth, ends, length, segments, rng, wander=0.04)
-        branch, roll = skeleton.add(axis, stem, at), rng.uniform(0.0, np.pi)
-        sides, twig = (roll, roll + np.pi), 0.03 + 0.08 * length
-        add_twigs(skeleton, branch, twig, 0.6, sides, first_node=2, lift=0.25)
+        nodes = grow_axis(origin, azimuth, elevations, length, n_segments, rng, wander=0.04)
+        branch = skeleton.add(nodes, stem, at)
+        roll = rng.uniform(0.0, np.pi)
+        sides = (roll, roll + np.pi)
+        twig_length = 0.03 + 0.08 * length
+        add_twigs(skeleton, branch, twig_length, 0.6, sides, first_node=2, lift=0.25)
 
-    stem = skeleton.add(grow_axis(np.zeros(3), 0.0, upright, 1.0, _N_NODES, rng, wander=0.006))
+    stem = skeleton.add(
+        grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 1.0, _N_NODES, rng, wander=0.006)
+    )
     roll = rng.uniform(0.0, 2.0 * np.pi)
     for node in range(1, _N_NODES - 1):
         here = node / _N_NODES

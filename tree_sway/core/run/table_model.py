@@ -274,19 +274,27 @@ def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
     """
     Write the coefficients of a step of dt [s] and of half a step into a `time_step_layout`.
 
-    A step moves each coordinate exactly. The load is taken from the middle of the step, where the
-    rate of a coordinate that swings nearly once a step or more may be opposite to its force.
-    Strong drag, whose implicit part needs a rate that follows the force, would then feed the
-    motion. The middle state of such coordinates is that of an implicit Euler step, whose rate
-    always follows the force.
+    A step moves each coordinate exactly. The load is taken from the state of `middle_of_step`.
     """
     m = len(law.stiffness)
+    time_step['whole'], time_step['half'] = 0.0, 0.0
+    time_step['whole'][:, :m] = law.whole.T
+    time_step['half'][:, :m] = middle_of_step(law, dt)
+
+
+def middle_of_step(law: Propagators, dt: float) -> Floats:
+    """
+    Return displacement and rate at the middle of a step by displacement, rate and force, (6, m).
+
+    The load is taken from there, where the rate of a coordinate that swings nearly once a step or
+    more may be opposite to its force. Strong drag, whose implicit part needs a rate that follows
+    the force, would then feed the motion. The middle state of such coordinates is that of an
+    implicit Euler step, whose rate always follows the force.
+    """
     half = law.half.T[[0, 1, 2, 4, 5, 6]]
     half[[2, 5]] += law.half.T[[3, 7]]
     euler = _implicit_euler(law.damping, law.stiffness, 0.5 * dt)
-    time_step['whole'], time_step['half'] = 0.0, 0.0
-    time_step['whole'][:, :m] = law.whole.T
-    time_step['half'][:, :m] = np.where(half[5] < euler[5], euler, half)
+    return np.where(half[5] < euler[5], euler, half)
 
 
 def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
