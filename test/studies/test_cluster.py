@@ -33,13 +33,13 @@ SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 120.0
 
 
-def cases(folder: Path, seeds: int = 6) -> list[Case]:
+def cases(folder: Path, seeds: int = 6, seconds: float = 1.0) -> list[Case]:
     """Cases of a tree in a file that this process alone has, in gusts and in a record."""
     tree, wind = folder / 'own' / 'tree.yaml', folder / 'own' / 'wind.csv'
     tree.parent.mkdir(exist_ok=True)
     tree.write_bytes(SEEDLING.read_bytes())
     wind.write_text('time,u,v\n' + '\n'.join(f'{0.1 * k},{4 + k % 3},0' for k in range(20)))
-    given = {'settings': {'model': 'branch'}, 'seconds': 1.0}
+    given = {'settings': {'model': 'branch'}, 'seconds': seconds}
     winds = [{'speed': 4.0, 'intensity': 0.2, 'seed': k} for k in range(seeds - 1)]
     winds.append({'file': str(wind), 'scale': 1.0})
     return [Case({'file': str(tree)}, each, **given) for each in winds]
@@ -73,8 +73,10 @@ def test_workers_elsewhere_give_the_same_rows_bit_for_bit(
 def test_a_killed_worker_loses_nothing(
     apart: SeparateCluster, tmp_path: Path, monkeypatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = cases(tmp_path, 8)
+    # Long enough that the doomed worker has a case when the second one is done.
+    asked = cases(tmp_path, 8, seconds=30.0)
     doomed = apart.start_worker()
+    apart.wait_for_workers()
     began = threading.Event()
 
     def kill_in_the_middle(found: list[Case], _: str) -> Iterator[Case]:
