@@ -30,6 +30,8 @@ from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: 
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
+QUICK = 'branch'
+"""Model that is prepared soonest, for tests of the tree alone."""
 DEADLINE = 120.0
 
 
@@ -107,7 +109,7 @@ def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> Non
 
 def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
-    wanted = show.Choices('birch', height=4.0)
+    wanted = show.Choices('birch', height=4.0, model=QUICK)
     heights, starts = [], []
     for choices in (wanted, wanted, replace(wanted, individual='1', height=5.5)):
         tree = show.build_scene(choices, arguments).tree
@@ -119,12 +121,11 @@ def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
 
 def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
-    stems = [
-        show.build_scene(show.Choices('lime', height=9.0, age=age), arguments).tree.base_diameter[
-            0
-        ]
-        for age in (0.0, 15.0, 40.0)
+    wanted = show.Choices('lime', height=9.0, model=QUICK)
+    trees = [
+        show.build_scene(replace(wanted, age=age), arguments).tree for age in (0.0, 15.0, 40.0)
     ]
+    stems = [tree.base_diameter[0] for tree in trees]
     assert stems[1] < stems[2]
     assert stems[0] != stems[1]
     with pytest.raises(ParameterError, match='no curve of growth'):
@@ -133,9 +134,9 @@ def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
 
 def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    wanted = show.Choices('birch', height=4.0, model=QUICK)
     summer, autumn, winter = (
-        show.build_scene(show.Choices('birch', height=4.0, month=month), arguments)
-        for month in (7.0, 11.0, 2.0)
+        show.build_scene(replace(wanted, month=month), arguments) for month in (7.0, 11.0, 2.0)
     )
     areas = [each.settings.leaf_area.sum() for each in (summer, autumn)]
     assert 0.0 < areas[1] < 0.9 * areas[0]
