@@ -21,6 +21,7 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.growth.grow import grow  # noqa: E402
 from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
@@ -29,6 +30,8 @@ from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: 
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
+QUICK = 'branch'
+"""Model that is prepared soonest, for tests of the tree alone."""
 DEADLINE = 120.0
 
 
@@ -99,14 +102,14 @@ def test_what_cannot_be_served_is_refused_in_words(
 def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> None:
     """Its trees have models of their own, and are as many as the file has."""
     choices, wind = show.Choices('stand.yaml', '1', str(USUAL)), SimulatedWind(6.0)
-    of_a_tree = {each.name for each in show._controls(choices, wind)}
-    of_a_stand = {each.name for each in show._controls(choices, wind, is_one_tree=False)}
+    of_a_tree = {each.name for each in page_controls(choices, wind)}
+    of_a_stand = {each.name for each in page_controls(choices, wind, is_one_tree=False)}
     assert of_a_tree - of_a_stand == {'model', 'count'}
 
 
 def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
-    wanted = show.Choices('birch', height=4.0)
+    wanted = show.Choices('birch', height=4.0, model=QUICK)
     heights, starts = [], []
     for choices in (wanted, wanted, replace(wanted, individual='1', height=5.5)):
         tree = show.build_scene(choices, arguments).tree
@@ -118,12 +121,11 @@ def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
 
 def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
-    stems = [
-        show.build_scene(show.Choices('lime', height=9.0, age=age), arguments).tree.base_diameter[
-            0
-        ]
-        for age in (0.0, 15.0, 40.0)
+    wanted = show.Choices('lime', height=9.0, model=QUICK)
+    trees = [
+        show.build_scene(replace(wanted, age=age), arguments).tree for age in (0.0, 15.0, 40.0)
     ]
+    stems = [tree.base_diameter[0] for tree in trees]
     assert stems[1] < stems[2]
     assert stems[0] != stems[1]
     with pytest.raises(ParameterError, match='no curve of growth'):
@@ -132,9 +134,9 @@ def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
 
 def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
     arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    wanted = show.Choices('birch', height=4.0, model=QUICK)
     summer, autumn, winter = (
-        show.build_scene(show.Choices('birch', height=4.0, month=month), arguments)
-        for month in (7.0, 11.0, 2.0)
+        show.build_scene(replace(wanted, month=month), arguments) for month in (7.0, 11.0, 2.0)
     )
     areas = [each.settings.leaf_area.sum() for each in (summer, autumn)]
     assert 0.0 < areas[1] < 0.9 * areas[0]
@@ -153,7 +155,7 @@ def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
 def test_only_a_species_that_is_no_built_in_tree_is_grown(tree: str, is_grown: bool) -> None:
     choices = show.Choices(tree)
     assert choices.is_grown is is_grown
-    controls = {each.name: each for each in show._controls(choices, SimulatedWind(6.0))}
+    controls = {each.name: each for each in page_controls(choices, SimulatedWind(6.0))}
     offered = controls['tree'].choices
     assert tree in offered
     assert {'oak', 'spruce', 'ginkgo', 'benjamina'} <= set(offered)

@@ -25,6 +25,7 @@ from PIL import Image
 from tree_sway_lab.browser import Browser
 
 from tree_sway.commands import cli, show
+from tree_sway.commands.page_controls import page_controls
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
@@ -157,7 +158,7 @@ def take(view: View, tree: str, path: Path) -> None:
     arguments = parser.parse_args([tree])
     choices, wind = Choices(Path(tree).name), SimulatedWind(9.0)
     session = Session(lambda wanted: show.build_scene(wanted, arguments), choices, wind)
-    controls = show._controls(choices, wind) if view.has_cards else ()
+    controls = page_controls(choices, wind) if view.has_cards else ()
     panel = ControlPanel(controls, session.apply, session.pull)
     panel.update(session.values())
     with PageServer(PageSettings(port=0), panel, session.status) as server:

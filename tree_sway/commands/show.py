@@ -18,49 +18,33 @@ import numpy as np
 from tree_sway.commands.arguments import chosen_leaves, opened_scene
 from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.commands.page_controls import page_controls, sensor_place
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
-from tree_sway.core.fidelity.estimate import DIAL
-from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.growth.stem_by_age import OLDEST, stem_of_age
-from tree_sway.core.leaves.calendar import FIRST_MONTH, is_bare, LAST_MONTH, species_in_month
+from tree_sway.core.growth.stem_by_age import stem_of_age
+from tree_sway.core.leaves.calendar import is_bare, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.tree.species import species_named
 from tree_sway.errors import ParameterError
 from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files
-from tree_sway.installed_models import installed_models
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, RATE, Session
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
-from tree_sway.parameters.sway_parameters import SWAY
-from tree_sway.sensors.live_wind import LiveWind
+from tree_sway.page.wind_source import WindSource
 from tree_sway.sensors.motion.motion_feed import MotionFeed
-from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.stream.controls import ControlPanel
 from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
-
-_COUNTS = ('1', '9', '100')
-_GROWN = 2.0, 40.0
-"""Least and greatest height of a tree that is grown on the page [m]."""
-_INDIVIDUALS = tuple(map(str, range(10)))
-_LABELS = {
-    'mean_speed': 'Wind',
-    'intensity': 'Gustiness',
-    'bearing_to': 'Blows to',
-    'tolerance': 'Tolerance',
-    'damping_ratio': 'Damping',
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -122,9 +106,9 @@ def _serve(
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
-        controls = _controls(choices, wind, is_one_tree=is_one_tree)
+        controls = page_controls(choices, wind, is_one_tree=is_one_tree)
         if len(motion.places) == 1:
-            controls = (_sensor_place(choices), *controls)
+            controls = (sensor_place(choices), *controls)
         panel = ControlPanel(controls, session.apply, session.pull)
         panel.update(session.values())
     pages = PageServer(settings, panel, session.status, session.written, critical_winds)
@@ -220,46 +204,3 @@ def stand(scene: Scene, count: int, model: str) -> Scene:
         for i in range(count)
     ]
     return Scene(trees, f'{count} of {tree.name}', scene.source)
-
-
-def _sensor_place(choices: Choices) -> Control:
-    """Make the control of where the motion sensor sits."""
-    what = "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
-    return Control('sensor_at', 'Sensor at', choices.sensor_at, what)
-
-
-def _controls(
-    choices: Choices, wind: WindSource, *, is_one_tree: bool = True
-) -> tuple[Control, ...]:
-    """Make the controls of viewers, with the ranges of the nodes' parameters."""
-    controls = list[Control]()
-    if isinstance(wind, SimulatedWind):
-        names = 'mean_speed', 'intensity', 'bearing_to'
-        controls += [Control.of(SWAY[name], _LABELS[name], wind.values[name]) for name in names]
-    if isinstance(wind, LiveWind) and wind.lacks_direction:
-        to = Control.of(SWAY['bearing_to'], _LABELS['bearing_to'], wind.bearing_to)
-        controls.append(to)
-    if isinstance(wind, RecordedWind):
-        span = 's', 0.0, wind.length
-        controls.append(Control('record_time', 'Time', 0.0, 'Of the record.', *span))
-    if is_one_tree:
-        named = 'branch', *installed_models(), choices.model
-        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *named)))
-        controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))
-    controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
-    trees = tuple(dict.fromkeys((choices.tree, *BUILTIN_TREES, *sorted(species_keys()))))
-    counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
-    controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
-    height = Control('height', 'Height', choices.height, 'Of a tree to grow.', 'm', *_GROWN)
-    controls.append(height)
-    age = 'Of a tree to grow, in years; 0 for the stem that is usual for the height.', ''
-    controls.append(Control('age', 'Age', choices.age, *age, 0.0, float(OLDEST)))
-    individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
-    controls.append(individual)
-    year = 'Of a tree to grow: its leaves, also for the wind.', '', FIRST_MONTH, LAST_MONTH
-    controls.append(Control('month', 'Season', choices.month, *year))
-    if is_one_tree:
-        # Models and number of the trees of a stand are those of its file.
-        how_many = Control('count', 'Number of trees', choices.count, choices=counts)
-        controls.append(how_many)
-    return (*controls, *PAUSE_AND_RESET)

@@ -13,12 +13,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.observe.members import uncertainty_of
+from tree_sway.core.observe.members import uncertainty_of, uncorrelated_draws
 from tree_sway.core.observe.sensor_place import place_on, SensorPlace
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
@@ -71,9 +70,9 @@ def drawn(around: Circumstances, count: int, *, in_leaf: bool) -> list[Circumsta
     Each takes one value from every stratum of each spread.
     """
     rng = np.random.default_rng(around.seed)
-    strata = ndtri((np.arange(count) + 0.5) / count)
     spreads = np.array(uncertainty_of(in_leaf=in_leaf))
-    factors = np.exp([spread * rng.permutation(strata) for spread in spreads]).T.tolist()
+    drawn_values = uncorrelated_draws(count, len(spreads), rng)
+    factors = np.exp(spreads[:, None] * drawn_values).T.tolist()
     return [
         replace(around, wood=wood, damping=damping, drag=drag, seed=around.seed + k)
         for k, (wood, damping, drag) in enumerate(factors)

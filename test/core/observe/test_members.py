@@ -13,7 +13,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe import members as members_module
 from tree_sway.core.observe import observed_tree as observed_tree_module
-from tree_sway.core.observe.members import Uncertainty
+from tree_sway.core.observe.members import Uncertainty, uncorrelated_draws
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import simulate
@@ -80,3 +80,22 @@ def test_simulate_writes_bounds_about_the_motion() -> None:
     names = record.columns()
     assert len({name for name in names if ' low_' in name}) == 6
     assert simulate(TREE, WIND[:60], in_leaf=False).tip_band is None
+
+
+def test_members_err_by_gusts_as_the_model_does_against_gusts_limb_by_limb() -> None:
+    true = make_simulator(TREE, SPECIES, in_leaf=False, crown_coherence=0.3)
+    wanted = []
+    for each in WIND:
+        true.step(each, DT)
+        wanted.append(true.rotations()[0])
+    _, own, others = swayed(Uncertainty(0.0, 0.0, 0.0))
+    error = np.std(own - wanted)
+    spread = np.sqrt(np.square(others - own[:, None]).mean())
+    print(f'spread {spread / error:.2f} of the error')
+    assert 0.7 < spread / error < 2.0
+
+
+def test_wood_and_drag_of_the_members_are_not_correlated() -> None:
+    drawn = uncorrelated_draws(64, 3, np.random.default_rng(0))
+    assert np.abs(np.corrcoef(drawn) - np.eye(3)).max() < 0.05
+    np.testing.assert_allclose(np.sort(drawn[0]), np.sort(drawn[1]))

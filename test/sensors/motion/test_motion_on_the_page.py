@@ -18,6 +18,7 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.sensor_place import place_on  # noqa: E402
@@ -237,6 +238,6 @@ def test_mistakes_are_told_with_the_cure(
 
 def test_viewers_cannot_add_a_sensor() -> None:
     """No control of the page opens an address; only who starts the command does."""
-    names = {each.name for each in show._controls(Choices('goldcrest'), RecordedWind(
+    names = {each.name for each in page_controls(Choices('goldcrest'), RecordedWind(
         np.arange(3.0), np.ones((3, 3))))}  # fmt: skip
     assert not names & {'motion', 'at', 'sensor'}

@@ -58,7 +58,9 @@ class Disturbance:
     ``covariance`` is of the modal forces, (m, m), and ``gusts`` its part by unknown gusts;
     ``air_damping`` the damping of each coordinate by the mean wind in [1/s], (m,), and ``speed``
     that wind in [m/s]; ``drag`` is the force on each coordinate of the model against the rate of
-    another in [1/s], (all, all).
+    another in [1/s], (all, all). Of each limb, the stem first, ``limb_slopes`` are the force on
+    each coordinate per wind, (l, 3, m), and ``reach`` how far it is from the middle of the crown
+    over the farthest one, 0 for the stem, (l,).
     """
 
     covariance: Floats
@@ -66,6 +68,8 @@ class Disturbance:
     air_damping: Floats
     speed: float
     drag: Floats
+    limb_slopes: Floats
+    reach: Floats
 
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
@@ -101,7 +105,10 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     by_gusts = covariance.copy()
     gusts = np.square(GUST * speed * whole).sum(axis=0)
     _add_wood(covariance, gusts, simulator, air_damping)
-    return Disturbance(covariance, by_gusts, air_damping, speed, drag)
+    reach = np.linalg.norm(middle - load @ middle / load.sum(), axis=1)
+    reach[0] = 0.0
+    reach /= max(float(reach.max()), 1e-9)
+    return Disturbance(covariance, by_gusts, air_damping, speed, drag, by_limb, reach)
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:

@@ -10,9 +10,10 @@ limbs meet, each drawn from the spread of its source:
   Wood Handbook, 2010, table 5-6).
 - Damping: its logarithm by 0.5; 0.01 to 0.08 among bare stems (Moore & Maguire 2005) is +-2 of it.
 - Drag and leaf area: `load_spreads`.
-- Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), and so do those that last
-  much longer than `TIME_CONSTANT`. The rest has the variance that the measured wind has above that
-  frequency, but meets limb by limb, correlated as in `disturbance`.
+- Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), the rest one limb after
+  the other, as in `crown_wind`. After which delay a gust reaches a limb is not known: each member
+  draws its own. Where an anemometer averages fast gusts away, each meets gusts of its own instead,
+  of the law in `disturbance`.
 
 A member is an oscillator for each of the first coordinates, driven by the forces on the model and
 those of its gusts::
@@ -40,7 +41,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.observe.disturbance import GUST, TIME_CONSTANT
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
+from tree_sway.core.wind.crown_wind import N_DELAYS, USUAL_COHERENCE
 
 if TYPE_CHECKING:
     from tree_sway.core.observe.observer import Observer
@@ -56,6 +57,9 @@ _LEAST_FAST = 0.04
 Least deviation of fast gusts over the mean wind [-], where an anemometer averages them away: a
 sixth of the variance of a turbulence of 0.1, the least over open land.
 """
+
+_ALONG, _ACROSS = 4.0 / 3.0, 2.0 / 3.0
+"""Slopes of the drag along the wind and across it, over the mean that `disturbance` takes."""
 
 _AVERAGED = 30.0
 _BIAS_TIME = 60.0
@@ -73,6 +77,21 @@ def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
     """Return the spreads of a tree of which nothing has been measured."""
     leaf = LEAVES if in_leaf else 0.0
     return Uncertainty(drag=math.hypot(DRAG, leaf))
+
+
+def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> Floats:
+    """
+    Draw values of the normal distribution, (n_values, count), one from each stratum.
+
+    Chance would correlate wood and drag, and the lean varies with their ratio. The ranks are those
+    of draws whose correlation is taken away (Iman & Conover 1982, Communications in Statistics
+    B11, 311-334).
+    """
+    strata = ndtri((np.arange(count) + 0.5) / count)
+    drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
+    root = np.linalg.cholesky(np.cov(drawn) + 1e-9 * np.eye(n_values))
+    ranks = np.linalg.solve(root, drawn).argsort(axis=1).argsort(axis=1)
+    return np.asarray(strata[ranks])
 
 
 def most_of(found: Floats) -> Floats:
@@ -106,8 +125,11 @@ class Members:
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
-        strata = ndtri((np.arange(N_MEMBERS) + 0.5) / N_MEMBERS)
-        self._drawn = np.stack([self._rng.permutation(strata) for _ in range(3)])
+        self._drawn = uncorrelated_draws(N_MEMBERS, len(spreads), self._rng)
+        self._limb_draws = np.zeros((0, N_MEMBERS))
+        self._per_delay = np.zeros((n * N_MEMBERS, 3 * N_DELAYS))
+        self._late = np.zeros((n, N_MEMBERS))
+        self._winds = np.zeros((3, N_DELAYS))
         self.motion = np.zeros((2, n, N_MEMBERS))
         """Displacement and rate of each, (2, n, e)."""
         self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
@@ -147,8 +169,21 @@ class Members:
         self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
         self._noise = np.zeros((self._gusts.shape[1], N_MEMBERS))
         self._unit = unknown.speed * GUST
+        self._draw_delays(unknown.limb_slopes, unknown.reach)
 
-    def step(self, swing: tuple[Floats, ...], wind: tuple[float, float]) -> None:
+    def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
+        """Find the force on each member per wind of each delay, by those of its limbs."""
+        if len(self._limb_draws) != len(reach):
+            self._limb_draws = self._rng.random((len(reach), N_MEMBERS))
+        delays = np.rint(self._limb_draws * reach[:, None] * (N_DELAYS - 1)).astype(np.intp)
+        n = self._count
+        by_member = np.zeros((N_MEMBERS, N_DELAYS, 3, n))
+        for forces, of_limb in zip(by_member, delays.T, strict=True):
+            np.add.at(forces, of_limb, slopes)
+        by_member *= self._drag[:, None, None, None]
+        self._per_delay = by_member.transpose(3, 0, 2, 1).reshape(n * N_MEMBERS, -1).copy()
+
+    def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
         Move every member by a step, and find what the filter makes of it.
 
@@ -158,6 +193,8 @@ class Members:
             Displacement, rate and force of each coordinate in the wind alone, (m,).
         wind
             Horizontal wind over the step [m/s].
+        apart
+            Wind of each delay less that which moves the model [m/s], (`N_DELAYS`, 3).
 
         """
         observer, n = self._observer, self._count
@@ -173,9 +210,11 @@ class Members:
             return
         self._steps += 1
         self._blow(*wind)
+        self._reach_limbs(apart)
         total, x, v = self._force, self.motion[0], self.motion[1]
         np.multiply(force + self._air * rate, self._drag, out=total)
         total += self._gust
+        total += self._late
         for to, by in zip(self._next, self._step, strict=True):
             np.multiply(by[0], x, out=to)
             to += np.multiply(by[1], v, out=self._away)
@@ -196,13 +235,27 @@ class Members:
         self._slow = slow_x, slow_y
         fast = 0.5 * ((x - slow_x) ** 2 + (y - slow_y) ** 2)
         self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
-        deviation = max(math.sqrt(self._fast), _LEAST_FAST * math.hypot(slow_x, slow_y))
-        size = (1.0 - USUAL_COHERENCE) * deviation / self._unit
-        self._rng.standard_normal(out=self._noise)
         self._gust *= self._decay
+        missing = (_LEAST_FAST * math.hypot(slow_x, slow_y)) ** 2 - self._fast
+        if missing <= 0.0:
+            return
+        size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
+        self._rng.standard_normal(out=self._noise)
         np.dot(self._gusts, self._noise, out=self._away)
         self._away *= size
         self._gust += self._away
+
+    def _reach_limbs(self, apart: Floats) -> None:
+        """Find the forces of gusts that reach the limbs of each after its own delays."""
+        x, y = self._slow
+        speed = max(math.hypot(x, y), 1e-9)
+        along = (apart[:, 0] * x + apart[:, 1] * y) / speed
+        more = (_ALONG - _ACROSS) * along / speed
+        winds = self._winds
+        np.multiply(_ACROSS, apart.T, out=winds)
+        winds[0] += more * x
+        winds[1] += more * y
+        np.dot(self._per_delay, winds.reshape(-1), out=self._late.reshape(-1))
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""

@@ -43,7 +43,7 @@ from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import CrownWind, delays_of, USUAL_COHERENCE
+from tree_sway.core.wind.crown_wind import CrownWind, delays_of, N_DELAYS, USUAL_COHERENCE
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError
 
@@ -149,6 +149,7 @@ class ObservedTree(SwaySimulator):
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
+        self._apart = np.zeros((N_DELAYS, 3))
         oscillators: Any = self._bank.oscillators
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
         n = self.observer.count
@@ -268,7 +269,9 @@ class ObservedTree(SwaySimulator):
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
             self._last_wind = x, y, z
-            apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
+            by_delay = self._crown.push(x, y, z, dt)
+            apart = (self._share @ by_delay).tolist()
+            np.subtract(by_delay, apart, out=self._apart)
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
             status = super().step((x, y, z), dt)
@@ -288,7 +291,7 @@ class ObservedTree(SwaySimulator):
         self.observer.note_dragged(added[0])
         added[:, : self.observer.count] += correction
         if self.members is not None:
-            self.members.step(swing, self._last_wind[:2])
+            self.members.step(swing, self._last_wind[:2], self._apart)
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
