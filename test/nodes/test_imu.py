@@ -17,6 +17,7 @@ from sensor_msgs.msg import Imu  # noqa: E402, I100
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
+from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.scene.simulate import PlacedMotion, simulate  # noqa: E402
@@ -144,6 +145,20 @@ def test_a_topic_that_nobody_publishes_is_not_waited_for():
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
     intake = ImuIntake(IntakeNode(publishers=0), Run(twin, 60.0), twin, arrived=lambda: None)
     assert not list(intake.lacking(BEGIN, 0.0))
+
+
+def test_a_status_has_what_was_learned(monkeypatch):
+    twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
+    intake = ImuIntake(IntakeNode(), Run(twin, 60.0), twin, arrived=lambda: None)
+    (status,) = intake.statuses()
+    assert 'first frequency [Hz]' not in status.values
+    as_made = float(twin.frequencies(1)[0])
+    monkeypatch.setattr(twin.observer._fit, 'found', TreeFit(1.0, 1.4, 0.1, 0.2, 0.9, 0.2, 0.5))
+    (status,) = intake.statuses()
+    assert status.values['first frequency [Hz]'] == pytest.approx(as_made, abs=1e-4)
+    assert status.values['damping over that of the file'] == 1.4
+    assert status.values['drag over that of the file'] == 0.9
+    assert status.values['learned from [h]'] == 0.5
 
 
 def test_messages_move_a_tree_as_a_recording_does():

@@ -260,7 +260,15 @@ class Session:
             }
             for each in sensor_reports(simulator)
         ]
-        told = {'sensors': sensors, 'explained': round(simulator.explained, 3)}
+        told: dict[str, object] = {
+            'sensors': sensors,
+            'explained': round(simulator.explained, 3),
+        }
+        if (learned := simulator.learned) is not None:
+            told['learned'] = {
+                'frequency': round(learned.frequency, 4),
+                'hours': round(learned.hours, 3),
+            }
         return told if self._band is None else {**told, 'band': self._band}
 
     def written(self, suffix: str) -> bytes:

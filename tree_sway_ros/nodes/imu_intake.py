@@ -120,6 +120,19 @@ class ImuIntake:
             orientation=sample.orientation,
         )
 
+    def _learned(self) -> dict[str, float]:
+        """Values of what the sensors have told about the tree; none before the first fit."""
+        learned = self._twin.learned
+        if learned is None:
+            return {}
+        return {
+            'first frequency [Hz]': round(learned.frequency, 4),
+            'stiffness over that of the file': round(learned.stiffness, 3),
+            'damping over that of the file': round(learned.damping, 3),
+            'drag over that of the file': round(learned.drag, 3),
+            'learned from [h]': round(learned.hours, 2),
+        }
+
     def statuses(self) -> list[Status]:
         """Report each sensor: in use or why not, and its counts."""
         found = []
@@ -137,6 +150,7 @@ class ImuIntake:
                 'disagreed': counts.disagreed,
                 'late [s]': round(each.late, 4),
                 'share of the motion that the wind explains': round(self._twin.explained, 3),
+                **self._learned(),
             }
             if apart and not counts.accepted:
                 problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '

@@ -159,6 +159,8 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert told['rate'] == pytest.approx(100.0, rel=0.1)
     assert 0.1 < told['residual'] < 3.0
     assert 0.3 < status['explained'] < 0.95
+    learned = session._scene.simulator.learned
+    assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
 
 

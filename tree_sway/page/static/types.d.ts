@@ -185,6 +185,8 @@ interface SensorStatus {
 interface MotionStatus {
   sensors?: SensorStatus[];
   explained?: number;
+  /** First frequency [Hz] that the sensors told, and the length of the motion behind it [h]. */
+  learned?: { frequency: number; hours: number };
   /** Where 80 % of the trees are that the real one may be, less the motion of the highest tip [m]. */
   band?: number[];
 }

@@ -12,7 +12,7 @@ import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 /** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
 const LARGEST_CARDS = 2.5;
 /** Length of a small card with a tuft over that of another; and how far from its shoot it is, over the same. */
-const [TUFTS, TUFTS_BESIDE] = [1.1, 0.65];
+const [TUFTS, TUFTS_BESIDE] = [1.25, 0.7];
 /** Length of a small card over that of one of full size, by how many there are, and the least of it. */
 const [SMALLER, LEAST_CARD] = [0.57, 0.08];
 /** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */

@@ -16,7 +16,7 @@ const LEAF_SHARE = 0.75;
  * times they would cover it. */
 export const [CLUMP, CLUMP_FILLED] = [12, 1.7];
 /** Length of a shoot that is clad in long needles, over theirs. */
-const BRUSH = 1.5;
+const BRUSH = 1.9;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
 
@@ -51,7 +51,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.72, 0, 0, 0.4, 34);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   else if (isClump && (along >= CLUMP || !hasLeaflets)) brush.clump(1 / along);
@@ -292,7 +292,7 @@ class Brush {
         // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
         const before = Math.min(BRUSH * long, 0.8 * x) * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + (i % 2 ? 1 : -1) * (0.15 + 0.75 * random());
+        const turn = heading + (i % 2 ? 1 : -1) * (0.06 + 0.4 * random());
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
