@@ -90,6 +90,18 @@ def test_a_grown_tree_is_as_high_as_asked_for(
     assert tree.species == 'spruce'
 
 
+def test_a_tree_of_an_age_says_whose_stem_it_has(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / 'oak.yaml'
+    assert cli.main(['grow', 'oak', '--height', '14', '--age', '50', '-o', str(path)]) == 0
+    note = 'note: a stem of 0.48 m, as Quercus rubra along streets (Northeast, USA)'
+    assert note in capsys.readouterr().err
+    other = ['-o', str(tmp_path / 'larch.yaml')]
+    assert cli.main(['grow', 'larch', '--height', '14', '--age', '50', *other]) == 2
+    assert "no curve of growth for 'larch'" in capsys.readouterr().err
+
+
 def test_converting_keeps_the_tree(tmp_path: Path) -> None:
     first, second = tmp_path / 'a.yaml', tmp_path / 'b.yaml'
     assert cli.main(['convert', 'goldcrest', '--density', '777', '-o', str(first)]) == 0

@@ -17,7 +17,7 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.growth.stem_by_age import stem_of_age
+from tree_sway.core.growth.stem_by_age import stem_growth, stem_of_age
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import rooted
@@ -57,6 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
     diameter = arguments.diameter
     if arguments.age is not None:
         diameter = stem_of_age(species.key, arguments.age)
+        curve = stem_growth()[species.key]
+        whose = f'{curve.measured} along streets ({curve.region}, USA)'
+        print(f'note: a stem of {diameter:.2f} m, as {whose}', file=sys.stderr)
     tree = grow(
         species.key,
         arguments.height,

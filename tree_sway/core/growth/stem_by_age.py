@@ -6,8 +6,8 @@ Stem diameter by the age of a tree.
 Polynomials that were fitted to street and park trees of known age, of one species and climate
 region of the United States each (McPherson, van Doorn & Peper 2016, Urban tree database and
 allometric equations, General Technical Report PSW-GTR-253; coefficients of the data archive
-RDS-2016-0005, diameter in [cm]). Ages count from planting. Trees of one age differ by a third and
-more, and grow slower in a closed stand.
+RDS-2016-0005, diameter in [cm]). Ages count from planting. Where a species was not
+measured, the curve is that of a related one, which is named.
 """
 
 from __future__ import annotations

@@ -29,6 +29,7 @@ from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import TreeError
 
 _MARGIN = 0.95
 """Largest step, as a share of the step at which the fastest motion becomes unstable."""
@@ -160,19 +161,21 @@ def _factor_on_springs(
 
     By Newton's method: the eigenvalue changes with the factor by the energy of the springs in the
     mode. The second figure is the share of the mode's stiffness that springs have; the rest, below
-    0 where the tree stands, is that of the weight.
+    0 where the tree stands, is that of the weight. A `TreeError` if none is found.
     """
     stiffness = sparse.diags(springs.ravel()).tocsc()
-    factor, share = 1.0, 1.0
+    factor = 1.0
     for _ in range(_MOST_TRIALS):
         total = factor * stiffness + weight_stiffness
         (slowest,), mode = eigsh(total, 1, M=mass_matrix, sigma=-wanted)
         of_springs = float(mode[:, 0] @ (stiffness @ mode[:, 0]))  # modes have a mass of 1
-        factor += (wanted - slowest) / of_springs
-        share = factor * of_springs / wanted
         if abs(slowest / wanted - 1.0) < _FREQUENCY_TO:
-            break
-    return factor, share
+            return factor, factor * of_springs / wanted
+        factor += (wanted - slowest) / of_springs
+    frequency = math.sqrt(wanted) / (2.0 * math.pi)
+    raise TreeError(
+        f'bodies on springs do not sway at {frequency:.3g} Hz', where='export', cure='write .sdf'
+    )
 
 
 def _fastest(springs: Floats, mass_matrix: sparse.csc_matrix) -> float:
@@ -308,6 +311,13 @@ class _Hinges(NamedTuple):
         return np.asarray(n_axes * segment[:, None] + np.arange(n_axes))
 
 
+def _levers(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> Floats:
+    """Centres of the bodies from the hinges that carry them [m], (p, 3)."""
+    along = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
+    centre = tree.start + bodies.centre[:, None] * along
+    return np.asarray(centre[hinges.body] - tree.start[hinges.hinge])
+
+
 def _mass_matrix(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> sparse.csc_matrix:
     """
     Mass matrix of the hinges at rest, (k n, k n), in the order of the segments.
@@ -317,9 +327,8 @@ def _mass_matrix(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> sparse.csc_mat
     """
     n = tree.n_segments
     frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
-    centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
     axes = hinges.axes[hinges.hinge]
-    lever = centre[hinges.body] - tree.start[hinges.hinge]
+    lever = _levers(tree, bodies, hinges)
     speed = np.cross(axes, lever[:, None])
     spin = np.einsum('kij,khi->khj', frame[hinges.body], axes)  # about the body's own axes
     column = hinges.numbers(hinges.hinge).ravel()
@@ -341,9 +350,7 @@ def _weight(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> tuple[Floats, spars
     With r the sum of mass times lever of all that a hinge j carries, the potential grows by
     g e_z (a_j x r) per angle, and that by g e_z (a_i x (a_j x r)) per angle of a hinge i below it.
     """
-    frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
-    centre = tree.start + bodies.centre[:, None] * frame[:, :, 0]
-    lever = centre[hinges.body] - tree.start[hinges.hinge]
+    lever = _levers(tree, bodies, hinges)
     carried = np.zeros((tree.n_segments, 3))
     np.add.at(carried, hinges.hinge, bodies.mass[hinges.body, None] * lever)
     turned = np.cross(hinges.axes, carried[:, None])
