@@ -51,6 +51,7 @@ ARGUMENTS = (
         '',
         "Motion sensors on the real tree and their places: 'tree/imu@3.2', 'limb/imu@b12:0.5'.",
     ),
+    ('learn', '', 'Tree to write with what those sensors tell, such as oak.twin.yaml.'),
     ('solver_rate', '', 'Steps of the solver per second [Hz]; as configured if empty.'),
     ('pose', '', "Place of the tree in its frame: '3 0 0 1.57' for x y z [m] and yaw [rad]."),
     ('frame_id', '', 'Frame of all published messages; as configured if empty.'),
@@ -190,6 +191,8 @@ def overrides_of(name, given):
             overrides['tree'] = given['tree']
         if given['imu']:
             overrides['imu'] = given['imu']
+        if given['learn']:
+            overrides['learn'] = given['learn']
         if given['solver_rate']:
             overrides['rate'] = number('solver_rate', given['solver_rate'])
         if given['pose']:

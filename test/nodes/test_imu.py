@@ -13,10 +13,10 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from sensor_msgs.msg import Imu  # noqa: E402, I100
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor  # noqa: E402
 
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
 from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
@@ -25,6 +25,7 @@ from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.core.wind.intake import WindIntake  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
@@ -159,6 +160,39 @@ def test_a_status_has_what_was_learned(monkeypatch):
     assert status.values['damping over that of the file'] == 1.4
     assert status.values['drag over that of the file'] == 0.9
     assert status.values['learned from [h]'] == 0.5
+
+
+def test_a_status_says_how_sure_the_motion_is():
+    twin = ObservedTree(
+        builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0, has_band=True
+    )
+    run = Run(twin, 60.0)
+    intake = ImuIntake(IntakeNode(), run, twin, arrived=lambda: None)
+    for k in range(120):
+        run.offer(BEGIN + k * PERIOD, (4.0, 0.0, 0.0), BEGIN + k * PERIOD)
+        run.advance(BEGIN + k * PERIOD)
+        intake.statuses()
+    (status,) = intake.statuses()
+    low, high = (
+        status.values[f'highest tip of 80 % of trees, {end} [m]'] for end in ('from', 'to')
+    )
+    assert low < 0.0 < high < 0.5
+
+
+def test_the_solver_keeps_what_was_learned(compose, tmp_path, tree_file, monkeypatch):
+    path = tmp_path / 'own.twin.yaml'
+    for run in (1, 2):
+        made = compose(solver={'tree': tree_file, 'learn': str(path), **PARAMETERS})
+        solver = made['solver']
+        fit = TreeFit(0.9, 1.2, 0.02, 0.2, 0.9, 0.2, 1.0)
+        monkeypatch.setattr(solver.simulator.observer._fit, 'found', fit)
+        made.close()  # as at Ctrl-C
+        assert open_tree(str(path)).learned.hours == pytest.approx(run)
+
+
+def test_a_file_to_learn_without_a_sensor_is_refused(compose, tmp_path, tree_file):
+    with pytest.raises(ParameterError, match='no motion sensor to learn from'):
+        compose(solver={'tree': tree_file, 'learn': str(tmp_path / 'own.yaml')})
 
 
 def test_messages_move_a_tree_as_a_recording_does():

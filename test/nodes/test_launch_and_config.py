@@ -20,6 +20,7 @@ ARGUMENTS = (
     'wind_file',
     'reader_options',
     'imu',
+    'learn',
     'solver_rate',
     'playback_start',
     'playback_rate',

@@ -5,16 +5,16 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 import sys
+from weakref import WeakKeyDictionary
 
 from tree_sway.commands.arguments import what_was_written
 from tree_sway.core.observe.learned_tree import LearnedTree
-from tree_sway.core.setup.season import is_in_leaf
-from tree_sway.core.tree.grown_tree import GrownTree
-from tree_sway.errors import ParameterError
-from tree_sway.files.export.yaml_writing import yaml_of_tree
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.trees.learned_file import LearnedFile, refuse_no_learned_file
 
 
 def add_learn_argument(parser: argparse.ArgumentParser) -> None:
@@ -22,7 +22,8 @@ def add_learn_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--learn', metavar='FILE',
         help='tree to write with the stiffness, damping and drag that the sensors tell, such as '
-        'oak.twin.yaml, which opens like any tree',
+        'oak.twin.yaml, which opens like any tree; where it is already there, its wood is used '
+        'and its hours add up',
     )  # fmt: skip
 
 
@@ -33,22 +34,57 @@ def check_learn_argument(arguments: argparse.Namespace) -> None:
     if not arguments.motion:
         what = 'no motion sensor to learn from'
         raise ParameterError(what, where='--learn', cure='give --motion and --at')
-    if Path(arguments.learn).suffix.lower() not in {'.yaml', '.yml'}:
-        what = f"'{arguments.learn}' cannot store what is learned"
-        raise ParameterError(what, where='--learn', cure='write a .yaml file')
+    with inside('--learn'):
+        refuse_no_learned_file(arguments.learn)
 
 
-def write_learned(
-    path: str, grown: GrownTree, learned: LearnedTree | None, in_leaf: bool | None
-) -> None:
+def write_learned(file: LearnedFile, learned: LearnedTree | None) -> None:
     """Write a tree with what was learned, and say it; without anything, only say so."""
-    if learned is None:
+    if learned is None or learned is file.opened.learned:
         print(
-            f'warning: {path} is not written: the sensors told nothing; 40 s of sway are needed, '
-            'and a stretch of 40 periods of the tree',
+            f'warning: {file.path} is not written: the sensors told nothing; 40 s of sway are '
+            'needed, and a stretch of 40 periods of the tree',
             file=sys.stderr,
         )
         return
-    species = learned.of(grown.species, in_leaf=is_in_leaf(grown.species, in_leaf))
-    write_text_whole(path, yaml_of_tree(grown.tree, species, learned))
-    print(f'{what_was_written(path, grown.tree)}; {learned}')
+    file.write(learned)
+    print(f'{what_was_written(file.path, file.opened.tree)}; {learned}')
+
+
+class Learning:
+    """
+    The files of the simulators of a page, which viewers exchange.
+
+    Parameters
+    ----------
+    path
+        File of what is learned; None to keep nothing.
+
+    """
+
+    def __init__(self, path: str | None) -> None:
+        self._path = path
+        self._files = WeakKeyDictionary[ObservedTree, LearnedFile]()
+
+    def file_of(self, scene: Scene, in_leaf: bool | None) -> LearnedFile | None:
+        """Open the file of what was learned about the tree of a scene; None without one."""
+        return None if self._path is None else LearnedFile(self._path, scene.trees[0], in_leaf)
+
+    def follow(self, twin: ObservedTree, file: LearnedFile) -> None:
+        """Keep what a simulator learns in a file."""
+        twin.learned_before = file.opened.learned
+        self._files[twin] = file
+
+    def keep(self, simulator: Simulator) -> None:
+        """Write what a simulator has learned, if anything is new; say if that is impossible."""
+        if not isinstance(simulator, ObservedTree) or simulator not in self._files:
+            return
+        try:
+            self._files[simulator].keep(simulator)
+        except FormatError as error:
+            print(f'warning: {error}', file=sys.stderr)
+
+    def tell(self, simulator: Simulator) -> None:
+        """Say what a simulator has learned, and where it is."""
+        if isinstance(simulator, ObservedTree) and (file := self._files.get(simulator)):
+            print(f'{file.path}: {simulator.learned or "nothing was learned"}')

@@ -16,6 +16,11 @@ import webbrowser
 import numpy as np
 
 from tree_sway.commands.arguments import chosen_leaves, opened_scene
+from tree_sway.commands.learn_argument import (
+    add_learn_argument,
+    check_learn_argument,
+    Learning,
+)
 from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.page_controls import page_controls, sensor_place
@@ -68,6 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
     add_live_motion_arguments(parser)
+    add_learn_argument(parser)
     add_page_arguments(parser)
 
 
@@ -76,6 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
     refuse_unused_wind(arguments)
+    check_learn_argument(arguments)
     if arguments.risk is not None:
         read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
     if arguments.motion and arguments.stand > 1:
@@ -96,8 +103,9 @@ def _serve(
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
     if len(motion.places) == 1:
         choices = replace(choices, sensor_at=next(iter(motion.places.values())))
+    learning = Learning(arguments.learn)
     session = Session(
-        lambda wanted: build_scene(wanted, arguments, motion.places),
+        lambda wanted: build_scene(wanted, arguments, motion.places, learning),
         choices,
         wind,
         motion=motion,
@@ -122,10 +130,13 @@ def _serve(
             end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
             while session.failure is None and time.monotonic() < end:
                 session.wait(min(0.1, end - time.monotonic()))
+                learning.keep(session.simulator)
         except KeyboardInterrupt:
             print('', file=sys.stderr)
         finally:
             session.stop()
+            learning.keep(session.simulator)
+        learning.tell(session.simulator)
         if session.failure is not None:
             raise session.failure
     return 0
@@ -147,12 +158,16 @@ def _critical_winds(
 
 
 def build_scene(
-    choices: Choices, arguments: argparse.Namespace, places: Mapping[str, str] | None = None
+    choices: Choices,
+    arguments: argparse.Namespace,
+    places: Mapping[str, str] | None = None,
+    learning: Learning | None = None,
 ) -> Simulator:
     """
     Make the simulator of some choices.
 
-    The tree that the command names follows the sensors at the places; others have none.
+    The tree that the command names follows the sensors at the places, and learns; others have
+    none.
     """
     is_first = choices.tree == Path(arguments.tree).name
     if is_first:
@@ -172,7 +187,13 @@ def build_scene(
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)
         settings = replace(settings, model=model_of(choices.model))
-        return scene.observed(settings, places, RATE, has_band=True, submit=submit_beside)
+        file = learning.file_of(scene, in_leaf) if learning else None
+        if file is not None:
+            scene = scene.of_species(file.opened.species)
+        twin = scene.observed(settings, places, RATE, has_band=True, submit=submit_beside)
+        if learning and file is not None:
+            learning.follow(twin, file)
+        return twin
     return scene.simulator(settings, model=choices.model)
 
 

@@ -39,6 +39,7 @@ from tree_sway.core.wind.exposure import Exposure
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.export.table_writing import refuse_no_table, write_columns
+from tree_sway.files.trees.learned_file import LearnedFile
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -76,6 +77,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_learn_argument(arguments)
     refuse_unused_wind(arguments)
     tree_file = opened_tree(arguments)
+    learned_file: LearnedFile | None = None
+    if arguments.learn is not None:
+        learned_file = LearnedFile(arguments.learn, tree_file, chosen_leaves(arguments))
+        tree_file = learned_file.opened
     names = tree_file.tree.branch_names
     for name in arguments.branch:
         if name not in names:
@@ -96,8 +101,8 @@ def run(arguments: argparse.Namespace) -> int:
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
         print(f'note: {note}', file=sys.stderr)
-    if arguments.learn is not None:
-        write_learned(arguments.learn, tree_file, record.learned, chosen_leaves(arguments))
+    if learned_file is not None:
+        write_learned(learned_file, record.learned)
     print(f'{output}: {record}')
     print(exposure)
     print(record.strength)

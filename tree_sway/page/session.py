@@ -173,6 +173,11 @@ class Session:
         """Names of the trees."""
         return self._scene.names
 
+    @property
+    def simulator(self) -> Simulator:
+        """Simulator that is stepped now."""
+        return self._scene.simulator
+
     def wait(self, seconds: float) -> None:
         """Wait some seconds [s], or until the session has failed."""
         self._thread.join(max(0.0, seconds))

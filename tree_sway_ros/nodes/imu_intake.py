@@ -66,6 +66,7 @@ class ImuIntake:
         self._node, self._run, self._twin, self._arrived = node, run, twin, arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
+        self._band: dict[str, float] = {}
         for topic in twin.sensors:
             node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
@@ -133,9 +134,19 @@ class ImuIntake:
             'learned from [h]': round(learned.hours, 2),
         }
 
+    def _find_band(self) -> None:
+        """Find how sure the motion is, in the thread of the steps."""
+        if self._twin.members is not None:
+            low, high = self._twin.sway_band().tolist()
+            self._band = {
+                'highest tip of 80 % of trees, from [m]': round(low, 4),
+                'highest tip of 80 % of trees, to [m]': round(high, 4),
+            }
+
     def statuses(self) -> list[Status]:
         """Report each sensor: in use or why not, and its counts."""
         found = []
+        self._run.request(self._find_band)
         for each in sensor_reports(self._twin):
             problem, counts = each.problem, each.counts
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
@@ -150,6 +161,7 @@ class ImuIntake:
                 'disagreed': counts.disagreed,
                 'late [s]': round(each.late, 4),
                 'share of the motion that the wind explains': round(self._twin.explained, 3),
+                **self._band,
                 **self._learned(),
             }
             if apart and not counts.accepted:

@@ -12,6 +12,7 @@ import time
 from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
+from rclpy.clock import Clock, ClockType
 from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
@@ -29,7 +30,8 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
-from tree_sway.errors import ParameterError
+from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
 from tree_sway.worker import submit_beside
@@ -64,7 +66,14 @@ _PUSH_LASTS = 0.5
 """Time [s] after which a push ends if it is not repeated."""
 
 _PATIENCE, _PATIENCE_AT_FIRST = 3.0, 10.0
-"""Times [s] of the machine for which a replay waits for a sample, and for the first of a topic."""
+"""
+Times [s] of the machine for which a replay waits for a sample or a publisher, and for the first
+sample of a topic that has a publisher.
+
+"""
+
+_KEPT_EVERY = 5.0
+"""Interval [s] at which what was learned is written, if it is new."""
 
 _STOP_CHECK = 0.05
 """Interval [s] of checks whether the node is ended while it waits."""
@@ -101,6 +110,8 @@ class SolverNode(TreeSwayNode):
     def activate(self) -> None:
         """Start the steps and the stream."""
         self._state.start()
+        if self._learned is not None:
+            self.on_close(self._keep_learned)
         self.run_worker(self.pacer)
 
     def _open(self) -> Scene:
@@ -132,8 +143,13 @@ class SolverNode(TreeSwayNode):
         self._missed: set[tuple[str, int]] = set()
         places = places_of(self.values['imu'])
         settings = self._settings()
+        self._learned: LearnedFile | None = None
+        if self.values['learn']:
+            source = self._open_learned(source, places)
         self.simulator: Simulator = (
-            source.observed(settings, places, self.values['rate'], submit=submit_beside)
+            source.observed(
+                settings, places, self.values['rate'], has_band=True, submit=submit_beside
+            )
             if places
             else source.simulator(settings, **self.values.subset('tolerance'))
         )
@@ -148,9 +164,32 @@ class SolverNode(TreeSwayNode):
             timer=time.perf_counter,
             starting=self._starting,
         )
+        if self._learned is not None and isinstance(self.simulator, ObservedTree):
+            self.simulator.learned_before = self._learned.opened.learned
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
         self.simulator.reset()  # on the requested model
+
+    def _open_learned(self, source: Scene, places: Mapping[str, str]) -> Scene:
+        """Return the tree with the wood that was learned before; what is learned is kept."""
+        if not places:
+            what = 'no motion sensor to learn from'
+            raise ParameterError(what, where='learn', cure='give imu, as tree/imu@3.2')
+        with inside('learn'):
+            file = LearnedFile(
+                self.values['learn'], source.trees[0], LEAVES[self.values['leaves']]
+            )
+        self._learned = file
+        return source.of_species(file.opened.species)
+
+    def _keep_learned(self) -> None:
+        """Write what the sensors have told about the tree, if anything is new."""
+        if self._learned is None or not isinstance(self.simulator, ObservedTree):
+            return
+        try:
+            self._learned.keep(self.simulator)
+        except FormatError as error:
+            self.get_logger().warning(str(error))
 
     def _make_interfaces(self, source: Scene) -> None:
         """Make publishers, subscriptions, services and the report."""
@@ -164,6 +203,9 @@ class SolverNode(TreeSwayNode):
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):
             self._imu = ImuIntake(self, self._run, self.simulator, self._arrived.set)
+        if self._learned is not None:
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self.create_timer(_KEPT_EVERY, self._keep_learned, clock=steady)
         self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
         self.subscription(PULL, self._take_pull)
@@ -313,7 +355,8 @@ class SolverNode(TreeSwayNode):
             lacking = set(self._lacking(to))
             if lacking <= self._missed:
                 return
-            is_first = any(newest == UNHEARD for _, newest in lacking - self._missed)
+            unheard = {topic for topic, newest in lacking - self._missed if newest == UNHEARD}
+            is_first = any(self.count_publishers(topic) for topic in unheard)
             left = begin + (_PATIENCE_AT_FIRST if is_first else _PATIENCE) - time.monotonic()
             if left <= 0.0:
                 self._missed = lacking
@@ -323,9 +366,9 @@ class SolverNode(TreeSwayNode):
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
         delay, newest = self.values['wind_delay'], self._run.newest
-        if newest is None and self.count_publishers(self._topic):
+        if newest is None:
             yield self._topic, UNHEARD
-        elif newest is not None and self._run.lacks_wind(to, delay=delay):
+        elif self._run.lacks_wind(to, delay=delay):
             yield self._topic, newest
         if self._imu is not None:
             yield from self._imu.lacking(to, delay)

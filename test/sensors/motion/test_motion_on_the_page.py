@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 import threading
 import time
 from typing import Any, NamedTuple
@@ -16,16 +17,21 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
+
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.commands.learn_argument import Learning  # noqa: E402
 from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.core.observe.sensor_place import place_on  # noqa: E402
-from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
+from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import RecordedWind  # noqa: E402
 from tree_sway.sensors.motion import motion_feed  # noqa: E402
@@ -109,13 +115,17 @@ def sensor(monkeypatch: pytest.MonkeyPatch) -> Sensor:
     return made
 
 
+def show_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    show.add_arguments(parser)
+    return parser.parse_args(['goldcrest'])
+
+
 def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
     """Step a session with the wind of the truth; its tip displacement at each step."""
     wind = truth().wind
     record = RecordedWind(DT * np.arange(len(wind)), wind)
-    parser = argparse.ArgumentParser()
-    show.add_arguments(parser)
-    arguments = parser.parse_args(['goldcrest'])
+    arguments = show_arguments()
     feed = MotionFeed(placed)
     session = Session(
         lambda wanted: show.build_scene(wanted, arguments, feed.places),
@@ -162,6 +172,35 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     learned = session._scene.simulator.learned
     assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
+
+
+def test_what_a_page_learns_is_kept_and_gone_on_with(
+    sensor: Sensor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    path = str(tmp_path / 'own.twin.yaml')
+    places = {'phone': f'segment:{SEGMENT}'}
+    arguments = show_arguments()
+    for run in (1, 2):
+        learning = Learning(path)
+        twin = show.build_scene(Choices('goldcrest'), arguments, places, learning)
+        assert isinstance(twin, ObservedTree)
+        fit = TreeFit(0.9, 1.2, 0.02, 0.2, 0.9, 0.2, 1.0)
+        monkeypatch.setattr(twin.observer._fit, 'found', fit)
+        learning.keep(twin)
+        found = open_tree(path)
+        assert found.learned is not None
+        assert found.learned.hours == pytest.approx(run)
+        # A tree that a viewer chooses learns nothing.
+        learning.keep(show.build_scene(Choices('goldcrest', count='2'), arguments, places))
+        learning.tell(twin)
+        assert f'own.twin.yaml: learned from {run} h of motion' in capsys.readouterr().out
+    # A file that becomes impossible to write is told, and the tree goes on.
+    monkeypatch.setattr(twin.observer._fit, 'found', fit._replace(hours=2.0))
+    Path(path).unlink()
+    tmp_path.rmdir()
+    learning.keep(twin)
+    assert 'own.twin.yaml: cannot be written' in capsys.readouterr().err
 
 
 def test_a_viewer_moves_the_sensor_and_a_place_that_is_none_is_refused(sensor: Sensor) -> None:
@@ -213,6 +252,9 @@ def test_a_pause_does_not_move_the_clocks_apart(sensor: Sensor) -> None:
     ('extra', 'words'),
     [
         (['--motion', 'udp:5006'], '1 --motion and 0 --at'),
+        (['--learn', 'own.yaml'], 'no motion sensor to learn from'),
+        (['--motion', 'udp:5006', '--at', '0.2', '--learn', 'own.glb'], 'cannot store'),
+        (['--motion', 'udp:5006', '--at', '0.2', '--learn', 'none/own.yaml'], 'no such folder'),
         (['--motion', 'udp:5006', '--at', '99'], 'the stem has no height'),
         (['--motion', 'udp:5006', '--at', '0.2', '--stand', '9'], 'stand of 9 trees'),
         (['--motion', 'motion.csv', '--at', '0.2'], 'does not begin with a kind of source'),

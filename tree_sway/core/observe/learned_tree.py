@@ -5,8 +5,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+import math
 
 from tree_sway.core.tree.species import Species
+
+_RANGES = {'stiffness': (0.4, 2.5), 'damping': (0.2, 5.0), 'drag': (0.2, 3.0)}
+"""Factors that several runs can add up to: some four deviations of each within a species."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,39 @@ class LearnedTree:
             f'{self.damping:.3g} times +- {100.0 * self.damping_error:.0f} %, drag '
             f'{self.drag:.3g} times +- {100.0 * self.drag_error:.0f} %'
         )
+
+    def after(self, before: LearnedTree | None) -> LearnedTree:
+        """
+        Join it with what was learned before, by which its own tree was made.
+
+        Logarithms are weighted by hours. Errors of stiffness and damping are independent; that of
+        the drag is not, for the anemometer stands where it stood.
+        """
+        if before is None:
+            return self
+        share = self.hours / max(self.hours + before.hours, 1e-9)
+        found = {
+            name: min(max(getattr(before, name) * getattr(self, name) ** share, low), high)
+            for name, (low, high) in _RANGES.items()
+        }
+        errors = {
+            name: math.hypot(share * getattr(self, name), (1.0 - share) * getattr(before, name))
+            for name in ('stiffness_error', 'damping_error')
+        }
+        return LearnedTree(
+            **found,
+            **errors,
+            drag_error=share * self.drag_error + (1.0 - share) * before.drag_error,
+            frequency=before.frequency * (self.frequency / before.frequency) ** share,
+            hours=before.hours + self.hours,
+        )
+
+    def over(self, before: LearnedTree | None) -> LearnedTree:
+        """Return it with factors over the tree in which ``before`` is already."""
+        if before is None:
+            return self
+        found = {name: getattr(self, name) / getattr(before, name) for name in _RANGES}
+        return replace(self, **found)
 
     def of(self, species: Species, *, in_leaf: bool) -> Species:
         """Return a species with what was learned in a season."""

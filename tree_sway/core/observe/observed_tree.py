@@ -163,6 +163,8 @@ class ObservedTree(SwaySimulator):
         self._learned = np.zeros(2)
         self._followed = 0.0
         self._tips: Floats | None = None
+        self.learned_before: LearnedTree | None = getattr(tree, 'learned', None)
+        """What sensors told in earlier runs, in the species already; None without."""
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
 
@@ -454,17 +456,17 @@ class ObservedTree(SwaySimulator):
 
     @property
     def learned(self) -> LearnedTree | None:
-        """What the sensors have told about the tree; None before the first fit."""
+        """What the sensors have told, in earlier runs too; None before the first fit of all."""
         fit = self.observer.fit
         if fit is None:
-            return None
+            return self.learned_before
         tunable = self._bank.oscillators.tunable
         slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
         weight = float(tunable.weight[slowest])
         wood = (float(tunable.stiffness[slowest]) - weight) / math.exp(self._learned[0])
         # The slowest coordinate is nearly the first mode: Rayleigh's quotient, as in `LiveTuning`.
         ratio = (fit.stiffness * wood + weight) / (wood + weight)
-        return LearnedTree(
+        found = LearnedTree(
             float(self.frequencies(1)[0]) * math.sqrt(ratio),
             fit.stiffness,
             fit.stiffness_error,
@@ -474,6 +476,7 @@ class ObservedTree(SwaySimulator):
             fit.drag_error,
             fit.hours,
         )
+        return found.after(self.learned_before)
 
     @property
     def problems(self) -> list[str]:

@@ -17,9 +17,11 @@ from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrac
 from tree_sway.core.observe.tree_fit import fits, N_CANDIDATES, Spectrum, TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
-_FIRST, _LATER = 40.0, 1.4
-"""Motion in [s] from which the tree is first fitted, and how much more there is each time."""
-
+_FIRST, _LATER, _LATEST = 40.0, 1.4, 600.0
+"""
+Motion in [s] from which the tree is first fitted, how much more there is each time, and most that
+is awaited.
+"""
 
 _SOON = 5.0
 """Time in [s] that a fit waits for the first stretch of further sensors."""
@@ -88,7 +90,7 @@ class RunningFit:
         spectra = [self._spectra[k] for k in used]
         if any(not each.count and each.until_first < _SOON for each in spectra):
             return
-        self._fit_after = _LATER * seconds
+        self._fit_after = min(_LATER * seconds, seconds + _LATEST)
         parts = fits(
             [self._spectrum(k) for k in measured],
             self._stiffness,

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
@@ -32,6 +33,8 @@ class TreeFile:
         Changes of what no tree can have, one sentence each.
     origin
         Origin of the tree in the frame of the file in [m].
+    learned
+        What motion sensors told about it, in its species already; None without.
 
     """
 
@@ -41,6 +44,7 @@ class TreeFile:
     notes: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    learned: LearnedTree | None = None
 
     def __repr__(self) -> str:
         """Return the tree and its source on one line."""

@@ -77,7 +77,7 @@ export function windSource(source = {}) {
 
 /** What motion sensors on the real tree tell, a line for each. @param {MotionStatus} [motion] of a status */
 export function motionSensors(motion) {
-  const { sensors, explained, learned } = motion ?? {};
+  const { sensors, explained, learned, band } = motion ?? {};
   if (!Array.isArray(sensors)) return "";
   if (!sensors.length) return word("sensor_elsewhere");
   const lines = sensors.slice(0, 8).map(({ name = "", in_use, problem = "", rate, residual, notes = [] }) => {
@@ -90,6 +90,7 @@ export function motionSensors(motion) {
   });
   const isFollowed = sensors.some(({ in_use }) => in_use);
   if (isFollowed && Number.isFinite(explained)) lines.push(word("wind_explains", Math.round(100 * Number(explained))));
+  if (isFollowed && band) lines.push(word("band_of_tip", (100 * band[0]).toFixed(1), (100 * band[1]).toFixed(1)));
   if (learned && Number.isFinite(learned.frequency) && Number.isFinite(learned.hours)) {
     lines.push(word("learned_sway", learned.frequency.toFixed(3), learned.hours.toFixed(2)));
   }

@@ -58,9 +58,9 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     values, species = document.values, species_of(document)
     name = values.get('name', default_name)
     tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
-    learned = values.get('learned')
-    notes = () if learned is None else (str(LearnedTree(**learned)),)
-    return TreeFile(tree, species, source, notes)
+    learned = LearnedTree(**values['learned']) if 'learned' in values else None
+    notes = () if learned is None else (str(learned),)
+    return TreeFile(tree, species, source, notes, learned=learned)
 
 
 def is_species_file(name: str) -> bool:

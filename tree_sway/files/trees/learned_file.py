@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A file of a tree that keeps what motion sensors tell about it, over several runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway.core.observe.learned_tree import LearnedTree
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.tree_fit import TreeFit
+from tree_sway.core.setup.season import is_in_leaf
+from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import FormatError
+from tree_sway.files.export.yaml_writing import yaml_of_tree
+from tree_sway.files.paths import path_of
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.yaml.tree_yaml import read_yaml_tree
+from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
+
+_SUFFIXES = ('.yaml', '.yml')
+
+
+def refuse_no_learned_file(path: str) -> None:
+    """Raise a `FormatError` for a file that cannot store what is learned."""
+    if Path(path).suffix.lower() not in _SUFFIXES:
+        raise FormatError('cannot store what is learned', where=path, cure='write a .yaml file')
+    refuse_unwritable(path)
+
+
+class LearnedFile:
+    """
+    What sensors tell about a tree, in its file.
+
+    Where the file is already there, the tree goes on from what it says: the wood is that of the
+    file, and hours add up.
+
+    Parameters
+    ----------
+    path
+        The file.
+    grown
+        The tree as it was opened.
+    in_leaf
+        Whether it is in leaf; by its species if None.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be written or read, is of another tree, or was not learned.
+
+    """
+
+    def __init__(self, path: str, grown: GrownTree, in_leaf: bool | None = None) -> None:
+        refuse_no_learned_file(path)
+        self.path = path
+        self.opened = TreeFile(grown.tree, grown.species, path)
+        """The tree, with what was learned before."""
+        if path_of(path).is_file():
+            self.opened = _learned_before(path, grown)
+        self._in_leaf = is_in_leaf(self.opened.species, in_leaf)
+        self._kept: TreeFit | None = None
+
+    def write(self, learned: LearnedTree) -> None:
+        """Write the tree with what was learned, before and in this run."""
+        before, species = self.opened.learned, self.opened.species
+        species = learned.over(before).of(species, in_leaf=self._in_leaf)
+        write_text_whole(self.path, yaml_of_tree(self.opened.tree, species, learned))
+
+    def keep(self, twin: ObservedTree) -> bool:
+        """Write what a tree has learned since the last call, if anything; tell whether it was."""
+        fit, learned = twin.observer.fit, twin.learned
+        if fit is None or fit is self._kept or learned is None:
+            return False
+        self._kept = fit
+        self.write(learned)
+        return True
+
+
+def _learned_before(path: str, grown: GrownTree) -> TreeFile:
+    """Read the file of a tree; a `FormatError` if it is of another, or was not learned."""
+    found = read_yaml_tree(path_of(path))
+    if found.species.key != grown.species.key or not _are_equal(found.tree, grown.tree):
+        what = f'is of another tree than {grown.tree.name}'
+        raise FormatError(what, where=path, cure='name another file, or open its tree')
+    if found.learned is None:
+        what = 'is a tree of which nothing was learned, and would be replaced'
+        raise FormatError(what, where=path, cure='name another file, as oak.twin.yaml')
+    return found
+
+
+def _are_equal(one: Tree, other: Tree) -> bool:
+    """Whether two trees have the same segments and the same names of branches."""
+    columns = ('start', 'end', 'base_diameter', 'tip_diameter', 'segment_parent')
+    return one.branch_names == other.branch_names and all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in columns
+    )
