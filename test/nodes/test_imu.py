@@ -13,10 +13,10 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from sensor_msgs.msg import Imu  # noqa: E402, I100
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor  # noqa: E402
 
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
 from tree_sway.core.observe.sway_watch import SwayChange  # noqa: E402
 from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402

@@ -14,11 +14,11 @@ pytest.importorskip('rosbags', reason='rosbags is not installed')
 pytestmark = pytest.mark.ros
 
 from rclpy.serialization import serialize_message  # noqa: E402, I100
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor  # noqa: E402
 
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.sensor_place import place_on  # noqa: E402
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.simulate import PlacedMotion, simulate  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402

@@ -6,6 +6,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
+from tree_sway_ros.nodes import solver  # noqa: E402
 from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
@@ -28,17 +29,21 @@ class World:
         self.frames = observer.listen(SEGMENT_POSES)
         self._observer = observer
         self._clock = observer.publisher(CLOCK)
-        self._wind = observer.publisher(WIND_FILTERED)
         self.now = START
+
+    def begin_wind(self):
+        self._wind = self._observer.publisher(WIND_FILTERED)
 
     def run(self, seconds, wind=None):
         """Let time pass, as fast as the solver takes it."""
         for _ in range(round(seconds * 1e9 / STEP)):
             self.now += STEP
             if wind is not None and self.now % 48_000_000 == 0:
-                sample = WindSample(self.now, 'map', *wind)
-                self._wind.publish(wind_to_message(VECTOR, sample))
+                self.say(self.now, wind)
             self.set(self.now)
+
+    def say(self, stamp, wind):
+        self._wind.publish(wind_to_message(VECTOR, WindSample(stamp, 'map', *wind)))
 
     def set(self, now):  # noqa: A003
         self.now = now
@@ -62,8 +67,25 @@ class World:
 @pytest.fixture
 def world(compose, observer, tree_file):
     made = World(compose, observer, tree_file)
+    made.begin_wind()
     observer.until(lambda: made.run(0.05) or made.frames, 'a frame')
     return made
+
+
+def test_wind_whose_publisher_is_yet_to_be_found_is_waited_for(
+    compose, observer, tree_file, monkeypatch
+):
+    monkeypatch.setattr(solver, '_PATIENCE', 1e3)
+    world = World(compose, observer, tree_file)
+    observer.until(lambda: world.set(START) or world.frames, 'the first frame')
+    world.run(0.3)
+    world.begin_wind()
+    for passed in range(0, 600_000_000, 50_000_000):
+        world.say(START + passed, (6.0, 0.0, 0.0))
+    run = world.nodes['solver']._run
+    observer.until(lambda: run.counts.accepted == 12, 'the samples')
+    observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, 'the newest frame')
+    assert run.late == 0
 
 
 def test_poses_follow_the_clock_and_stop_with_it(world, observer):

@@ -331,6 +331,29 @@ def test_two_anemometers_on_one_topic_are_named(compose, observer, statuses):
     assert statuses('wind: wind').level[0] == WARN
 
 
+def test_the_first_samples_of_a_replay_wait_for_a_subscriber(compose, observer, monkeypatch):
+    """Processes may take longer to find each other than a player waits."""
+    monkeypatch.setattr(wind_node, '_LONGEST_HOLD', 1e3)
+    node = compose(wind={'use_sim_time': True})['wind']
+    clock, mast = observer.publisher(CLOCK), Mast(observer)
+    observer.until(
+        lambda: clock.publish(clock_message(10**9)) or node.get_clock().now().nanoseconds,
+        'the clock to begin',
+    )
+    stamps = iter(range(10**9, 10**10, PERIOD))
+    told = [mast.say(5.0, stamp=next(stamps)) for _ in range(4)]
+    observer.until(lambda: node._intake.counts.accepted == 4, 'the samples')
+    heard = observer.listen(WIND_FILTERED)
+
+    def tell():
+        clock.publish(clock_message(told[-1]))
+        told.append(mast.say(5.0, stamp=next(stamps)))
+
+    observer.until(lambda: tell() or heard, 'the wind', poll=0.05)
+    observer.until(lambda: len(heard) >= 4, 'all of it')
+    assert [stamp_to_ns(each.header.stamp) for each in heard[:4]] == told[:4]
+
+
 @pytest.mark.parametrize('node', ['wind', 'solver'])
 def test_in_a_replay_a_driver_of_best_effort_is_heard(compose, observer, tree_file, node):
     """Alone, and beside a reliable one: the subscription is made again."""

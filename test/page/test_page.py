@@ -45,6 +45,7 @@ class Live:
             Control('mean_speed', 'Wind', 9.0, 'Mean', 'm/s', 0.0, 40.0),
             Control('bearing_to', 'Blows to', 0.5 * np.pi, 'Blows to', 'rad', -6.3, 6.3),
             Control('tolerance', 'Tolerance', 0.005, 'Of auto', 'm', 1e-6, 10.0),
+            Control('age', 'Age', 0.0, 'In years', minimum=0.0, maximum=150.0),
             Control('pause', 'Pause', False),
             Control('reset', 'Reset', None, is_action=True),
         )
@@ -431,6 +432,25 @@ def test_a_link_keeps_camera_and_view(live: Live, visit: Visit) -> None:
         assert await browser.run('treeSway.scene.isAutumn')
 
     visit(script)
+
+
+def test_the_slider_of_age_says_whose_stem_a_tree_has(live: Live, visit: Visit) -> None:
+    usual = live.session.choices
+    field = "document.getElementById('control-age').closest('.field')"
+
+    async def script(browser: Browser) -> None:
+        live.session.choices = Choices('oak')
+        whose = 'Stem of Quercus rubra (McPherson 2016)'
+        await browser.until(f"!{field}.hidden && {field}.textContent.includes('{whose}')")
+        described = "document.getElementById('control-age').ariaDescribedByElements"
+        assert await browser.run(f'{described}[0].textContent') == whose
+        live.session.choices = Choices('willow')
+        await browser.until(f"{field}.querySelector('small').textContent === ''")
+
+    try:
+        visit(script)
+    finally:
+        live.session.choices = usual
 
 
 def test_it_speaks_languages(visit: Visit) -> None:

@@ -66,7 +66,11 @@ _PUSH_LASTS = 0.5
 """Time [s] after which a push ends if it is not repeated."""
 
 _PATIENCE, _PATIENCE_AT_FIRST = 3.0, 10.0
-"""Times [s] of the machine for which a replay waits for a sample, and for the first of a topic."""
+"""
+Times [s] of the machine for which a replay waits for a sample or a publisher, and for the first
+sample of a topic that has a publisher.
+
+"""
 
 _KEPT_EVERY = 5.0
 """Interval [s] at which what was learned is written, if it is new."""
@@ -351,7 +355,8 @@ class SolverNode(TreeSwayNode):
             lacking = set(self._lacking(to))
             if lacking <= self._missed:
                 return
-            is_first = any(newest == UNHEARD for _, newest in lacking - self._missed)
+            unheard = {topic for topic, newest in lacking - self._missed if newest == UNHEARD}
+            is_first = any(self.count_publishers(topic) for topic in unheard)
             left = begin + (_PATIENCE_AT_FIRST if is_first else _PATIENCE) - time.monotonic()
             if left <= 0.0:
                 self._missed = lacking
@@ -361,9 +366,9 @@ class SolverNode(TreeSwayNode):
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
         delay, newest = self.values['wind_delay'], self._run.newest
-        if newest is None and self.count_publishers(self._topic):
+        if newest is None:
             yield self._topic, UNHEARD
-        elif newest is not None and self._run.lacks_wind(to, delay=delay):
+        elif self._run.lacks_wind(to, delay=delay):
             yield self._topic, newest
         if self._imu is not None:
             yield from self._imu.lacking(to, delay)

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+import math
+import time
 from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
@@ -33,6 +35,9 @@ _GATE = ('max_speed', 'max_rate', 'longest_refusal', 'frozen_after')
 _BACK = 100_000_000
 """Smallest step back of time that is a reset [ns]; smaller ones are jitter."""
 
+_LONGEST_HOLD = 5.0
+"""Time [s] of the machine for which a replay's first samples wait for a subscriber."""
+
 _RECENT = 5.0
 """Time for which a sample in a different frame is reported [s]."""
 
@@ -49,6 +54,8 @@ class WindNode(TreeSwayNode):
         self._attitude: Any = None
         self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED)
+        self._held: list[Any] = []
+        self._held_since: float | None = None
         self._plane = self.publisher(FORCE_PLANE)
         kind = WIND_CLASSES[self.values['input_type']]
         self._topic = self.subscription(WIND, self._receive, kind).topic_name
@@ -92,12 +99,23 @@ class WindNode(TreeSwayNode):
         if good is None:
             return
         self._report.add(self._intake.left_out)
-        time, vector = good
-        self._filtered.publish(
-            wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector))
-        )
+        at, vector = good
+        self._send(wind_to_message(Vector3Stamped, WindSample(at, frame_id, *vector)))
         self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
-        self._plane.publish(plane_message(time, frame_id, self._attitude))
+        self._plane.publish(plane_message(at, frame_id, self._attitude))
+
+    def _send(self, message: Any) -> None:
+        """Publish a sample; the first of a replay with a subscriber, which may be on its way."""
+        self._held.append(message)
+        if self.is_simulated and not self._filtered.get_subscription_count():
+            now = time.monotonic()
+            self._held_since = now if self._held_since is None else self._held_since
+            if now < self._held_since + _LONGEST_HOLD:
+                return
+        self._held_since = -math.inf
+        for each in self._held:
+            self._filtered.publish(each)
+        self._held.clear()
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()

@@ -18,6 +18,8 @@ _RESOLUTION = 0.02
 """Shortest interval that is measured [s]."""
 _INTERVALS, _FEWEST = 150, 5
 """Largest number of intervals that the rate is measured over, and the number that it needs."""
+_FASTEST = 20.0
+"""Rate that is allowed for until it is measured."""
 _ALIKE = 2.0
 """Factor between an interval's rate and the median: outside, the clock was paused or set."""
 
@@ -59,6 +61,11 @@ class ClockRate:
     def factor(self) -> float:
         """Factor by which limits in [s] of the machine are longer on the clock, at least 1."""
         return max(1.0, self.rate)
+
+    @property
+    def largest_factor(self) -> float:
+        """Largest value that `factor` may have: a replay's rate is not known from its start."""
+        return self.factor if len(self._intervals) >= _FEWEST else _FASTEST
 
     def note(self, now: float, nanoseconds: int) -> None:
         """Note the time of the clock [ns] at a time of the machine [s]."""

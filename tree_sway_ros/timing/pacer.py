@@ -25,7 +25,13 @@ from tree_sway.worker import Worker
 from tree_sway_ros.timing.clock_rate import ClockRate
 
 LONGEST_STEP = 500_000_000
-"""Longest time of a tick [ns]: a clock that jumped forward is not a long step."""
+"""
+Longest time of a tick [ns]: a clock that jumped forward is not a long step.
+
+In simulated time it is a time of the machine, by which the publisher of the clock may be late and
+then hurry, beside the time by which this thread is.
+
+"""
 PATIENCE = 10
 """Number of ticks that may fail one after another before the thread gives up."""
 _BACK = 100_000_000
@@ -175,8 +181,8 @@ class Pacer(Worker):
         passed = since + self._late  # since the last tick's time on the grid
         self._last, self._last_steady, self._late = index, steady, now % self.period
         longest = LONGEST_STEP
-        if self.is_simulated:  # in a fast replay much of it passes while this thread is late
-            longest += round(self.clock_rate.rate * since)
+        if self.is_simulated:  # in a fast replay much of it passes while a thread is late
+            longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))
         most = max(1, longest // self.period)
         if not self.is_simulated:
             # Periods are skipped by elapsed time, not by a wall clock that was set forward.

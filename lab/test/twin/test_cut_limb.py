@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from tree_sway_lab.twin.cut_limb import without_limb
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import (
     Circumstances,
     DT,
@@ -21,7 +22,6 @@ from tree_sway_lab.twin.true_tree import (
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import (
     Circumstances,
     DT,
@@ -20,7 +21,6 @@ from tree_sway_lab.twin.true_tree import (
 
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor
 from tree_sway.core.setup.one_thread import one_thread
 
 

@@ -7,10 +7,12 @@ It is the reference of the table models: its load is found branch by branch, in 
 motion of each, at the state in the middle of the step, and is constant over the step.
 
 **Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
-wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
-in light wind, where the last step's load is close enough, once. Rotations beyond the limit of a
-step are clamped and counted. Leaves that swing many times a step may still feed their motion where
-a step is 2 ms or less and the wind 20 m/s or more; 1/240 s has not been seen to.
+wind within a fraction of a step. The drag of a bent tree may stop a coordinate within a hundredth
+of a step: its inertia is that at rest, where a stem that twists moves no crown. So the load is
+iterated until it is that of the resulting state; in light wind, where the last step's load is
+close enough, once. The moments and the drag impulses of the branches, by which the load of each is
+implicit in its own motion, are mixed alike, for the load depends on both. Rotations beyond the
+limit of a step are clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -38,11 +40,17 @@ from tree_sway.core.run.table_model import middle_of_step, propagators_of
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
 
-MOST_TRIALS = 12
+MOST_TRIALS = 20
 """Largest number of iterations for the load of a step."""
 
-ENOUGH = 0.02
-"""Tolerance of the load, as the rotation that it makes [rad]."""
+ENOUGH, WITHIN = 0.02, 1.0 / 60.0
+"""
+Largest change of the load, as the rotation that it makes [rad], with which a step follows the last
+one without iteration, and the length [s] of the shortest such step; less in shorter ones.
+"""
+
+SOLVED = 0.05
+"""Tolerance of an iterated load, over the change with which no step is iterated."""
 
 
 TURNS = 10
@@ -97,6 +105,8 @@ class Law(NamedTuple):
     """Change of the mass matrix by the first coordinates, (q, q, q)."""
     fastest: Floats
     """Largest rate of a branch on its parent in [rad/s], (1,)."""
+    enough: Floats
+    """Largest change of the load with which no step is iterated [rad], (1,)."""
 
 
 class Air(NamedTuple):
@@ -125,8 +135,8 @@ class FullBank(Branchwise, ModalCoordinates):
         """Displacement, rate and force of each mode, (m,)."""
         self.state = np.zeros((3, n))
         self._keys = Keys(*self.state)
-        self._fastest = np.zeros(1)
-        self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
+        self._fastest, self._enough = np.zeros((2, 1))
+        self._tried = np.zeros((2 + 2 * MOST_TRIALS, n + self.loads['drag_impulse'].size))
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
@@ -135,6 +145,7 @@ class FullBank(Branchwise, ModalCoordinates):
         self.half[:] = 0.0
         self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt
+        self._enough[0] = ENOUGH * min(1.0, dt / WITHIN)
         self._springs[0], self._springs[1] = self.stiffness, self.damping
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
         velocity = self.half[:, 6] + self.half[:, 7]
@@ -154,7 +165,7 @@ class FullBank(Branchwise, ModalCoordinates):
     def _compiled(self) -> Callable[[Air], int]:
         law = Law(
             self.by_coordinate, self.momentum, self.limit, self.whole, self.half, self._springs,
-            self.inertia_slopes, self._fastest,
+            self.inertia_slopes, self._fastest, self._enough,
         )  # fmt: skip
         records = self.branches, self.work, self.loads
         arrays = *records, self._motion, self._keys, law, self._tried
@@ -240,10 +251,12 @@ def _advance(
     Advance one step; returns how many loads were clamped, or `NOT_FINITE`.
 
     The load is iterated until it is that of the motion which it makes: rows of ``trials`` are
-    those of `_try_next`.
+    those of `_try_next`, and the one that is left has moments and drag impulses of a trial.
     """
     moment, limit = keys.moment, law.limit
-    residual, found = trials[0], trials[3]
+    n = len(moment)
+    change, found, impulse = trials[2], trials[3, :n], trials[3, n:]
+    _read_impulses(loads, impulse)
     trial = 0
     while True:
         _to_middle(motion, keys, law)
@@ -251,21 +264,22 @@ def _advance(
             branches, work, loads, keys.rotation, keys.rate, found,
             air.x, air.y, air.z, air.per_speed_squared,
         )  # fmt: skip
-        most = 0.0
-        for i in range(len(moment)):
-            residual[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
-            most = max(most, abs(residual[i]))
+        most = _find_residual(loads, moment, limit, trials)
         trial += 1
-        if most <= ENOUGH or trial == MOST_TRIALS:
+        enough = law.enough[0] if trial == 1 else SOLVED * law.enough[0]
+        if most <= enough or trial == MOST_TRIALS:
             break
-        _try_next(trials, trial)
-        for i in range(len(moment)):
-            moment[i] += trials[2, i] * limit[i] / LOAD_MAX
+        _try_next(trials, trial, n)
+        for i in range(n):
+            moment[i] += change[i] * limit[i] / LOAD_MAX
             moment[i] = min(max(moment[i], -limit[i]), limit[i])
+        for i in range(len(impulse)):
+            impulse[i] += change[n + i]
+        _write_impulses(impulse, loads)
         _project_load(motion, keys, law)
     n_clamped = 0
-    for i in range(len(moment)):
-        if most <= ENOUGH:
+    for i in range(n):
+        if most <= enough:
             moment[i] = found[i]
         n_clamped += not abs(found[i]) <= limit[i]
     _project_load(motion, keys, law)
@@ -279,6 +293,45 @@ def _advance(
             _clamp(motion, keys, law)
             return n_clamped + 1
     return n_clamped
+
+
+@part
+def _read_impulses(loads: Loads, impulse: Floats) -> None:
+    """Write the drag impulses of all branches, one after another."""
+    for block in range(len(loads)):
+        of_block = loads[block].drag_impulse
+        for k in range(3):
+            for j in range(WIDTH):
+                impulse[(3 * block + k) * WIDTH + j] = of_block[k, j]
+
+
+@part
+def _write_impulses(impulse: Floats, loads: Loads) -> None:
+    """Write drag impulses, one after another, into the records of all branches."""
+    for block in range(len(loads)):
+        of_block = loads[block].drag_impulse
+        for k in range(3):
+            for j in range(WIDTH):
+                of_block[k, j] = impulse[(3 * block + k) * WIDTH + j]
+
+
+@part
+def _find_residual(loads: Loads, moment: Floats, limit: Floats, trials: Floats) -> float:
+    """
+    Write what a trial's load lacks to that of its motion; return the largest rotation [rad].
+
+    Moments are as the rotation that they make, drag impulses after them as they are.
+    """
+    n = len(moment)
+    residual, tried = trials[0], trials[3]
+    most = 0.0
+    for i in range(n):
+        residual[i] = LOAD_MAX * (tried[i] - moment[i]) / limit[i]
+        most = max(most, abs(residual[i]))
+    _read_impulses(loads, residual[n:])
+    for i in range(n, len(residual)):
+        residual[i] -= tried[i]
+    return most
 
 
 @part
@@ -359,13 +412,14 @@ def _clamp(motion: Motion, keys: Keys, law: Law) -> None:
 
 
 @part
-def _try_next(trials: Floats, trial: int) -> None:
+def _try_next(trials: Floats, trial: int, n: int) -> None:
     """
-    Find the change of the moments that should make the residual zero, in [rad].
+    Find the change of moments and drag impulses that should make the residual zero.
 
     Rows of ``trials`` are the residual, the one before, and the last change, which is written;
-    after the next row, pairs of an orthonormal response and the change that causes it (Anderson's
-    mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
+    after the next row, pairs of a response, orthonormal in its n moments, and the change that
+    causes it (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49,
+    1715-1735).
     """
     residual, before, change = trials[0], trials[1], trials[2]
     if trial > 1:
@@ -373,9 +427,9 @@ def _try_next(trials: Floats, trial: int) -> None:
         for i in range(len(residual)):
             response[i], step[i] = residual[i] - before[i], change[i]
         for other in range(2, trial):
-            _project_out(response, step, trials[2 * other], trials[2 * other + 1])
+            _project_out(response, step, trials[2 * other], trials[2 * other + 1], n)
         square = 0.0
-        for i in range(len(residual)):
+        for i in range(n):
             square += response[i] * response[i]
         scale = 1.0 / math.sqrt(max(square, 1e-300))
         for i in range(len(residual)):
@@ -383,20 +437,21 @@ def _try_next(trials: Floats, trial: int) -> None:
     for i in range(len(residual)):
         before[i], change[i] = residual[i], 0.0
     for other in range(2, trial + 1):
-        _project_out(residual, change, trials[2 * other], trials[2 * other + 1])
+        _project_out(residual, change, trials[2 * other], trials[2 * other + 1], n)
     most = 0.0
     for i in range(len(residual)):
         change[i] += residual[i]
+    for i in range(n):
         most = max(most, abs(change[i]))
     for i in range(len(residual)):
         change[i] *= min(1.0, MOST_TURN / most)
 
 
 @part
-def _project_out(response: Floats, step: Floats, other: Floats, by: Floats) -> None:
-    """Project a response orthogonal to a previous one, and its change with it."""
+def _project_out(response: Floats, step: Floats, other: Floats, by: Floats, n: int) -> None:
+    """Project n moments of a response orthogonal to a previous one, and its change with it."""
     share = 0.0
-    for i in range(len(response)):
+    for i in range(n):
         share += response[i] * other[i]
     for i in range(len(response)):
         response[i] -= share * other[i]

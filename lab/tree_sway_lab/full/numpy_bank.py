@@ -18,7 +18,7 @@ from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.numpy_branch_loads import into_slots, NumpyPasses, of_slots
-from tree_sway_lab.full.bank import ENOUGH, FullBank, MOST_TRIALS, MOST_TURN, TURNS
+from tree_sway_lab.full.bank import FullBank, MOST_TRIALS, MOST_TURN, SOLVED, TURNS
 
 
 class NumpyFullBank(FullBank):
@@ -31,13 +31,14 @@ class NumpyFullBank(FullBank):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `FullBank.advance`."""
-        passes, n = self._passes, len(self.branches)
+        passes, n_branches = self._passes, len(self.branches)
         eta, rate, force = self.modal[:3]
-        moment, found = self.state[0], np.empty(self.state.shape[1])
+        moment, n = self.state[0], self.state.shape[1]
+        found = np.empty(n)
         h, c = self.half.T, self.whole.T
-        impulse = of_slots(self.loads['drag_impulse'], n).copy()
-        wind = np.array([wx, wy, wz]) + of_slots(self.loads['gust'], n)
-        compliance = of_slots(self.loads['compliance'], n)
+        impulse = of_slots(self.loads['drag_impulse'], n_branches).copy()
+        wind = np.array([wx, wy, wz]) + of_slots(self.loads['gust'], n_branches)
+        compliance = of_slots(self.loads['compliance'], n_branches)
         trials: list[tuple[Floats, Floats]] = []
         for trial in range(MOST_TRIALS):
             middle = h[0] * eta + h[1] * rate + (h[2] + h[3]) * force
@@ -45,33 +46,23 @@ class NumpyFullBank(FullBank):
             x, v = _summed(middle, self.by_coordinate), _summed(middle_rate, self.by_coordinate)
             angles, rates = passes.per_branch(x), passes.per_branch(v)
             bases = passes.outward(angles, rates)
+            tried = impulse.copy()
             on_branches = passes.wind_forces(
                 bases, angles, rates, wind, per_speed_squared, compliance, impulse
             )
             self.work['force'] = passes.bent_loads(bases, angles, on_branches, found)
-            residual = LOAD_MAX * (found - moment) / self.limit
-            if np.abs(residual).max() <= ENOUGH:
+            turning = LOAD_MAX * (found - moment) / self.limit
+            if np.abs(turning).max() <= (SOLVED if trial else 1.0) * self._enough[0]:
                 moment[:] = found
                 break
             if trial == MOST_TRIALS - 1:
                 break
-            if trials:
-                response, step = residual - trials[-1][0], trials[-1][1]
-                for other, by in trials[:-1]:
-                    share = response @ other
-                    response, step = response - share * other, step - share * by
-                scale = 1.0 / max(float(np.linalg.norm(response)), 1e-150)
-                trials[-1] = scale * response, scale * step
-            left, change = residual, np.zeros_like(residual)
-            for other, by in trials:
-                share = left @ other
-                left, change = left - share * other, change - share * by
-            change = change + left
-            most = float(np.abs(change).max())
-            if most > MOST_TURN:
-                change *= MOST_TURN / most
+            residual = np.concatenate([turning, (impulse - tried).ravel()])
+            change = _next_change(trials, residual, n)
             trials.append((residual, change))
-            moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
+            moment += change[:n] * self.limit / LOAD_MAX
+            np.clip(moment, -self.limit, self.limit, out=moment)
+            impulse = tried + change[n:].reshape(impulse.shape)
             force[:] = np.einsum('mi,i->m', self.by_coordinate, moment)
         into_slots(impulse, self.loads['drag_impulse'])
         force[:] = np.einsum('mi,i->m', self.by_coordinate, moment)
@@ -99,6 +90,24 @@ class NumpyFullBank(FullBank):
         x: Floats = self.state[1]
         x[:] = _summed(self.modal[0], self.by_coordinate)
         return x
+
+
+def _next_change(trials: list[tuple[Floats, Floats]], residual: Floats, n: int) -> Floats:
+    """Find the next change of n moments and the drag impulses, as `bank._try_next`."""
+    if trials:
+        response, step = residual - trials[-1][0], trials[-1][1]
+        for other, by in trials[:-1]:
+            share = response[:n] @ other[:n]
+            response, step = response - share * other, step - share * by
+        scale = 1.0 / max(float(np.linalg.norm(response[:n])), 1e-150)
+        trials[-1] = scale * response, scale * step
+    left, change = residual, np.zeros_like(residual)
+    for other, by in trials:
+        share = left[:n] @ other[:n]
+        left, change = left - share * other, change - share * by
+    change = change + left
+    most = float(np.abs(change[:n]).max())
+    return np.asarray(change * min(1.0, MOST_TURN / most))
 
 
 def _summed(amounts: Floats, shapes: Floats) -> Floats:

@@ -26,7 +26,7 @@ import sys
 
 from tree_sway.commands.ending import Ending
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.files.motion.tree_record import is_tree_record, read_tree_record
+from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sway_comparison import BANDS
 from tree_sway_lab.twin.trial import mean_score, plain_score, Score, squared_score, twin_score

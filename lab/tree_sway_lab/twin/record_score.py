@@ -23,7 +23,6 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on, SensorPlace
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.season import LEAVES
@@ -35,6 +34,7 @@ from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.motion.tree_record import TreeRecord
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway, low_passed, SwayComparison
 
 RATE = 60.0

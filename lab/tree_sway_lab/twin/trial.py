@@ -14,12 +14,12 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.simulated_sensor import SimulatedSensor
 from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.worker import submit_beside
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import DT, TrueMotion
 
 FAULTY = SimulatedSensor(rate=25.0, lateness=0.075, jitter=0.01, lost=0.05, bias=0.0087)

@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
-from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses

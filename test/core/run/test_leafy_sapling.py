@@ -20,20 +20,22 @@ WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0, damping_in_le
 N_LEAVES, LEAF_MASS, LEAF_AREA = 12, 0.0009, 0.0060
 
 
-@pytest.fixture(scope='module')
-def sapling():
-    """Return a stem of 1.6 m with leaves of 0.9 g on petioles of 9 cm by 1.8 mm."""
+def leafy_sapling(wander=0.0, seed=0):
+    """Return a stem of 1.6 m that wanders, with leaves of 0.9 g on petioles of 9 cm by 1.8 mm."""
+    rng = np.random.default_rng(seed)
     start, end, diameter, parent, branch = [], [], [], [], []
-    nodes = 1.6 * np.arange(13) / 12.0
-    thickness = np.interp(nodes, [0.0, 1.6], [0.012, 0.004])
+    nodes = np.zeros((13, 3))
+    nodes[:, 2] = 1.6 * np.arange(13) / 12.0
+    nodes[1:, :2] = np.cumsum(wander * rng.normal(size=(12, 2)), axis=0)
+    thickness = np.interp(nodes[:, 2], [0.0, 1.6], [0.012, 0.004])
     for k in range(12):
-        start.append([0.0, 0.0, nodes[k]])
-        end.append([0.0, 0.0, nodes[k + 1]])
+        start.append(list(nodes[k]))
+        end.append(list(nodes[k + 1]))
         diameter.append([thickness[k], thickness[k + 1]])
         parent.append(k - 1)
         branch.append(0)
     for leaf in range(N_LEAVES):
-        turn = 2.4 * leaf  # about the golden angle
+        turn = 2.4 * leaf + 40.0 * wander * rng.normal()  # about the golden angle
         away = np.array([np.cos(turn), np.sin(turn), 0.5])
         away *= 0.03 / np.linalg.norm(away)
         on = 3 + 9 * leaf // N_LEAVES
@@ -46,6 +48,12 @@ def sapling():
             branch.append(leaf + 1)
             before = len(start) - 1
     return tree_from_segments(start, end, diameter, parent=parent, branch=branch)
+
+
+@pytest.fixture(scope='module')
+def sapling():
+    """Return the sapling whose stem is straight."""
+    return leafy_sapling()
 
 
 def simulator(tree, model):
@@ -80,13 +88,16 @@ def test_the_default_sways_as_all_coordinates_with_the_load_of_every_branch(sapl
     assert error < 0.1, error
 
 
-@pytest.mark.parametrize('n_substeps', [2, 4])
-def test_all_coordinates_sway_alike_at_shorter_steps(sapling, n_substeps):
-    """Leaves of 400 Hz and more turn within a step, and their drag must not feed their motion."""
-    full = simulator(sapling, 'full')
-    shown, finer = sway(full, 12.0), sway(full, 12.0, n_substeps=n_substeps)
+@pytest.mark.parametrize('seed', [None, 1, 2, 3])
+@pytest.mark.parametrize(('speed', 'n_substeps'), [(12.0, 8), (20.0, 8), (20.0, 16), (25.0, 12)])
+def test_all_coordinates_sway_alike_at_shorter_steps(sapling, speed, n_substeps, seed):
+    """Drag that stops a coordinate of a bent stem within a hundredth of a step is solved for."""
+    tree = sapling if seed is None else leafy_sapling(0.012, seed)
+    full = simulator(tree, 'full')
+    shown = sway(full, speed, seconds=6.0, n_substeps=4)
+    finer = sway(full, speed, seconds=6.0, n_substeps=n_substeps)
     assert full.counts.clamped == 0
-    assert np.linalg.norm(finer - shown) < 0.05 * np.linalg.norm(finer)
+    assert np.linalg.norm(finer - shown) < 0.03 * np.linalg.norm(finer)
 
 
 @pytest.mark.parametrize('dt', [1.0 / 240.0, 1.0 / 60.0, 1.0 / 25.0, 0.2])

@@ -17,6 +17,8 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
+
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.commands.learn_argument import Learning  # noqa: E402
@@ -25,7 +27,6 @@ from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.core.observe.sensor_place import place_on  # noqa: E402
-from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
 from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402

@@ -17,9 +17,10 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.twin.read_record import read_tree_record  # noqa: E402
+
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.files.motion.motion_file import read_motion  # noqa: E402
-from tree_sway.files.motion.tree_record import read_tree_record  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
 

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, MISSING
 from functools import cached_property
 import hashlib
-from typing import Annotated, Any, get_args, get_type_hints, NamedTuple, TYPE_CHECKING
+from typing import Any, NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,11 +43,7 @@ PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS, LIMP = 
 """Groups of arrays."""
 
 _NONE: Any = np.zeros(0)
-
-
-def _absent() -> Any:
-    """Return the default of an array that not every model has."""
-    return _NONE
+"""Array that a model does not have."""
 
 
 class Meaning(NamedTuple):
@@ -57,6 +53,17 @@ class Meaning(NamedTuple):
     shape: tuple[int | str, ...]
     unit: str
     text: str
+
+
+def _array(group: str, shape: str, unit: str, text: str, **default: Any) -> Any:
+    """Describe an array that every model has; its shape is of numbers and names of sizes."""
+    sizes = tuple(int(each) if each.isdigit() else each for each in shape.split(', '))
+    return field(metadata={'meaning': Meaning(group, sizes, unit, text)}, **default)
+
+
+def _optional(group: str, shape: str, unit: str, text: str) -> Any:
+    """Describe an array that is empty in models whose law does not need it."""
+    return _array(group, shape, unit, text, default_factory=lambda: _NONE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,222 +98,227 @@ class SwayModel:
     damping_ratio: float
     mass: float
 
-    branch_first: Annotated[Ints, Meaning(
-        PLACING, ('b + 1',), '', 'first segment of each branch, and n at the end',
-    )]  # fmt: skip
-    branch_parent: Annotated[Ints, Meaning(
-        PLACING, ('b',), '', 'parent branch, -1 for the stem; parents come first',
-    )]  # fmt: skip
-    branch_base_segment: Annotated[Ints, Meaning(
-        PLACING, ('b',), '', 'segment of the parent at its base, -1 for the stem',
-    )]  # fmt: skip
-    branch_coordinate: Annotated[Ints, Meaning(
-        PLACING, ('b',), '', 'its first key rotation',
-    )]  # fmt: skip
-    branch_keys: Annotated[Ints, Meaning(
-        PLACING, ('b',), '', 'number of its key rotations, 2 or more',
-    )]  # fmt: skip
-    branch_frame: Annotated[Floats, Meaning(
-        PLACING, ('b', 3, 3), '', 'chord and the two axes e1, e2 across it at rest, as rows; the '
-        'first key rotation turns the chord about e2, the second about -e1',
-    )]  # fmt: skip
-    branch_skew: Annotated[Floats, Meaning(
-        PLACING, ('b', 2), '', 'third cumulant over 6 of the slope, and of the slope under a load '
-        'at the tip',
-    )]  # fmt: skip
-    branch_offset: Annotated[Floats, Meaning(
-        PLACING, ('b', 3), 'm', 'base from the start of the base segment, in the frame of that '
-        'segment; 0 for the stem',
-    )]  # fmt: skip
-    branch_twist: Annotated[Floats, Meaning(
-        PLACING, ('b', 'k', 6), 'm, rad', 'displacement and rotation of the base per unit of each '
-        'key rotation of the parent, about the root node',
-    )]  # fmt: skip
-    segment_slope: Annotated[Floats, Meaning(
-        PLACING, ('n',), 'rad/rad', 'rotation of each segment per unit of key rotation',
-    )]  # fmt: skip
-    segment_tip_slope: Annotated[Floats, Meaning(
-        PLACING, ('n',), 'rad/rad', 'the same under a load at the tip',
-    )]  # fmt: skip
-    segment_chord: Annotated[Floats, Meaning(
-        PLACING, ('n', 3), 'm', 'from its start to the start of the next one of its branch, or '
-        'to its end, at rest',
-    )]  # fmt: skip
-    segment_rest: Annotated[Floats, Meaning(
-        PLACING, ('n', 4), '', 'orientation at rest as a quaternion w x y z',
-    )]  # fmt: skip
-    segment_turn: Annotated[Floats, Meaning(
-        PLACING, ('n', 'k', 3), 'rad/rad', 'rotation vector of each segment per unit of each key '
-        'rotation of its branch',
-    )]  # fmt: skip
+    branch_first: Ints = _array(
+        PLACING, 'b + 1', '',
+        'first segment of each branch, and n at the end',
+    )  # fmt: skip
+    branch_parent: Ints = _array(
+        PLACING, 'b', '',
+        'parent branch, -1 for the stem; parents come first',
+    )  # fmt: skip
+    branch_base_segment: Ints = _array(
+        PLACING, 'b', '',
+        'segment of the parent at its base, -1 for the stem',
+    )  # fmt: skip
+    branch_coordinate: Ints = _array(PLACING, 'b', '', 'its first key rotation')
+    branch_keys: Ints = _array(PLACING, 'b', '', 'number of its key rotations, 2 or more')
+    branch_frame: Floats = _array(
+        PLACING, 'b, 3, 3', '',
+        'chord and the two axes e1, e2 across it at rest, as rows; the first key rotation turns '
+        'the chord about e2, the second about -e1',
+    )  # fmt: skip
+    branch_skew: Floats = _array(
+        PLACING, 'b, 2', '',
+        'third cumulant over 6 of the slope, and of the slope under a load at the tip',
+    )  # fmt: skip
+    branch_offset: Floats = _array(
+        PLACING, 'b, 3', 'm',
+        'base from the start of the base segment, in the frame of that segment; 0 for the stem',
+    )  # fmt: skip
+    branch_twist: Floats = _array(
+        PLACING, 'b, k, 6', 'm, rad',
+        'displacement and rotation of the base per unit of each key rotation of the parent, '
+        'about the root node',
+    )  # fmt: skip
+    segment_slope: Floats = _array(
+        PLACING, 'n', 'rad/rad',
+        'rotation of each segment per unit of key rotation',
+    )  # fmt: skip
+    segment_tip_slope: Floats = _array(PLACING, 'n', 'rad/rad', 'the same under a load at the tip')
+    segment_chord: Floats = _array(
+        PLACING, 'n, 3', 'm',
+        'from its start to the start of the next one of its branch, or to its end, at rest',
+    )  # fmt: skip
+    segment_rest: Floats = _array(
+        PLACING, 'n, 4', '',
+        'orientation at rest as a quaternion w x y z',
+    )  # fmt: skip
+    segment_turn: Floats = _array(
+        PLACING, 'n, k, 3', 'rad/rad',
+        'rotation vector of each segment per unit of each key rotation of its branch',
+    )  # fmt: skip
 
-    branch_area: Annotated[Floats, Meaning(
-        LOADS, ('b',), 'm^2', 'drag area',
-    )]  # fmt: skip
-    branch_speed: Annotated[Floats, Meaning(
-        LOADS, ('b',), '', 'wind speed at the branch over that at the anemometer',
-    )]  # fmt: skip
-    branch_spread: Annotated[Floats, Meaning(
-        LOADS, ('b',), 'm^2', 'variance of the displacement of its pieces about that of the load '
-        'centre, per squared unit of the first key rotations',
-    )]  # fmt: skip
-    branch_lever: Annotated[Floats, Meaning(
-        LOADS, ('b',), 'm', 'lever of its own load about its base',
-    )]  # fmt: skip
-    branch_projector: Annotated[Floats, Meaning(
-        LOADS, ('b', 6), '', 'mean of 1 - t t^T over its pieces, t along a piece: xx yy zz xy xz '
-        'yz',
-    )]  # fmt: skip
-    branch_centre: Annotated[Floats, Meaning(
-        LOADS, ('b', 3), 'm', 'centre of the load from the root node',
-    )]  # fmt: skip
-    branch_coupling: Annotated[Floats, Meaning(
-        LOADS, ('b', 3, 3), 'm', 'moment about the root node per force',
-    )]  # fmt: skip
-    branch_load_mode: Annotated[Floats, Meaning(
-        LOADS, ('b', 'k', 3), 'm/rad', 'displacement that the mean force does work on, per unit '
-        'of each of its key rotations',
-    )]  # fmt: skip
-    branch_damping_mode: Annotated[Floats, Meaning(
-        LOADS, ('b', 'k', 3), 'm/rad', 'displacement whose velocity the drag damps',
-    )]  # fmt: skip
-    branch_load_rotation: Annotated[Floats, Meaning(
-        LOADS, ('b', 'k', 3), 'rad/rad', 'rotation of its loaded pieces',
-    )]  # fmt: skip
-    branch_tip_mode: Annotated[Floats, Meaning(
-        LOADS, ('b', 'k', 3), 'm/rad', 'displacement of its tip',
-    )]  # fmt: skip
+    branch_area: Floats = _array(LOADS, 'b', 'm^2', 'drag area')
+    branch_speed: Floats = _array(
+        LOADS, 'b', '',
+        'wind speed at the branch over that at the anemometer',
+    )  # fmt: skip
+    branch_spread: Floats = _array(
+        LOADS, 'b', 'm^2',
+        'variance of the displacement of its pieces about that of the load centre, per squared '
+        'unit of the first key rotations',
+    )  # fmt: skip
+    branch_lever: Floats = _array(LOADS, 'b', 'm', 'lever of its own load about its base')
+    branch_projector: Floats = _array(
+        LOADS, 'b, 6', '',
+        'mean of 1 - t t^T over its pieces, t along a piece: xx yy zz xy xz yz',
+    )  # fmt: skip
+    branch_centre: Floats = _array(LOADS, 'b, 3', 'm', 'centre of the load from the root node')
+    branch_coupling: Floats = _array(LOADS, 'b, 3, 3', 'm', 'moment about the root node per force')
+    branch_load_mode: Floats = _array(
+        LOADS, 'b, k, 3', 'm/rad',
+        'displacement that the mean force does work on, per unit of each of its key rotations',
+    )  # fmt: skip
+    branch_damping_mode: Floats = _array(
+        LOADS, 'b, k, 3', 'm/rad',
+        'displacement whose velocity the drag damps',
+    )  # fmt: skip
+    branch_load_rotation: Floats = _array(
+        LOADS, 'b, k, 3', 'rad/rad',
+        'rotation of its loaded pieces',
+    )  # fmt: skip
+    branch_tip_mode: Floats = _array(LOADS, 'b, k, 3', 'm/rad', 'displacement of its tip')
 
-    stiffness: Annotated[Floats, Meaning(
-        COORDINATES, ('m',), '1/s^2', 'squared circular frequency; of isolated branches their '
-        'stiffness in N m/rad',
-    )]  # fmt: skip
-    own_damping: Annotated[Floats, Meaning(
-        COORDINATES, ('m',), '1/s', 'damping by the wood; of isolated branches in N m s/rad',
-    )]  # fmt: skip
-    weight: Annotated[Floats, Meaning(
-        COORDINATES, ('m',), '1/s^2', 'part of the stiffness by gravity, negative where the '
-        'weight softens',
-    )]  # fmt: skip
-    natural_frequencies: Annotated[Floats, Meaning(
-        COORDINATES, ('frequencies',), 'Hz', 'lowest natural frequencies of the tree without air',
-    )]  # fmt: skip
+    stiffness: Floats = _array(
+        COORDINATES, 'm', '1/s^2',
+        'squared circular frequency; of isolated branches their stiffness in N m/rad',
+    )  # fmt: skip
+    own_damping: Floats = _array(
+        COORDINATES, 'm', '1/s',
+        'damping by the wood; of isolated branches in N m s/rad',
+    )  # fmt: skip
+    weight: Floats = _array(
+        COORDINATES, 'm', '1/s^2',
+        'part of the stiffness by gravity, negative where the weight softens',
+    )  # fmt: skip
+    natural_frequencies: Floats = _array(
+        COORDINATES, 'frequencies', 'Hz',
+        'lowest natural frequencies of the tree without air',
+    )  # fmt: skip
 
-    shapes: Annotated[Floats, Meaning(
-        COORDINATES, ('N', 'm'), 'rad', 'key rotations per unit of each coordinate',
-    )] = field(default_factory=_absent)  # fmt: skip
-    projection: Annotated[Floats, Meaning(
-        COORDINATES, ('m', 'N'), '1/rad', 'coordinates of key rotations: shapes^T mass',
-    )] = field(default_factory=_absent)  # fmt: skip
-    relative_damping: Annotated[Floats, Meaning(
-        COORDINATES, ('m',), '', 'damping ratio of each coordinate over that of the tree',
-    )] = field(default_factory=_absent)  # fmt: skip
-    participation: Annotated[Floats, Meaning(
-        COORDINATES, ('b', 'm'), 'm^2', 'mean square displacement of each load centre per unit '
-        'of each coordinate',
-    )] = field(default_factory=_absent)  # fmt: skip
-    key_limit: Annotated[Floats, Meaning(
-        COORDINATES, ('N',), 'N m', 'largest moment of a push on each key rotation',
-    )] = field(default_factory=_absent)  # fmt: skip
-    branch_compliance: Annotated[Floats, Meaning(
-        COORDINATES, ('N', 'keys of a branch'), 'rad/(N m)', 'compliance of each isolated '
-        'branch, the rows of its block',
-    )] = field(default_factory=_absent)  # fmt: skip
-    shape_compliance: Annotated[Floats, Meaning(
-        COORDINATES, ('m', 'm'), '1/(N m)', 'part of it that the coordinates have',
-    )] = field(default_factory=_absent)  # fmt: skip
-    inertia_slopes: Annotated[Floats, Meaning(
-        COORDINATES, ('q', 'q', 'q'), '', 'change of the inertia of the leading coordinates per '
-        'unit of the last axis',
-    )] = field(default_factory=_absent)  # fmt: skip
+    shapes: Floats = _optional(
+        COORDINATES, 'N, m', 'rad',
+        'key rotations per unit of each coordinate',
+    )  # fmt: skip
+    projection: Floats = _optional(
+        COORDINATES, 'm, N', '1/rad',
+        'coordinates of key rotations: shapes^T mass',
+    )  # fmt: skip
+    relative_damping: Floats = _optional(
+        COORDINATES, 'm', '',
+        'damping ratio of each coordinate over that of the tree',
+    )  # fmt: skip
+    participation: Floats = _optional(
+        COORDINATES, 'b, m', 'm^2',
+        'mean square displacement of each load centre per unit of each coordinate',
+    )  # fmt: skip
+    key_limit: Floats = _optional(
+        COORDINATES, 'N', 'N m',
+        'largest moment of a push on each key rotation',
+    )  # fmt: skip
+    branch_compliance: Floats = _optional(
+        COORDINATES, 'N, keys of a branch', 'rad/(N m)',
+        'compliance of each isolated branch, the rows of its block',
+    )  # fmt: skip
+    shape_compliance: Floats = _optional(
+        COORDINATES, 'm, m', '1/(N m)',
+        'part of it that the coordinates have',
+    )  # fmt: skip
+    inertia_slopes: Floats = _optional(
+        COORDINATES, 'q, q, q', '',
+        'change of the inertia of the leading coordinates per unit of the last axis',
+    )  # fmt: skip
 
-    stream_shapes: Annotated[Floats, Meaning(
-        STREAM, ('m', 's'), '', 'coordinates per unit of each streamed coordinate, a length',
-    )] = field(default_factory=_absent)  # fmt: skip
-    stream_projection: Annotated[Floats, Meaning(
-        STREAM, ('s', 'm'), '', 'streamed coordinates of coordinates',
-    )] = field(default_factory=_absent)  # fmt: skip
-    stream_scale: Annotated[Floats, Meaning(
-        STREAM, ('s',), 'm', 'value of each streamed coordinate at the full scale of an int16',
-    )] = field(default_factory=_absent)  # fmt: skip
-    stream_error: Annotated[Floats, Meaning(
-        STREAM, (1,), 'm', 'largest error of the tip of a branch, in int16, in a wind of 13 m/s '
-        'and its gusts',
-    )] = field(default_factory=_absent)  # fmt: skip
+    stream_shapes: Floats = _optional(
+        STREAM, 'm, s', '',
+        'coordinates per unit of each streamed coordinate, a length',
+    )  # fmt: skip
+    stream_projection: Floats = _optional(
+        STREAM, 's, m', '',
+        'streamed coordinates of coordinates',
+    )  # fmt: skip
+    stream_scale: Floats = _optional(
+        STREAM, 's', 'm',
+        'value of each streamed coordinate at the full scale of an int16',
+    )  # fmt: skip
+    stream_error: Floats = _optional(
+        STREAM, '1', 'm',
+        'largest error of the tip of a branch, in int16, in a wind of 13 m/s and its gusts',
+    )  # fmt: skip
 
     most_pressure: float = 0.0
     most_energy: float = 0.0
-    limit: Annotated[Floats, Meaning(
-        TABLE, ('m',), 'm^2', 'largest load of a steady wind on each coordinate, per dynamic '
-        'pressure',
-    )] = field(default_factory=_absent)  # fmt: skip
-    motion: Annotated[Floats, Meaning(
-        TABLE, ('m',), 'm^2', 'mean square velocity of the loaded pieces per squared rate of each '
-        'coordinate',
-    )] = field(default_factory=_absent)  # fmt: skip
-    harmonics: Annotated[Floats, Meaning(
-        TABLE, (N_HARMONICS, 'm'), 'm^2', 'load at rest, by spherical harmonics of the direction '
-        'of the wind',
-    )] = field(default_factory=_absent)  # fmt: skip
-    amount: Annotated[Floats, Meaning(
-        TABLE, (N_AZIMUTHS, 'm'), '', 'weights of the coordinates in the mean deflection',
-    )] = field(default_factory=_absent)  # fmt: skip
-    levels: Annotated[Floats, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS), '', 'mean deflection of the equilibria, ascending',
-    )] = field(default_factory=_absent)  # fmt: skip
-    equilibrium: Annotated[Floats, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), '', 'coordinates in steady winds',
-    )] = field(default_factory=_absent)  # fmt: skip
-    load: Annotated[Floats, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), 'm^2', 'load at the equilibria less that at rest',
-    )] = field(default_factory=_absent)  # fmt: skip
-    cross_damping: Annotated[Floats, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), 'm^2', 'sum of the absolute damping of each '
-        'coordinate by the rates of all others',
-    )] = field(default_factory=_absent)  # fmt: skip
-    turning: Annotated[Singles, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS, 'm', 'm'), 'm^2', 'derivative of the load, the second m, by '
-        'the coordinate that moves, the first m',
-    )] = field(default_factory=_absent)  # fmt: skip
-    damping: Annotated[Singles, Meaning(
-        TABLE, (N_AZIMUTHS, N_LEVELS, 'm', 'm'), 'm^2', 'the same by the rate of the coordinate, '
-        'per speed of the air',
-    )] = field(default_factory=_absent)  # fmt: skip
-    lean: Annotated[Singles, Meaning(
-        TABLE, (N_AZIMUTHS, 'm', 'm'), 'm^2', 'change of turning by the vertical part of the '
-        'direction of the wind',
-    )] = field(default_factory=_absent)  # fmt: skip
-    steep_turning: Annotated[Singles, Meaning(
-        TABLE, (2, 'm', 'm'), 'm^2', 'turning in winds straight down and straight up',
-    )] = field(default_factory=_absent)  # fmt: skip
-    steep_damping: Annotated[Singles, Meaning(
-        TABLE, (2, 'm', 'm'), 'm^2', 'damping in these winds',
-    )] = field(default_factory=_absent)  # fmt: skip
+    limit: Floats = _optional(
+        TABLE, 'm', 'm^2',
+        'largest load of a steady wind on each coordinate, per dynamic pressure',
+    )  # fmt: skip
+    motion: Floats = _optional(
+        TABLE, 'm', 'm^2',
+        'mean square velocity of the loaded pieces per squared rate of each coordinate',
+    )  # fmt: skip
+    harmonics: Floats = _optional(
+        TABLE, f'{N_HARMONICS}, m', 'm^2',
+        'load at rest, by spherical harmonics of the direction of the wind',
+    )  # fmt: skip
+    amount: Floats = _optional(
+        TABLE, f'{N_AZIMUTHS}, m', '',
+        'weights of the coordinates in the mean deflection',
+    )  # fmt: skip
+    levels: Floats = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}', '',
+        'mean deflection of the equilibria, ascending',
+    )  # fmt: skip
+    equilibrium: Floats = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', '',
+        'coordinates in steady winds',
+    )  # fmt: skip
+    load: Floats = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^2',
+        'load at the equilibria less that at rest',
+    )  # fmt: skip
+    cross_damping: Floats = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^2',
+        'sum of the absolute damping of each coordinate by the rates of all others',
+    )  # fmt: skip
+    turning: Singles = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^2',
+        'derivative of the load, the second m, by the coordinate that moves, the first m',
+    )  # fmt: skip
+    damping: Singles = _optional(
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^2',
+        'the same by the rate of the coordinate, per speed of the air',
+    )  # fmt: skip
+    lean: Singles = _optional(
+        TABLE, f'{N_AZIMUTHS}, m, m', 'm^2',
+        'change of turning by the vertical part of the direction of the wind',
+    )  # fmt: skip
+    steep_turning: Singles = _optional(
+        TABLE, '2, m, m', 'm^2',
+        'turning in winds straight down and straight up',
+    )  # fmt: skip
+    steep_damping: Singles = _optional(TABLE, '2, m, m', 'm^2', 'damping in these winds')
 
-    inertia: Annotated[Floats, Meaning(
-        ISOLATED, ('b',), 'kg m^2', 'inertia of each isolated branch (model branch)',
-    )] = field(default_factory=_absent)  # fmt: skip
+    inertia: Floats = _optional(
+        ISOLATED, 'b', 'kg m^2',
+        'inertia of each isolated branch (model branch)',
+    )  # fmt: skip
 
-    limb_delay: Annotated[Ints, Meaning(
-        LIMBS, ('b',), '', 'number of the delay with which gusts reach each branch',
-    )] = field(default_factory=_absent)  # fmt: skip
-    limb_spread: Annotated[Floats, Meaning(
-        LIMBS, (1,), 'm', 'longest delay times the wind speed',
-    )] = field(default_factory=_absent)  # fmt: skip
-    limb_share: Annotated[Floats, Meaning(
-        LIMBS, ('delays',), '', 'share of these limbs in the load',
-    )] = field(default_factory=_absent)  # fmt: skip
-    limb_harmonics: Annotated[Floats, Meaning(
-        LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'their load at rest, by harmonics',
-    )] = field(default_factory=_absent)  # fmt: skip
+    limb_delay: Ints = _optional(
+        LIMBS, 'b', '',
+        'number of the delay with which gusts reach each branch',
+    )  # fmt: skip
+    limb_spread: Floats = _optional(LIMBS, '1', 'm', 'longest delay times the wind speed')
+    limb_share: Floats = _optional(LIMBS, 'delays', '', 'share of these limbs in the load')
+    limb_harmonics: Floats = _optional(
+        LIMB_LOADS, f'delays, {N_HARMONICS}, m', 'm^2',
+        'their load at rest, by harmonics',
+    )  # fmt: skip
 
-    segment_mass: Annotated[Floats, Meaning(
-        LIMP, ('n',), 'kg', 'mass of each segment, with leaves',
-    )] = field(default_factory=_absent)  # fmt: skip
-    weight_slopes: Annotated[Floats, Meaning(
-        LIMP, ('m', 'm'), '1/s^2', 'derivative of the force of the weight by the coordinates, at '
-        'rest',
-    )] = field(default_factory=_absent)  # fmt: skip
+    segment_mass: Floats = _optional(LIMP, 'n', 'kg', 'mass of each segment, with leaves')
+    weight_slopes: Floats = _optional(
+        LIMP, 'm, m', '1/s^2',
+        'derivative of the force of the weight by the coordinates, at rest',
+    )  # fmt: skip
 
     def __repr__(self) -> str:
         """Return tree, model and sizes on one line."""
@@ -484,24 +496,20 @@ def _misfit(name: str, what: str, wanted: str) -> FormatError:
     return FormatError(f"array '{name}': {what}; expected: {wanted}", where='model', cure=cure)
 
 
+_NUMBERS_OF: dict[Any, type] = {'Floats': np.float64, 'Singles': np.float32, 'Ints': np.int64}
+"""Type of the numbers of an array by its annotation."""
+
 NUMBERS = {
     'drag_law': 3, 'damping_ratio': 1, 'mass': 1, 'most_pressure': 1, 'most_energy': 1,
 }  # fmt: skip
 """Numbers of a model, and how many there are of each."""
 
-MEANINGS: dict[str, Meaning] = {}
+_FIELDS = {each.name: each for each in fields(SwayModel) if each.metadata}
+
+MEANINGS: dict[str, Meaning] = {name: each.metadata['meaning'] for name, each in _FIELDS.items()}
 """Group, shape, unit and meaning of every array, by name."""
 
-TYPES: dict[str, type] = {}
+TYPES: dict[str, type] = {name: _NUMBERS_OF[each.type] for name, each in _FIELDS.items()}
 """Type of the numbers of every array, by name."""
 
-for _name, _hint in get_type_hints(SwayModel, include_extras=True).items():
-    for _meaning in get_args(_hint)[1:]:
-        if isinstance(_meaning, Meaning):
-            MEANINGS[_name] = _meaning
-            TYPES[_name] = get_args(get_args(get_args(_hint)[0])[1])[0]
-
-_REQUIRED = [
-    each.name for each in fields(SwayModel)
-    if each.name in MEANINGS and each.default_factory is MISSING
-]  # fmt: skip
+_REQUIRED = [name for name, each in _FIELDS.items() if each.default_factory is MISSING]

@@ -143,15 +143,21 @@ def _slants(corners: Corners, z: float, steepness: float) -> tuple[np.float32, n
 def _begin(table: Table, instance: Instance, corners: Corners, weights: Weights) -> None:
     """Begin the forces with the interpolated load."""
     force, turned, damped = instance.wanted, instance.turned, instance.damped
-    before, after, below, above = corners.before, corners.after, corners.below, corners.above
     for mode in range(len(force)):
-        force[mode] = (
-            weights.before_below * table.load[before, below, mode]
-            + weights.before_above * table.load[before, above, mode]
-            + weights.after_below * table.load[after, below, mode]
-            + weights.after_above * table.load[after, above, mode]
-        )
+        force[mode] = _between(table.load, corners, weights, mode)
         turned[mode] = damped[mode] = 0.0
+
+
+@part
+def _between(values: Floats, corners: Corners, weights: Weights, mode: int) -> float:
+    """Interpolate a value of a coordinate between the corners."""
+    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    return float(
+        weights.before_below * values[before, below, mode]
+        + weights.before_above * values[before, above, mode]
+        + weights.after_below * values[after, below, mode]
+        + weights.after_above * values[after, above, mode]
+    )
 
 
 @part
@@ -297,12 +303,6 @@ def _take_off_cross_damping(
     table: Table, instance: Instance, corners: Corners, weights: Weights, drag: float
 ) -> None:
     """Take the damping by the rates of the other coordinates off the slopes."""
-    diagonal, below, above = instance.diagonal, corners.below, corners.above
-    before, after = corners.before, corners.after
+    diagonal = instance.diagonal
     for mode in range(len(diagonal)):
-        diagonal[mode] -= drag * (
-            weights.before_below * table.cross_damping[before, below, mode]
-            + weights.before_above * table.cross_damping[before, above, mode]
-            + weights.after_below * table.cross_damping[after, below, mode]
-            + weights.after_above * table.cross_damping[after, above, mode]
-        )
+        diagonal[mode] -= drag * _between(table.cross_damping, corners, weights, mode)

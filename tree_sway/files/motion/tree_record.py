@@ -16,11 +16,7 @@ from typing import NamedTuple
 
 import yaml
 
-from tree_sway.errors import FormatError
-from tree_sway.files.paths import path_of
-from tree_sway.files.text_file import read_lines
 from tree_sway.files.whole_file import write_text_whole
-from tree_sway.files.yaml_document import packaged_schema, read_yaml
 
 SHEET = 'record.yaml'
 
@@ -69,46 +65,6 @@ class TreeRecord(NamedTuple):
     def path(self, name: str) -> str:
         """Return the path of a file of the record."""
         return str(self.folder / name)
-
-
-def is_tree_record(path: str | Path) -> bool:
-    """Whether a path is the folder of a record, or its sheet."""
-    return Path(path).name == SHEET or (Path(path) / SHEET).is_file()
-
-
-def read_tree_record(path: str | Path) -> TreeRecord:
-    """
-    Read the sheet of a record.
-
-    Raises
-    ------
-    FormatError
-        No sheet, one that is not of this form, or that names a file outside of its folder.
-
-    """
-    given = path_of(path)
-    folder = given.parent if given.name == SHEET else given
-    sheet = folder / SHEET
-    document = read_yaml(
-        '\n'.join(read_lines(sheet)), str(sheet), packaged_schema('record_schema.json')
-    )
-    values = document.values
-    sensors = [
-        RecordedSensor(each['file'], each['at'], each.get('source', ''))
-        for each in values.get('motion', ())
-    ]
-    wind, sway = values['wind'], values.get('sway', {})
-    record = TreeRecord(
-        folder, values['tree'], wind['file'], tuple(sensors), values.get('leaves', 'auto'),
-        wind.get('source', ''), sway.get('file', ''), sway.get('branch', ''),
-        values.get('notes', ''),
-    )  # fmt: skip
-    names = [record.tree, record.wind, *(each.file for each in sensors)]
-    for name in [*names, record.sway] if record.sway else names:
-        if Path(name).name != name:
-            cure = 'give the name of a file in the folder of the sheet'
-            raise FormatError(f"'{name}' is no name of a file", where=str(sheet), cure=cure)
-    return record
 
 
 def write_tree_record(record: TreeRecord) -> None:

@@ -15,9 +15,12 @@ goes from the vertex before, or from the base of its axis, to each vertex of the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+import math
 from pathlib import Path
 import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,16 +35,45 @@ _DIAMETER = 'TopDia'
 _CODE = re.compile(r'([/<+])([A-Za-z]\w*)(?=[/<+]|$)', re.ASCII)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Vertex:
-    """A vertex on its scale, its ``edge`` to the one before, its complex and its parent."""
+    """A vertex on its scale, and its ``edge`` to the one before."""
 
     label: str
     scale: int
     edge: str
-    complex: int  # noqa: A003
-    parent: int
+    whole: _Vertex | None
+    """Vertex of the coarser scale that it is a part of."""
+    parent: _Vertex | None
     features: dict[str, float] = field(default_factory=dict)
+    diameter: float = 0.0
+    """Its own diameter, or its parent's where it has none."""
+    place: _Vertex | None = None
+    """Vertex at whose position its successors begin."""
+    segment: int = -1
+    """Segment that its successors are on."""
+
+    @property
+    def position(self) -> list[float]:
+        return [self.features.get(name, math.nan) for name in _POSITION]
+
+    @property
+    def is_placed(self) -> bool:
+        return all(name in self.features for name in _POSITION)
+
+    @property
+    def begins(self) -> _Vertex | None:
+        """Vertex whose first part it is."""
+        return self.whole if self.edge == '/' else None
+
+
+class _Segment(NamedTuple):
+    """A segment from one vertex to another, on a parent segment."""
+
+    base: _Vertex
+    tip: _Vertex
+    parent: int
+    continues: bool
 
 
 def _is_mtg(head: str) -> bool:
@@ -52,55 +84,64 @@ def _is_mtg(head: str) -> bool:
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Segments of a digitised tree."""
     vertices = _parse(read_lines(path), str(path))
-    points = np.array([[v.features.get(name, np.nan) for name in _POSITION] for v in vertices])
-    placed = np.isfinite(points).all(axis=1).tolist()
-    # Segments are of the finest scale that has positions.
-    finest = max((v.scale for v, here in zip(vertices, placed, strict=True) if here), default=0)
-    base, tip, parent, continues = list[int](), list[int](), list[int](), list[bool]()
-    width, place, carrier = np.zeros(len(vertices)), list[int](), list[int]()
-    for index, vertex in enumerate(vertices):
-        before = _before(vertices, vertex, placed, place)
-        on = carrier[vertex.parent] if vertex.parent >= 0 else -1
-        # Successors of a vertex without a position refer to its predecessor.
-        own = vertex.features.get(_DIAMETER, 0.0)
-        width[index] = own if own > 0.0 or vertex.parent < 0 else width[vertex.parent]
-        place.append(index if placed[index] else before)
-        carrier.append(on)
-        if vertex.scale != finest or not placed[index] or before < 0:
-            continue  # without anything before it, it is the first point of a plant
-        carrier[index] = len(tip)
-        base.append(before)
-        tip.append(index)
-        parent.append(on)
-        continues.append(vertex.edge == '<' and before == vertex.parent and on >= 0)
-    if not tip:
+    segments = _segments(vertices)
+    if not segments:
         what = f'no two vertices with {", ".join(_POSITION)}'
         raise FormatError(what, where=str(path), cure='digitise the tree')
-    at_base = np.where(width[base] > 0.0, width[base], width[tip])
+    at_tip = np.array([each.tip.diameter for each in segments])
+    at_base = np.array([each.base.diameter for each in segments])
+    at_base = np.where(at_base > 0.0, at_base, at_tip)
+    n_placed = sum(vertex.is_placed for vertex in vertices)
     note = (
-        f'{sum(placed)} vertices with a position, {placed.count(False)} without; '
-        f'{len(tip)} of them segments'
+        f'{n_placed} vertices with a position, {len(vertices) - n_placed} without; '
+        f'{len(segments)} of them segments'
     )
     cylinders = Cylinders(
-        points[base], points[tip], np.stack([at_base, width[tip]], axis=1),
-        np.array(parent, dtype=np.int64), np.array(continues, dtype=np.bool_),
-        [vertices[index].label for index in tip], notes=(note,),
-    )  # fmt: skip
+        np.array([each.base.position for each in segments]),
+        np.array([each.tip.position for each in segments]),
+        np.stack([at_base, at_tip], axis=1),
+        np.array([each.parent for each in segments], dtype=np.int64),
+        np.array([each.continues for each in segments], dtype=np.bool_),
+        [each.tip.label for each in segments],
+        notes=(note,),
+    )
     return (cylinders,)
 
 
-def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place: list[int]) -> int:
-    """
-    Vertex at whose position another one begins, -1 without one.
+def _segments(vertices: Sequence[_Vertex]) -> list[_Segment]:
+    """Find the segments, which are of the finest scale that has positions."""
+    finest = max((vertex.scale for vertex in vertices if vertex.is_placed), default=0)
+    segments: list[_Segment] = []
+    for vertex in vertices:
+        before = _before(vertex)
+        parent = vertex.parent
+        vertex.place = vertex if vertex.is_placed else before
+        vertex.diameter = vertex.features.get(_DIAMETER, 0.0)
+        if parent is not None:
+            vertex.segment = parent.segment
+            if vertex.diameter <= 0.0:
+                vertex.diameter = parent.diameter
+        if vertex.scale != finest or not vertex.is_placed or before is None:
+            continue  # without anything before it, it is the first point of a plant
+        continues = vertex.edge == '<' and before is parent and vertex.segment >= 0
+        segments.append(_Segment(before, vertex, vertex.segment, continues))
+        vertex.segment = len(segments) - 1
+    return segments
 
-    It is the base of the axis whose first part it is, if that has a position; else its parent.
+
+def _before(vertex: _Vertex) -> _Vertex | None:
     """
-    whole = vertex.complex if vertex.edge == '/' else -1
-    while whole >= 0:
-        if placed[whole]:
-            return whole
-        whole = vertices[whole].complex if vertices[whole].edge == '/' else -1
-    return place[vertex.parent] if vertex.parent >= 0 else -1
+    Vertex at whose position another one begins, None without one.
+
+    It is the base of the axis whose first part it is, if that has a position; else the place of
+    its parent.
+    """
+    axis = vertex.begins
+    while axis is not None:
+        if axis.is_placed:
+            return axis
+        axis = axis.begins
+    return None if vertex.parent is None else vertex.parent.place
 
 
 def _parse(lines: list[str], source: str) -> list[_Vertex]:
@@ -112,30 +153,36 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
     header = [cell.strip() for cell in lines[begin].split('\t')]
     first = next((i for i, cell in enumerate(header) if i and cell), len(header))
     vertices: list[_Vertex] = []
-    latest: list[int] = []
+    latest: list[_Vertex] = []
+    """Latest vertex of each column."""
     for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
-        cells = line.rstrip().split('\t')
         if not line.strip():
             continue
         where = f'{source}:{number}'
+        cells = line.rstrip().split('\t')
         column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
         if column is None:
             raise FormatError(f'no code in the first {first} columns', where=where)
         code = cells[column].strip()
-        has_predecessor = code.startswith('^')
-        if column - (not has_predecessor) >= len(latest):
-            raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
-        reference = latest[column] if has_predecessor else (latest[column - 1] if column else -1)
-        reference = _add(vertices, code.removeprefix('^'), reference, scales, where)
-        del latest[column:]
-        latest.append(reference)
+        reference = _reference(latest, column, code, where)
+        added = _vertices(code.removeprefix('^'), reference, scales, where)
+        vertices += added
+        latest[column:] = added[-1:]
         for name, cell in zip(header[first:], cells[first:], strict=False):
             value = finite(cell)
             if value is not None:
-                vertices[reference].features[name] = value
+                added[-1].features[name] = value
     if not vertices:
         raise FormatError('no vertices', where=source)
     return vertices
+
+
+def _reference(latest: Sequence[_Vertex], column: int, code: str, where: str) -> _Vertex | None:
+    """Vertex that a code in a column refers to, None for a code that begins a plant."""
+    above = column if code.startswith('^') else column - 1
+    if above >= len(latest):
+        raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
+    return latest[above] if above >= 0 else None
 
 
 def _scales(lines: list[str], source: str) -> dict[str, int]:
@@ -144,48 +191,52 @@ def _scales(lines: list[str], source: str) -> dict[str, int]:
     if not code.startswith('FORM-A'):
         raise FormatError(f"the code is '{code[:20]}', not FORM-A", where=source)
     begin = next((i for i, line in enumerate(lines) if line.startswith('SYMBOL')), len(lines))
-    scales = {}
+    scales: dict[str, int] = {}
     for line in lines[begin + 1 :]:
         cells = line.split()
-        if len(cells) < 2 or finite(cells[1]) is None:
+        scale = finite(cells[1]) if len(cells) > 1 else None
+        if scale is None:
             break
-        scales[cells[0]] = int(finite(cells[1]) or 0)
+        scales[cells[0]] = int(scale)
     if not scales:
         raise FormatError('no CLASSES with SYMBOL and SCALE', where=source)
     return scales
 
 
-def _add(
-    vertices: list[_Vertex], code: str, reference: int, scales: dict[str, int], where: str
-) -> int:
-    """Add the vertices of a code, such as ``/P1/A1``, and return the last one."""
+def _vertices(
+    code: str, reference: _Vertex | None, scales: dict[str, int], where: str
+) -> list[_Vertex]:
+    """Return the vertices of a code, such as ``/P1/A1``, of which each refers to the last."""
     parts = list(_CODE.finditer(code))
     if not parts or ''.join(part[0] for part in parts) != code:
-        raise FormatError(
-            f"'{code[:20]}' is not a code", where=where, cure='such as /P1, <S2 or +A1'
-        )
-    for edge, name in (part.groups() for part in parts):
+        cure = 'such as /P1, <S2 or +A1'
+        raise FormatError(f"'{code[:20]}' is not a code", where=where, cure=cure)
+    found: list[_Vertex] = []
+    for part in parts:
+        edge, name = part.groups()
         symbol = name.rstrip('0123456789')
         if symbol not in scales:
             raise FormatError(f"no class '{symbol}'", where=where, cure='list it under CLASSES')
-        scale, above = scales[symbol], vertices[reference].scale if reference >= 0 else 0
-        label = f'{where}: {name}'
-        if edge == '/':
-            if scale != above + 1:
-                raise TreeError(f'scale {scale} in scale {above}', where=label)
-            # The first part of a branch has the place of its branch.
-            on = vertices[reference].parent if reference >= 0 else -1
-            vertex = _Vertex(label, scale, edge, reference, on)
-        else:
-            whole = reference
-            while whole >= 0 and vertices[whole].scale > scale:
-                whole = vertices[whole].complex
-            if whole < 0 or vertices[whole].scale != scale:
-                raise TreeError(f"'{edge}' has nothing of scale {scale} before it", where=label)
-            vertex = _Vertex(label, scale, edge, vertices[whole].complex, reference)
-        vertices.append(vertex)
-        reference = len(vertices) - 1
-    return reference
+        reference = _vertex(f'{where}: {name}', scales[symbol], edge, reference)
+        found.append(reference)
+    return found
+
+
+def _vertex(label: str, scale: int, edge: str, reference: _Vertex | None) -> _Vertex:
+    """Make the vertex that an edge joins to another one."""
+    if edge == '/':
+        above = 0 if reference is None else reference.scale
+        if scale != above + 1:
+            raise TreeError(f'scale {scale} in scale {above}', where=label)
+        # The first part of a branch has the place of its branch.
+        parent = None if reference is None else reference.parent
+        return _Vertex(label, scale, edge, reference, parent)
+    before = reference
+    while before is not None and before.scale > scale:
+        before = before.whole
+    if before is None or before.scale != scale:
+        raise TreeError(f"'{edge}' has nothing of scale {scale} before it", where=label)
+    return _Vertex(label, scale, edge, before.whole, reference)
 
 
 _UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001, **MEASURED}

@@ -9,10 +9,12 @@ tree. SWC has no unit: see ``length_unit`` and ``diameter_unit`` of `TreeOptions
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from tree_sway.core.arrays import Ints
 from tree_sway.core.tree.parents_first import checked_order
 from tree_sway.errors import FormatError
 from tree_sway.files.file_format import FileFormat
@@ -39,22 +41,35 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         raise FormatError('no nodes', where=str(path), cure='give a node in each line')
     nodes = table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family('number', 'parent', [-1], 'node')
-    order = checked_order(parent, labels)
-    members: dict[int, list[int]] = {}
-    root, place = np.arange(len(parent)), np.full(len(parent), -1)
-    for index in order.tolist():
-        root[index] = root[parent[index]] if parent[index] >= 0 else index
-        rows = members.setdefault(int(root[index]), [])
-        place[index] = len(rows)
-        rows.append(index)
     trees = []
-    for rows in members.values():
-        above = np.where(parent[rows] >= 0, place[parent[rows]], -1)
-        own, called = nodes[rows], [labels[i] for i in rows]
-        trees.append(
-            cylinders_of_nodes(own[:, :3], 2.0 * own[:, 3], above, called, str(path), cones=True)
+    for rows in _rows_of_trees(parent, labels):
+        place = np.full(len(parent) + 1, -1)  # with one for the parent of the root
+        place[rows] = np.arange(len(rows))
+        own = nodes[rows]
+        cylinders = cylinders_of_nodes(
+            own[:, :3],
+            2.0 * own[:, 3],
+            place[parent[rows]],
+            [labels[row] for row in rows],
+            str(path),
+            cones=True,
         )
+        trees.append(cylinders)
     return tuple(trees)
+
+
+def _rows_of_trees(parent: Ints, labels: Sequence[str]) -> list[list[int]]:
+    """Rows of the nodes of each tree, parents first."""
+    trees: list[list[int]] = []
+    tree_of: dict[int, list[int]] = {}
+    for row in checked_order(parent, labels).tolist():
+        if parent[row] < 0:
+            trees.append([])
+            tree_of[row] = trees[-1]
+        else:
+            tree_of[row] = tree_of[int(parent[row])]
+        tree_of[row].append(row)
+    return trees
 
 
 FORMAT = FileFormat('swc', ('.swc',), _is_swc, _read, MEASURED)

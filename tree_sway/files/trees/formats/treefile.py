@@ -11,6 +11,7 @@ with its own radius.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -30,21 +31,32 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
         raise FormatError('no header', where=str(path), cure=f'a header names {",".join(_FIELDS)}')
-    of_tree, found, fields = lines[0].partition('x,y,z,radius')
-    columns = [name.strip() for name in (found + fields).split(',') if name.strip()]
-    for name in _FIELDS:
-        if name not in columns:
-            trunks = ': trunks without branches' if name == 'parent_id' else ''
-            cure = 'extract the trees with rayextract trees'
-            raise FormatError(f'no field {name}{trunks}', where=f'{path}:{numbers[0]}', cure=cure)
+    of_tree, of_node = _columns(lines[0], f'{path}:{numbers[0]}')
     if len(lines) < 2:
         raise FormatError('no trees', where=str(path))
-    n_of_tree = sum(bool(name.strip()) for name in of_tree.split(','))
     trees = []
     for number, line in zip(numbers[1:], lines[1:], strict=True):
-        cells = [cell for cell in split_row(line, ',') if cell][n_of_tree:]
-        trees.append(_tree(cells, columns, f'{path}:{number}'))
+        cells = _filled(split_row(line, ','))
+        trees.append(_tree(cells[len(of_tree) :], of_node, f'{path}:{number}'))
     return tuple(trees)
+
+
+def _columns(header: str, where: str) -> tuple[list[str], list[str]]:
+    """Names of the attributes of a tree, and of the fields of a node."""
+    before, found, after = header.partition('x,y,z,radius')
+    of_node = _filled((found + after).split(','))
+    for name in _FIELDS:
+        if name not in of_node:
+            trunks = ': trunks without branches' if name == 'parent_id' else ''
+            cure = 'extract the trees with rayextract trees'
+            raise FormatError(f'no field {name}{trunks}', where=where, cure=cure)
+    return _filled(before.split(',')), of_node
+
+
+def _filled(cells: Iterable[str]) -> list[str]:
+    """Return the cells that are not empty, without white space around them."""
+    stripped = map(str.strip, cells)
+    return [cell for cell in stripped if cell]
 
 
 def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
@@ -58,14 +70,17 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
         tuple(columns), range(len(nodes)), nodes, lambda node: node.split(','), f'{where}: node'
     )
     values = table.strict(_FIELDS)
-    parent, labels = table.whole(values[:, 4], 'parent_id'), []
+    points = values[:, :3]
+    diameter = 2.0 * values[:, 3]
+    parent = table.whole(values[:, 4], 'parent_id')
+    labels = [f'{where}: node {row}' for row in range(len(nodes))]
     for row, above in enumerate(parent.tolist()):
-        labels.append(f'{where}: node {row}')
-        if (above < 0) != (row == 0) or above >= len(nodes):
+        is_root = above < 0
+        if is_root != (row == 0) or above >= len(nodes):
             cure = 'the first node has -1, every other the number of a node of its line'
             raise TreeError(f'parent_id is {above}', where=labels[row], cure=cure)
-    radius, above = values[:, 3], np.maximum(parent, -1)
-    return cylinders_of_nodes(values[:, :3], 2.0 * radius, above, labels, where, cones=False)
+    parent = np.maximum(parent, -1)
+    return cylinders_of_nodes(points, diameter, parent, labels, where, cones=False)
 
 
 FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)

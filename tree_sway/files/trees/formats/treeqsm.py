@@ -23,8 +23,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import parse_columns
@@ -34,12 +35,18 @@ from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, re
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
+_COLUMNS = (
+    'radius', 'length', 'start_x', 'start_y', 'start_z', 'axis_x', 'axis_y', 'axis_z', 'parent',
+    'extension',
+)  # fmt: skip
 _LEAST_COLUMNS, _MOST_COLUMNS = 9, 15
 """Numbers of columns of an array of cylinders."""
 _UNMISTAKABLE = 13
 """Number of columns from which a table without a header is one of cylinders."""
 _UNIT_ERROR = 0.02
 """Largest difference of the length of a cylinder's axis from 1 where it tells what a table is."""
+_LARGEST_WHOLE = 2**53
+"""Largest number up to which all whole numbers are floats."""
 _LEAST_SHARE = 0.7
 """
 Share of the rows of a table that must be cylinders: published scans whose neighbouring cylinders
@@ -52,49 +59,59 @@ def _is_text(head: str) -> bool:
     lines = [line for line in head.splitlines() if line.strip()][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
-    rows = [[finite(cell) for cell in _cells(line)] for line in lines]
-    full = [[each for each in row if each is not None] for row in rows if None not in row]
-    if any(len(row) >= _UNMISTAKABLE for row in full):
-        return True
-    narrow = [row for row in full if len(row) >= _LEAST_COLUMNS]
-    return bool(narrow) and all(_are_cylinders(np.array([row])) for row in narrow)
+    narrow = []
+    for line in lines:
+        row = list(map(finite, _cells(line)))
+        if None in row or len(row) < _LEAST_COLUMNS:
+            continue
+        if len(row) >= _UNMISTAKABLE:
+            return True
+        narrow.append(np.array([row], dtype=np.float64))
+    return bool(narrow) and all(map(_are_cylinders, narrow))
 
 
 def _are_cylinders(table: Floats) -> bool:
     """Whether the columns of an array, (n, 9 to 15), are those of cylinders."""
-    axes = np.linalg.norm(table[:, 5:8], axis=1)
-    is_axis = (np.abs(axes - 1.0) < _UNIT_ERROR) | ((axes == 0.0) & (table[:, 1] == 0.0))
-    sizes, parent = table[:, :2], table[:, 8]
-    is_whole = (parent == np.round(parent)) & (parent >= -1)
-    return bool((is_axis & is_whole & (sizes >= 0.0).all(axis=1)).mean() > _LEAST_SHARE)
+    radius, length = table[:, 0], table[:, 1]
+    axis_length = np.linalg.norm(table[:, 5:8], axis=1)
+    parent = table[:, 8]
+    is_unit = np.abs(axis_length - 1.0) < _UNIT_ERROR
+    is_point = (axis_length == 0.0) & (length == 0.0)
+    has_size = (radius >= 0.0) & (length >= 0.0)
+    has_parent = (parent == np.round(parent)) & (parent >= -1)
+    are_cylinders = (is_unit | is_point) & has_size & has_parent
+    return bool(are_cylinders.mean() > _LEAST_SHARE)
 
 
 def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     """Every cylinder model of a MATLAB file."""
-    source, trees = str(path), list[Cylinders]()
+    source = str(path)
     variables = read_mat(path)
     tables = [(name, _table(name, model, source)) for name, model in _models(variables)]
-    for name, table in tables or _arrays(variables):
-        labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
-        trees.append(_cylinders(table, labels, source))
-        trees[-1].name = name
-    if not trees:
+    if not tables:
+        tables = list(_arrays(variables))
+    if not tables:
         what = "no struct with a field 'cylinder', and no array of cylinders"
         cure = 'save the QSM struct of TreeQSM, or its columns as an array of 9 to 15'
         raise FormatError(what, where=source, cure=cure)
+    trees = []
+    for name, table in tables:
+        labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
+        tree = _cylinders(table, labels, source)
+        tree.name = name
+        trees.append(tree)
     return tuple(trees)
 
 
 def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     """Read the cylinders of a TreeQSM text."""
     lines = read_lines(path)
-    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
-    if lines and all(finite(cell) is None for cell in _cells(lines[first])):
-        lines[first] = ''
-    names = [f'{field}{"xyz"[axis] * (width > 1)}' for field, width in _FIELDS.items()
-             for axis in range(width)]  # fmt: skip
-    head = next((line for line in lines if line.strip()), '')
-    if len(_cells(head)) == _LEAST_COLUMNS:
+    filled = [number for number, line in enumerate(lines) if line.strip()]
+    if filled and all(finite(cell) is None for cell in _cells(lines[filled[0]])):
+        header = filled.pop(0)
+        lines[header] = ''
+    names = list(_COLUMNS)
+    if filled and len(_cells(lines[filled[0]])) == _LEAST_COLUMNS:
         names.remove('extension')
     table = parse_columns(lines, str(path), names, _cells)
     values = table.strict(names)
@@ -112,11 +129,11 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Name and columns of each cylinder model, by field name."""
     for name, value in variables.items():
         structs = _structs(value)
-        several = len(structs) > 1
         for number, struct in enumerate(structs, start=1):
-            inside = next(iter(_structs(struct.get('cylinder', struct))), {})
-            if 'radius' in inside:
-                yield (f'{name}{number}' if several else name), inside
+            models = _structs(struct.get('cylinder', struct))
+            if models and 'radius' in models[0]:
+                own_name = f'{name}{number}' if len(structs) > 1 else name
+                yield own_name, models[0]
 
 
 def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
@@ -126,17 +143,23 @@ def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
             inside = {f'{name}{number}': each for number, each in enumerate(value.values(), 1)}
             yield from _arrays(inside)
         elif isinstance(value, np.ndarray) and value.ndim == 2:
-            for table in (value, value.T):
-                is_wide = _LEAST_COLUMNS <= table.shape[1] <= _MOST_COLUMNS
-                if is_wide and len(table) and _are_cylinders(table.astype(np.float64)):
-                    yield name, table[:, :10].astype(np.float64)
+            for array in (value, value.T):
+                n_rows, n_columns = array.shape
+                if n_rows == 0 or not _LEAST_COLUMNS <= n_columns <= _MOST_COLUMNS:
+                    continue
+                table = array.astype(np.float64)
+                if _are_cylinders(table):
+                    yield name, table[:, : len(_COLUMNS)]
                     break
 
 
 def _structs(value: Any) -> list[dict[str, Any]]:
-    if isinstance(value, dict) and all(name.isdigit() for name in value):
+    """Return the structs of an array of them, whose names are numbers, or a struct alone."""
+    if not isinstance(value, dict):
+        return []
+    if all(name.isdigit() for name in value):
         return [each for each in value.values() if isinstance(each, dict)]
-    return [value] if isinstance(value, dict) else []
+    return [value]
 
 
 def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
@@ -161,32 +184,41 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     """Cylinders from the columns, (n, 9 or 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders', where=source)
-    length, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
-    is_whole = (relatives == np.round(relatives)) & (np.abs(relatives) <= 2**53)
-    for row, column in np.argwhere(~is_whole)[:1]:
-        what = f'parent or extension is {relatives[row, column]:g}, not a whole number'
-        raise FormatError(what, where=labels[row])
-    first = 1 + int(relatives[:, 0].min())
-    if first not in (0, 1):
-        raise FormatError(
-            f'the smallest parent is {first - 1}',
-            where=source,
-            cure='the root has parent 0, or -1',
-        )
-    family = relatives.astype(np.int64) - first
-    above = family[:, 0]
-    norm = np.linalg.norm(axes, axis=1)
-    for row in np.flatnonzero((norm == 0.0) & (length > 0.0))[:1]:
+    length = table[:, 1]
+    start = table[:, 2:5]
+    axis = table[:, 5:8]
+    parent, *extension = _indices(table[:, 8:10], labels, source)
+    axis_length = np.linalg.norm(axis, axis=1)
+    for row in np.flatnonzero((axis_length == 0.0) & (length > 0.0))[:1]:
         raise FormatError('an axis without direction', where=labels[row])
-    ends = starts + (length / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
-    continues = None
-    if family.shape[1] > 1:
-        after = family[:, 1]
-        valid = (after >= 0) & (after < len(table))
-        continues = np.zeros(len(table), dtype=np.bool_)
-        child = after[valid]
-        continues[child[above[child] == np.flatnonzero(valid)]] = True
-    return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
+    axis_length[axis_length == 0.0] = 1.0  # of cylinders without length
+    end = start + (length / axis_length)[:, None] * axis
+    continues = _continues(parent, extension[0]) if extension else None
+    diameter = 2.0 * table[:, [0, 0]]
+    return Cylinders(start, end, diameter, parent, continues, labels)
+
+
+def _indices(numbers: Floats, labels: list[str], source: str) -> Ints:
+    """Rows of parents and extensions, (1 or 2, n), from their numbers, (n, 1 or 2)."""
+    is_whole = (numbers == np.round(numbers)) & (np.abs(numbers) <= _LARGEST_WHOLE)
+    for row, column in np.argwhere(~is_whole)[:1]:
+        what = f'parent or extension is {numbers[row, column]:g}, not a whole number'
+        raise FormatError(what, where=labels[row])
+    root = int(numbers[:, 0].min())
+    if root not in (-1, 0):
+        cure = 'the root has parent 0, or -1'
+        raise FormatError(f'the smallest parent is {root}', where=source, cure=cure)
+    first = root + 1
+    return (numbers.astype(np.int64) - first).T
+
+
+def _continues(parent: Ints, extension: Ints) -> NDArray[np.bool_]:
+    """Whether each cylinder is the extension of its parent."""
+    continues = np.zeros(len(parent), dtype=np.bool_)
+    for row, after in enumerate(extension.tolist()):
+        if 0 <= after < len(parent) and parent[after] == row:
+            continues[after] = True
+    return continues
 
 
 MAT = FileFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
