@@ -31,12 +31,14 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.growth.stem_by_age import stem_of_age
 from tree_sway.core.leaves.calendar import is_bare, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_named
-from tree_sway.errors import ParameterError
+from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.motion.tree_history import refuse_no_history, TreeHistory
 from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files
@@ -74,6 +76,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_sensor_argument(parser)
     add_live_motion_arguments(parser)
     add_learn_argument(parser)
+    parser.add_argument(
+        '--history', metavar='FILE',
+        help='table (.csv) to which a row is added every ten minutes: wind, residuals, the band, '
+        'and what the sensors have told',
+    )  # fmt: skip
     add_page_arguments(parser)
 
 
@@ -89,6 +96,9 @@ def run(arguments: argparse.Namespace) -> int:
         what = f'motion sensors on a stand of {arguments.stand} trees'
         raise ParameterError(what, where='--motion', cure='leave --stand out')
     with sensing(arguments) as motion:
+        if arguments.history is not None:
+            with inside('--history'):
+                refuse_no_history(arguments.history, list(motion.places))
         if arguments.sensor is None:
             return _serve(arguments, settings, opened_wind(arguments), motion)
         with listening(arguments) as wind:
@@ -104,6 +114,7 @@ def _serve(
     if len(motion.places) == 1:
         choices = replace(choices, sensor_at=next(iter(motion.places.values())))
     learning = Learning(arguments.learn)
+    history = TreeHistory(arguments.history, list(motion.places)) if arguments.history else None
     session = Session(
         lambda wanted: build_scene(wanted, arguments, motion.places, learning),
         choices,
@@ -131,6 +142,7 @@ def _serve(
             while session.failure is None and time.monotonic() < end:
                 session.wait(min(0.1, end - time.monotonic()))
                 learning.keep(session.simulator)
+                _note_history(history, session.simulator)
         except KeyboardInterrupt:
             print('', file=sys.stderr)
         finally:
@@ -140,6 +152,16 @@ def _serve(
         if session.failure is not None:
             raise session.failure
     return 0
+
+
+def _note_history(history: TreeHistory | None, simulator: Simulator) -> None:
+    """Note the state of an observed tree; say if its row cannot be written."""
+    if history is None or not isinstance(simulator, ObservedTree):
+        return
+    try:
+        history.note(simulator, time.monotonic())
+    except FormatError as error:
+        print(f'warning: {error}', file=sys.stderr)
 
 
 def _critical_winds(

@@ -31,6 +31,7 @@ from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.motion.tree_history import TreeHistory
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
@@ -144,6 +145,10 @@ class SolverNode(TreeSwayNode):
         places = places_of(self.values['imu'])
         settings = self._settings()
         self._learned: LearnedFile | None = None
+        self._history: TreeHistory | None = None
+        if self.values['history']:
+            with inside('history'):
+                self._history = TreeHistory(self.values['history'], list(places))
         if self.values['learn']:
             source = self._open_learned(source, places)
         self.simulator: Simulator = (
@@ -184,10 +189,13 @@ class SolverNode(TreeSwayNode):
 
     def _keep_learned(self) -> None:
         """Write what the sensors have told about the tree, if anything is new."""
-        if self._learned is None or not isinstance(self.simulator, ObservedTree):
+        if not isinstance(self.simulator, ObservedTree):
             return
         try:
-            self._learned.keep(self.simulator)
+            if self._learned is not None:
+                self._learned.keep(self.simulator)
+            if self._history is not None:
+                self._history.note(self.simulator, time.monotonic())
         except FormatError as error:
             self.get_logger().warning(str(error))
 
@@ -203,7 +211,7 @@ class SolverNode(TreeSwayNode):
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):
             self._imu = ImuIntake(self, self._run, self.simulator, self._arrived.set)
-        if self._learned is not None:
+        if self._learned is not None or self._history is not None:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self.create_timer(_KEPT_EVERY, self._keep_learned, clock=steady)
         self._hands = ControlPanel(pull=self._pull)

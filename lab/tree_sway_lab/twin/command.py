@@ -79,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add('--model', default='full', help='model of the true tree (%(default)s)')
     add('--without-band', action='store_true', help='us/step is that of the sensors alone')
-    add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz')
+    add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
     for name, what in (
         ('wood', 'modulus of the true tree over the model'),
         ('damping', 'damping ratio of the true tree over the model'),

@@ -40,11 +40,15 @@ class SimulatedSensor:
     lateness
         Time in [s] by which its stamps are late.
     jitter
-        Largest error of a stamp in [s].
+        Largest error of a stamp beyond that in [s].
     lost
         Share of the samples that are lost [-].
     bias
         Bias of its angular rate in [rad/s].
+    tilt
+        Bias of its acceleration, that of gravity by a sensor tilted by it, [rad].
+    askew
+        Rotation from the axes of its angular rate to those of its acceleration.
 
     """
 
@@ -57,6 +61,8 @@ class SimulatedSensor:
     jitter: float = 0.0
     lost: float = 0.0
     bias: float = 0.0
+    tilt: float = 0.0
+    askew: Rotation = field(default_factory=Rotation.identity)
 
     def measured(self, poses: Floats, dt: float, rng: np.random.Generator) -> SensedMotion:
         """
@@ -69,13 +75,14 @@ class SimulatedSensor:
         moved[1:-1] = np.diff(poses[:, :3], 2, axis=0) / dt**2
         spun[1:-1] = (turn[:-2].inv() * turn[2:]).as_rotvec() / (2.0 * dt)
         felt = turn.inv().apply(moved + np.array([0.0, 0.0, GRAVITY * self.has_gravity]))
+        felt[:, 0] += GRAVITY * np.sin(self.tilt)
+        spun = self.askew.inv().apply(spun)
         ends = dt * np.arange(1, len(poses) + 1)
         time = np.arange(dt, ends[-1] + 1e-9, 1.0 / self.rate)
-        time += self.jitter * rng.uniform(-1.0, 1.0, len(time))
-        time = np.sort(time)
         noisy = []
         for rows, deviation in ((felt, self.noise), (spun + self.bias, self.rate_noise)):
             read = np.stack([np.interp(time, ends, column) for column in rows.T], axis=1)
             noisy.append(read + deviation * rng.normal(size=read.shape))
         kept = rng.uniform(size=len(time)) >= self.lost
-        return SensedMotion(time[kept] + self.lateness, noisy[0][kept], noisy[1][kept])
+        stamps = time + self.lateness + self.jitter * rng.uniform(-1.0, 1.0, len(time))
+        return SensedMotion(stamps[kept], noisy[0][kept], noisy[1][kept])

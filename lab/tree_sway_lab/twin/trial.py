@@ -22,8 +22,21 @@ from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import DT, TrueMotion
 
-FAULTY = SimulatedSensor(rate=25.0, lateness=0.075, jitter=0.01, lost=0.05, bias=0.0087)
-"""A sensor of 25 Hz, 75 ms late with jitter, that loses 5 % and is biased by 0.5 deg/s."""
+FAULTY = SimulatedSensor(
+    rate=25.0,
+    jitter=0.01,
+    lost=0.05,
+    bias=np.deg2rad(0.5),
+    tilt=np.deg2rad(0.5),
+    askew=Rotation.from_euler('xyz', [3.0, -3.0, 2.6], degrees=True),
+)
+"""
+A sensor of 25 Hz that loses 5 %, with stamps that err by 10 ms, biased by 0.5 deg/s and 0.5
+degrees, the axes of its angular rate 5 degrees askew to those of its acceleration.
+"""
+
+_LATEST = 0.15
+"""Faulty sensors have stamps that are late by up to this time [s], each by its own."""
 
 _TRUSTED = 0.45
 """Share of a record from which on it is scored: before, mountings are found."""
@@ -135,7 +148,9 @@ def twin_score(
     rng = np.random.default_rng(seed)
     for name in places:
         mount = Rotation.random(rng=rng)
-        sensor = replace(FAULTY if faulty else SimulatedSensor(), mount=mount)
+        sensor = SimulatedSensor(mount=mount)
+        if faulty:
+            sensor = replace(FAULTY, mount=mount, lateness=rng.uniform(0.0, _LATEST))
         motion = sensor.measured(true.poses[name], DT, rng)
         twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))

@@ -158,6 +158,11 @@ class Observer:
         """Stiffness and damping by the sensors, over those of the model as it was made."""
         return self._fit.found
 
+    @property
+    def mean_wind(self) -> float:
+        """Mean speed of the wind in the last half minute in [m/s]."""
+        return self._unknown.mean_speed
+
     def sway_change(self, sensor: int) -> SwayChange | None:
         """Return how the sway has changed by a sensor; None before there is a past."""
         return self._fit.watches[sensor].change
