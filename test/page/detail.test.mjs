@@ -9,6 +9,7 @@ import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js"
 import { leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
 import { barkMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
+import { cornersAbout } from "../../tree_sway/page/static/drawing/impostors.js";
 import { Quality } from "../../tree_sway/page/static/drawing/quality.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
 import { average, lookOf } from "../../tree_sway/page/static/drawing/looks.js";
@@ -210,6 +211,50 @@ test("a slow page leaves out pixels first, then frames, then grass, and leaves l
   run(60, 120);
   assert.equal(quality.density, 1);
   assert.ok(quality.hasGrass);
+});
+
+test("more pixels that cost frames are taken back, and tried again later each time", () => {
+  const quality = new Quality();
+  let [now, tries, wasCoarse] = [0, 0, false];
+  const count = (fps) => quality.count((now += 1000 / fps), true);
+  for (let i = 0; i < 30 * 20; i++) count(30);
+  assert.equal(quality.fineness, 0.5);
+  const begun = now;
+  while (now < begun + 120e3) {
+    const isCoarse = quality.fineness === 0.5;
+    tries += Number(wasCoarse && !isCoarse);
+    wasCoarse = isCoarse;
+    count(isCoarse ? 60 : 54);
+  }
+  assert.ok(tries > 1 && tries < 6);
+  assert.equal(quality.fineness, 0.5);
+});
+
+test("without a graphics unit a card is a triangle that stays in as much of the picture", () => {
+  const few = 2 * kind.arrays.leaf_segment.length;
+  const [square, plain] = [false, true].map((isPlain) => leafMesh(shape, placer.order, few, few, false, isPlain).mesh);
+  assert.equal(plain.indices.length, square.indices.length / 2);
+  assert.equal(plain.values.length, (3 / 4) * square.values.length);
+  const areaOf = ({ values }, v) => {
+    const [a, b, c] = [0, 1, 2].map((k) => Array.from(values.slice(19 * (v + k) + 17, 19 * (v + k) + 19)));
+    return 0.5 * Math.abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+  };
+  assert.ok(Math.abs(areaOf(plain, 0) - 2 * areaOf(square, 0)) < 0.05);
+});
+
+test("the picture of a far tree is cut to the tree, and never reaches into another", () => {
+  const points = new Uint8Array(4 * 1024 * 256);
+  // Narrow at its top, a cone in each of the pictures.
+  for (let y = 10; y < 120; y++) {
+    const wide = 50 * (1 - y / 125);
+    for (let x = 0; x < 1024; x++) {
+      if (Math.abs((x % 128) - 63.5) < wide) points[4 * (1024 * y + x) + 3] = 255;
+    }
+  }
+  const [[left, low], [right], [, high], [end]] = cornersAbout(points);
+  assert.ok(left === -right && right <= 1 && end < 0.3 * right);
+  assert.ok(low < 2 * (10 / 128) - 1 + 1e-6 && high > 2 * (119 / 128) - 1);
+  assert.deepEqual(cornersAbout(points.fill(0))[0], [-1, -1]);
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {

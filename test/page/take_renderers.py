@@ -22,7 +22,7 @@ import tempfile
 
 from aiohttp import web
 from PIL import Image
-from take_gallery import HEIGHTS, take, View
+from take_gallery import GROWN, take, View
 from tree_sway_lab.browser import Browser
 
 from tree_sway.commands import cli
@@ -85,7 +85,7 @@ def main() -> None:
 def _row(key: str, folder: Path, blender: str | None) -> list[Image.Image]:
     """Return the pictures of one tree."""
     tree = folder / f'{key}.yaml'
-    cli.main(['grow', key, '--height', str(HEIGHTS[key]), '-o', str(tree)])
+    cli.main(['grow', '--species', key, *GROWN[key].split(), '-o', str(tree)])
     for suffix in ('.glb', '.usdz'):
         cli.main(['convert', str(tree), '-o', str(tree.with_suffix(suffix))])
     shot = folder / f'{key}.jpg'

@@ -45,6 +45,7 @@ class Live:
             Control('mean_speed', 'Wind', 9.0, 'Mean', 'm/s', 0.0, 40.0),
             Control('bearing_to', 'Blows to', 0.5 * np.pi, 'Blows to', 'rad', -6.3, 6.3),
             Control('tolerance', 'Tolerance', 0.005, 'Of auto', 'm', 1e-6, 10.0),
+            Control('age', 'Age', 0.0, 'In years', minimum=0.0, maximum=150.0),
             Control('pause', 'Pause', False),
             Control('reset', 'Reset', None, is_action=True),
         )
@@ -433,6 +434,25 @@ def test_a_link_keeps_camera_and_view(live: Live, visit: Visit) -> None:
     visit(script)
 
 
+def test_the_slider_of_age_says_whose_stem_a_tree_has(live: Live, visit: Visit) -> None:
+    usual = live.session.choices
+    field = "document.getElementById('control-age').closest('.field')"
+
+    async def script(browser: Browser) -> None:
+        live.session.choices = Choices('oak')
+        whose = 'Stem of Quercus rubra (McPherson 2016)'
+        await browser.until(f"!{field}.hidden && {field}.textContent.includes('{whose}')")
+        described = "document.getElementById('control-age').ariaDescribedByElements"
+        assert await browser.run(f'{described}[0].textContent') == whose
+        live.session.choices = Choices('willow')
+        await browser.until(f"{field}.querySelector('small').textContent === ''")
+
+    try:
+        visit(script)
+    finally:
+        live.session.choices = usual
+
+
 def test_it_speaks_languages(visit: Visit) -> None:
     async def script(browser: Browser) -> None:
         for language, title in (('de', 'Steuerung'), ('fr', 'Réglages'), ('ja', '操作')):
@@ -544,6 +564,17 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
          'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
          'Highest tip: -1.2 to +2.0 cm from this for 80 % of trees that yours may be\n'
          'First frequency 0.663 Hz, learned in 0.45 h of sway'),
+        ({'change': {'is_change': True, 'percent': 7.64, 'hours': 1.33}, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
+         'Sways differently: frequencies +7.6 % from those of 1.3 h; a limb lost, loose roots, '
+         'ice or leaves?'),
+        ({'change': {'is_change': False, 'percent': -0.62, 'hours': 0.5}, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
+         'Sways as before: frequencies -0.6 % from those of 0.5 h'),
         ({'explained': 1.0, 'sensors': [
             {'name': 'phyphox at 3.2', 'in_use': False,
              'problem': 'phyphox at 3.2: no sample yet'}]},

@@ -16,6 +16,7 @@ import threading
 import time
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.growth.stem_by_age import stem_growth
 from tree_sway.core.leaves.calendar import SUMMER
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.observe.observed_tree import ObservedTree
@@ -93,6 +94,12 @@ class Choices:
     def is_grown(self) -> bool:
         """Whether the tree is a species to grow, neither built in nor a file."""
         return self.tree in species_keys() and self.tree not in BUILTIN_TREES
+
+    @property
+    def stem_of(self) -> str:
+        """The species whose stem a tree of an age is grown with; empty if none was measured."""
+        curve = stem_growth().get(self.tree) if self.is_grown else None
+        return curve.measured if curve else ''
 
 
 Build = Callable[[Choices], Simulator]
@@ -238,6 +245,7 @@ class Session:
             'trees': len(self._scene.names),
             'wind': self.wind.source,
             'is_grown': self.choices.is_grown,
+            'stem_of': self.choices.stem_of,
             'building': self._builder.wanted is not None,
         }
         if isinstance(self.wind, RecordedWind):
@@ -269,6 +277,13 @@ class Session:
             'sensors': sensors,
             'explained': round(simulator.explained, 3),
         }
+        if changes := simulator.sway_changes:
+            first = max(changes, key=lambda each: each.size)
+            told['change'] = {
+                'is_change': first.is_change,
+                'percent': round(100.0 * (first.ratio - 1.0), 1),
+                'hours': round(first.hours, 2),
+            }
         if (learned := simulator.learned) is not None:
             told['learned'] = {
                 'frequency': round(learned.frequency, 4),

@@ -163,6 +163,7 @@ function showPanel() {
 function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
   for (const name of ["height", "age", "individual", "month"]) panel.hide(name, !status.is_grown);
+  panel.note("age", status.stem_of ? `${word("age_of")} ${status.stem_of} (McPherson 2016)` : "");
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */

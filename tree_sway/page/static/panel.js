@@ -94,6 +94,16 @@ export class Panel {
     if (field) field.hidden = isHidden;
   }
 
+  /** Say something under a control. @param {string} name @param {string} text */
+  note(name, text) {
+    const field = this.form.querySelector(`#control-${name}`)?.closest(".field");
+    if (!field) return;
+    const note = field.querySelector("small") ?? field.appendChild(made("small", { id: `note-${name}` }));
+    if (note.textContent === text) return;
+    note.textContent = text;
+    field.querySelector("input")?.setAttribute("aria-describedby", note.id);
+  }
+
   /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
   _field(control, input, shown = made("span", {})) {
     return made("div", { className: "field" }, made("label", { htmlFor: input.id }, nameOf(control), shown), input);

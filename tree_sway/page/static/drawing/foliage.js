@@ -36,6 +36,9 @@ const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers of a corner of a card. */
 const PER_CORNER = 19;
 const ORIGIN = [0, 0, 0];
+/** Corners of a picture, along it and across from its middle; and of a triangle of the same area that has most of a shoot. */
+const SQUARE = [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]];
+const TRIANGLE = [[-0.3, 0], [1, -0.77], [1, 0.77]];
 /** How low a card ends over its length. */
 const BOW = 0.1;
 
@@ -45,9 +48,10 @@ const BOW = 0.1;
  * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
  * cards of the whole crown, whose area fewer have as well @param {boolean} isFlowering
+ * @param {boolean} [isPlain] whether a large card is one triangle, as each costs much without a graphics unit
  * @returns {{mesh: Mesh, along: number, isSpread: boolean}} and how many leaves the picture is long, and whether
  * its cards are small ones */
-export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering) {
+export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering, isPlain = false) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1, isSpread: false };
   const random = seeded();
@@ -65,7 +69,8 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
   const lowest = look.is_potted ? -Infinity : rest[2] + browsed;
   const soil = look.is_potted ? -Infinity : rest[2] + 0.6 * browsed;
-  const values = [];
+  const values = /** @type {number[]} */ ([]);
+  const faces = /** @type {number[][]} */ ([]);
   for (const shoot of shoots) {
     const p = STRIDE * hung[shoot.segment];
     const slot = placer.slots[hung[shoot.segment]];
@@ -76,13 +81,14 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
     if (isSpread && shoot.at[2] < lowest) continue;
     const centre = turned(back, shoot.at.map((a, c) => a - rest[p + c]));
     for (let card = 0; card < shoot.share * each; card++) {
-      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card);
-      const end = inFrame(axes, corners[2].place, shoot.size, shoot.at);
+      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? TRIANGLE : SQUARE);
+      const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards);
       const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
+      faces.push(facesFrom(values.length / PER_CORNER, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
         values.push(slot);
         values.push(...inFrame(own, place, shoot.size, centre));
@@ -92,6 +98,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
       }
       if (share === 1 || open < CANDLE_OPEN || card % PER_CANDLE) continue;
       // It stands upright, whatever the shoot does.
+      faces.push(...[0, 4].map((more) => facesFrom(values.length / PER_CORNER + more, 4)));
       const foot = end.map((each, c) => each - rest[p + c]);
       for (const { place, normal, u, v } of candle) {
         values.push(slot, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
@@ -99,9 +106,11 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
       }
     }
   }
-  const firsts = mixed(Array.from({ length: values.length / (4 * PER_CORNER) }, (_, card) => 4 * card), random);
-  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along, isSpread };
+  return { mesh: { values, indices: mixed(faces, random).flat() }, along, isSpread };
 }
+
+/** Triangles of a card from its first vertex. @param {number} v @param {number} corners */
+const facesFrom = (v, corners) => (corners === 3 ? [v, v + 1, v + 2] : [v, v + 1, v + 2, v, v + 2, v + 3]);
 
 /** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes
  * @param {number[]} vector @param {number} scale @param {number[]} [from] */
@@ -191,16 +200,16 @@ function cardsOf(look, mean, clusters, cards, most) {
 
 /** Corners of a card of a cluster of size 1: place, motion, normal, in the frame of the cluster; in the picture.
  * `tree_mesh.py` has those of files. @param {Spray} spray @param {number} phase of the flutter of the cluster,
- * which makes each of its own @param {number} card its number */
-function cardCorners({ length, width, rolls }, phase, card) {
+ * which makes each of its own @param {number} card its number @param {number[][]} outline its corners in the picture */
+function cardCorners({ length, width, rolls }, phase, card, outline) {
   const roll = rolls[card % rolls.length] + 0.3 * Math.sin(phase);
   const yaw = 0.35 * Math.sin(phase + 2.1 * card);
   const around = [0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2)];
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
   return cornersOf((u, v) => {
     const place = hanging(turned(around, [u * length, v * width * length, 0]), BOW * length * u);
-    return { place, swing: [0, -place[2], place[1]], normal: turned(around, [0.3 * u, 1.2 * v, 1]) };
-  });
+    return { place, swing: [0, -place[2], place[1]], normal: turned(around, [0.3 * u, 1.2 * Math.min(0.5, Math.max(-0.5, v)), 1]) };
+  }, outline);
 }
 
 /** The same of a small card, anywhere in the cluster: it points away from where the shoot leaves its twig, and
@@ -237,9 +246,9 @@ function candleCorners(long) {
   })));
 }
 
-/** Four corners of a picture. @template T @param {(u: number, v: number) => T} at */
-function cornersOf(at) {
-  return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
+/** Corners of a picture. @template T @param {(u: number, v: number) => T} at @param {number[][]} [outline] of them */
+function cornersOf(at, outline = SQUARE) {
+  return outline.map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
 }
 
 /** From where the shoot leaves its twig, and lower. @param {number[]} place @param {number} low */

@@ -4,7 +4,10 @@
 
 import { textOf } from "../files.js";
 import { PLACES } from "./gusts.js";
+import { seeded } from "./looks.js";
 
+/** Size of a picture up to which it has no rim, which would be much of it [px]. */
+const SMALLEST_RIM = 32;
 /** Texels in a row of poses. */
 const TEXTURE_WIDTH = 1024;
 /** Directions that an impostor is baked from: round the tree, and elevations [rad]. */
@@ -147,6 +150,50 @@ export function pictureTexture(gl, picture, isPlain, isTile = false) {
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false); // poses are no colours
   gl.generateMipmap(gl.TEXTURE_2D);
   return texture;
+}
+
+/** A picture of leaves whose points are drawn or left out by their alpha alone, a quarter or more: at each size
+ * it has the chance by which `leaf.fragment` decides, and colours that are not times alpha. Cards may reach beyond
+ * it: nothing is on its rim.
+ * @param {GL} gl @param {HTMLCanvasElement} picture, a square */
+export function chosenTexture(gl, picture) {
+  const random = seeded(5);
+  gl.activeTexture(gl.TEXTURE2);
+  const texture = textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
+  const context = /** @type {CanvasRenderingContext2D} */ (picture.getContext("2d"));
+  let size = picture.width;
+  let points = Float32Array.from(context.getImageData(0, 0, size, size).data, (each) => each / 255);
+  for (let i = 0; i < points.length; i += 4) {
+    for (let c = 0; c < 3; c++) points[i + c] *= points[i + 3];
+  }
+  for (let level = 0; size >= 1; level++) {
+    const own = new Uint8Array(points.length);
+    const share = Math.min(1, Math.max(0, 0.3 * (Math.log2(180 * Math.SQRT2 / size))));
+    for (let i = 0; i < points.length; i += 4) {
+      const alpha = points[i + 3];
+      const least = 0.5 + share * (0.04 + 0.55 * random() - 0.5);
+      for (let c = 0; c < 3; c++) own[i + c] = Math.round(255 * Math.min(1, points[i + c] / Math.max(alpha, 0.01)));
+      const place = i / 4;
+      const isRim = size > SMALLEST_RIM && [place % size, Math.floor(place / size)].some((at) => at === 0 || at === size - 1);
+      own[i + 3] = isRim ? 0 : Math.round(255 * Math.min(1, (0.25 * alpha) / least));
+    }
+    gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, own);
+    points = halved(points, size);
+    size >>= 1;
+  }
+  return texture;
+}
+
+/** A square picture of four numbers a point at half its size. @param {Float32Array} points
+ * @param {number} size of it */
+function halved(points, size) {
+  const half = size >> 1;
+  const row = 4 * size;
+  return Float32Array.from({ length: 4 * half * half }, (_, i) => {
+    const [x, y, c] = [(i >> 2) % half, Math.floor((i >> 2) / half), i & 3];
+    const at = 2 * y * row + 8 * x + c;
+    return 0.25 * (points[at] + points[at + 4] + points[at + row] + points[at + row + 4]);
+  });
 }
 
 /** Rows of a texture with the poses of segments, of two texels each. @param {number} segments */

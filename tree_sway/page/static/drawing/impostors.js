@@ -8,6 +8,8 @@ import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } fr
 const TILE = 128;
 /** Numbers of each corner of a picture. */
 const PER_CORNER = 13;
+/** Alpha from which a point of the picture is drawn, of 255; and how much wider its upper end may be than its lower one. */
+const [SEEN, SLOPES] = [0.35 * 255, [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9]];
 
 export class Impostor {
   /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
@@ -23,6 +25,7 @@ export class Impostor {
     this.tip = Array.from(rest.subarray(STRIDE * highest, STRIDE * highest + 3));
     this._moves = movesOf(shape, this.tip);
     this.count = 0;
+    this._corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     this._values = new Float32Array(4 * PER_CORNER * most);
@@ -55,6 +58,9 @@ export class Impostor {
         paint(Float32Array.from(camera), [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
       }
     });
+    const points = new Uint8Array(4 * ROUND * TILE * ELEVATIONS.length * TILE);
+    gl.readPixels(0, 0, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA, gl.UNSIGNED_BYTE, points);
+    this._corners = cornersAbout(points);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
@@ -62,7 +68,7 @@ export class Impostor {
    * @param {number[]} paint its colour, and the share of it */
   add(place, row, number, paint) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    const corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]].flatMap((at) => [...at, ...place, row, tint, ...paint]);
+    const corners = this._corners.flatMap((at) => [...at, ...place, row, tint, ...paint]);
     this._values.set(corners, 4 * PER_CORNER * this.count++);
   }
 
@@ -94,6 +100,26 @@ export class Impostor {
     this._atlas.release();
     discard(this.gl, this._part);
   }
+}
+
+/** The smallest trapezium in a picture that has the tree from every side: nothing beside it costs time.
+ * @param {Uint8Array} points of the pictures of all sides @returns {number[][]} its corners, -1 to 1 */
+export function cornersAbout(points) {
+  const widest = new Float32Array(TILE);
+  for (let i = 3; i < points.length; i += 4) {
+    if (points[i] < SEEN) continue;
+    const [x, y] = [(i >> 2) % TILE, Math.floor((i >> 2) / (ROUND * TILE)) % TILE];
+    widest[y] = Math.max(widest[y], Math.abs((2 * x + 1) / TILE - 1) + 1 / TILE);
+  }
+  const rows = Array.from(widest, (wide, y) => ({ wide, y: (2 * y + 1) / TILE - 1 })).filter(({ wide }) => wide);
+  if (!rows.length) return [[-1, -1], [1, -1], [-1, 1], [1, 1]];
+  const [low, high] = [rows[0].y - 1 / TILE, rows[rows.length - 1].y + 1 / TILE];
+  const fits = SLOPES.map((slope) => {
+    const middle = Math.max(...rows.map(({ wide, y }) => wide - slope * y));
+    return { slope, middle, area: middle + 0.5 * slope * (low + high) };
+  }).filter(({ slope, middle }) => !slope || Math.max(middle + slope * low, middle + slope * high) <= 1);
+  const { slope, middle } = fits.reduce((best, each) => (each.area < best.area ? each : best));
+  return [low, high].flatMap((y) => [-1, 1].map((side) => [side * (middle + slope * y), y]));
 }
 
 /** How the top moves per unit of coordinates, by three numbers. @param {Shape} shape @param {number[]} tip */

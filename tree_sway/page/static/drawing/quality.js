@@ -3,9 +3,11 @@
 /** What is left out without a graphics unit: first pixels, then frames, then grass, then leaves; none grows
  * instead. */
 
-/** Frames per second that fewer pixels are drawn for, and those that leaves are left out for. */
-const WANTED = 55;
-const LEAST = 24;
+/** Frames per second from which more pixels are tried, those that they must leave, those that fewer are drawn for,
+ * and those that leaves are left out for. */
+const [WANTED, KEPT, FEW, LEAST] = [58.5, 57, 50, 24];
+/** Until more pixels are tried, and at most after they cost frames [ms]. */
+const [PATIENCE, LONGEST] = [8000, 120000];
 /** Pixels per pixel of the page each way, and the share of leaves, that are drawn at least. */
 export const COARSEST = 0.5;
 const THINNEST = 0.4;
@@ -21,6 +23,9 @@ export class Quality {
   _frames = 0;
   _last = 0;
   _coarsened = 0;
+  _patience = PATIENCE;
+  /** Fineness before more pixels were tried; 0 once they are kept. */
+  _before = 0;
 
   /** Count a frame. @param {number} now [ms] @param {boolean} hasLeaves whether there are any to leave out */
   count(now, hasLeaves) {
@@ -31,7 +36,15 @@ export class Quality {
     if (now - this._from < 700 || this._frames < 3) return;
     const fps = (1000 * this._frames) / (now - this._from);
     [this._from, this._frames] = [now, 0];
-    if (fps < WANTED - 5 && this.fineness > COARSEST) {
+    if (this._before && fps < KEPT) {
+      this.fineness = this._before;
+      this._patience = Math.min(LONGEST, 2 * this._patience);
+      this._coarsened = now;
+      this._before = 0;
+      return;
+    }
+    this._before = 0;
+    if (fps < FEW && this.fineness > COARSEST) {
       this.fineness = Math.max(COARSEST, this.fineness * Math.max(0.75, Math.sqrt(fps / WANTED)));
       this._coarsened = now;
     } else if (fps < LEAST && this.hasGrass) {
@@ -39,11 +52,12 @@ export class Quality {
       this._coarsened = now;
     } else if (fps < LEAST && hasLeaves) {
       this.density = Math.max(THINNEST, this.density * 0.85);
-    } else if (fps > WANTED && this.fineness < 1 && now - this._coarsened > 8000) {
+    } else if (fps > WANTED && this.fineness < 1 && now - this._coarsened > this._patience) {
+      this._before = this.fineness;
       this.fineness = Math.min(1, this.fineness * 1.06);
     } else if (fps > LEAST + 6 && this.density < 1) {
       this.density = Math.min(1, this.density * 1.05);
-    } else if (fps > LEAST + 6 && !this.hasGrass && now - this._coarsened > 8000) {
+    } else if (fps > LEAST + 6 && !this.hasGrass && now - this._coarsened > PATIENCE) {
       this.hasGrass = true;
     }
   }

@@ -8,7 +8,7 @@ import { Backdrop, DAYLIGHT } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
 import {
-  canvasTexture, contextOf, depthTexture, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
+  canvasTexture, chosenTexture, contextOf, depthTexture, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
   uploadPoses, use,
 } from "./gl.js";
 import { Grass } from "./grass.js";
@@ -87,7 +87,7 @@ export class Scene {
     this._chosenFor = "";
     const names = /** @type {const} */ (["bark", "leaf", "impostor", "solid", "shadow", "grass"]);
     this._programs = /** @type {Record<typeof names[number], Program>} */ (
-      Object.fromEntries(names.map((name) => [name, program(gl, name)])));
+      Object.fromEntries(names.map((name) => [name, program(gl, this.isSlow && name === "leaf" ? "plainleaf" : name)])));
     this.grass = new Grass(gl, this._programs.grass, this.isSlow);
     this._backdrop = new Backdrop(gl, this.isSlow);
     /** Of leaves, painted when they are first used. */
@@ -303,12 +303,13 @@ export class Scene {
     const { bark: barkColor, twig: twigColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
     const isFlowering = this.isFlowering && !this.isAutumn;
-    const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering);
+    const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering, this.isSlow);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
     const isClump = isSpread || along >= CLUMP;
     const name = `${number} ${along} ${isClump}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump }), this.isSlow));
+      const picture = leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump });
+      pictures.set(name, this.isSlow ? chosenTexture(gl, picture) : pictureTexture(gl, picture, false));
     }
     const relief = look.bark_pattern;
     const foot = feet[relief] ?? { color: barkColor, height: 0 };

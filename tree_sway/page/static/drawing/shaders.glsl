@@ -166,16 +166,19 @@ uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
 uniform float gloss; // light thrown back like a mirror, 0 of a dull leaf
+uniform vec3 horizon;
+uniform vec4 paint; // colour of the whole tree, and its share
 out vec2 at;
-out vec4 lit; // light, and clearness
-out float shine;
-out float edge; // cosine between the card and the view; 0 where one looks along it
+out vec3 lit; // what the colour of the leaf is multiplied by
+out vec3 veil; // what is added: haze, paint, light that is thrown back like a mirror
+out float edge; // share of the picture that is seen; a card that is seen along itself would be a blade
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
   vec4 q = texel(row + 1u);
   edge = 1.0;
-  shine = 0.0;
+  lit = vec3(0.0);
+  veil = vec3(1.0);
   // Nearly the hyperbolic tangent of the law, for less.
   float wild = law.x * speed * speed / (flutter.x * law.y);
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
@@ -188,7 +191,7 @@ void main() {
   // The crown is round: its leaves are lit as its surface is, more than as each lies.
   vec3 n = normalize(0.8 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
-  edge = dot(flat_, back);
+  edge = min(1.0, 0.3 + 3.0 * abs(dot(flat_, back)));
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
@@ -200,23 +203,23 @@ void main() {
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
   // No two leaves have the same green.
   vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
-  if (gloss > 0.0) shine = gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0);
-  lit.rgb = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
-  lit.a = clearness(p);
+  float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
+  vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
+  float clear = clearness(p);
+  lit = clear * (1.0 - paint.a) * whole;
+  veil = (1.0 - clear) * horizon + clear * (paint.a * paint.rgb * whole + shine);
 }
 
-#part leaf.fragment lit
+#part leaf.fragment
+precision highp float;
 in vec2 at;
-in vec4 lit;
-in float shine;
+in vec3 lit;
+in vec3 veil;
 in float edge;
 uniform sampler2D leaves;
-uniform vec4 paint;
+out vec4 color;
 void main() {
   vec4 leaf = texture(leaves, at);
-  float own = leaf.a;
-  // Seen along itself a card would be a blade.
-  leaf.a *= min(1.0, 0.3 + 3.0 * abs(edge));
   // Further away a point of the picture holds leaves and the gaps between them: it is drawn or left out by
   // chance, so that no card is seen as one large leaf.
   float small = length(fwidth(at));
@@ -224,9 +227,25 @@ void main() {
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
   float mixed = max(0.0, log2(180.0 * small));
   float least = mix(0.5, 0.15 + 0.6 * chance, min(1.0, 0.3 * mixed));
-  if (leaf.a < least) discard;
-  vec3 base = mix(leaf.rgb / max(own, 0.01), paint.rgb, paint.a);
-  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb + shine, lit.a), 1.0);
+  if (edge * leaf.a < least) discard;
+  color = vec4(leaf.rgb / max(leaf.a, 0.01) * lit + veil, 1.0);
+}
+
+#part plainleaf.vertex leaf.vertex
+
+#part plainleaf.fragment
+// The same of a picture that has been made for it (`chosenTexture`): every operation counts on a processor.
+precision mediump float;
+in vec2 at;
+in vec3 lit;
+in vec3 veil;
+in float edge;
+uniform sampler2D leaves;
+out vec4 color;
+void main() {
+  vec4 leaf = texture(leaves, at);
+  if (edge * leaf.a < 0.25) discard;
+  color = vec4(leaf.rgb * lit + veil, 1.0);
 }
 
 #part impostor.vertex seen
@@ -234,13 +253,15 @@ void main() {
 uniform highp sampler2D poses;
 uniform vec4 box; // half its width, middle height and full height [m], shade at the foot
 uniform vec3 restTip;
+uniform vec3 horizon;
 in vec2 corner;
 in vec4 stand; // x, y, z, yaw
 in vec3 tree; // scale, row of the top, tint
 in vec4 paint;
 out vec2 at;
-out vec4 lit;
-out vec4 painted;
+out vec3 lit; // what the picture is multiplied by
+out vec3 veil; // the haze that is added
+out vec3 painted; // colour of paint, which has the light and shade of the picture
 void main() {
   float scale = tree.x;
   vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
@@ -262,24 +283,28 @@ void main() {
   p += (tip - stand.xyz - scale * rest) * h * h;
   vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
-  lit.rgb = shade * (sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
-  lit.a = clearness(p);
-  painted = paint;
+  float clear = clearness(p);
+  vec3 whole = clear * shade * (sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
+  bool isShadow = shadowArea.w > 0.5;
+  lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
+  veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
+  painted = isShadow ? vec3(0.0) : 2.2 * paint.a * paint.rgb * whole;
   at = (vec2(mod(view, float(ROUND)), high) + 0.5 + 0.5 * corner) / vec2(float(ROUND), 2.0);
   gl_Position = seen(p);
 }
 
-#part impostor.fragment lit
+#part impostor.fragment
+precision mediump float;
 in vec2 at;
-in vec4 lit;
-in vec4 painted;
+in vec3 lit;
+in vec3 veil;
+in vec3 painted;
 uniform sampler2D picture;
+out vec4 color;
 void main() {
   vec4 seen = texture(picture, at);
   if (seen.a < 0.35) discard;
-  // The picture keeps its light and shade.
-  vec3 base = mix(seen.rgb, painted.rgb * min(1.0, 2.2 * max(seen.r, seen.g)), painted.a);
-  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb, lit.a), 1.0);
+  color = vec4(seen.rgb * lit + max(seen.r, seen.g) * painted + veil, 1.0);
 }
 
 #part solid.vertex seen
