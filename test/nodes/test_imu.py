@@ -17,6 +17,7 @@ from tree_sway_lab.twin.simulated_sensor import SimulatedSensor  # noqa: E402
 
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
+from tree_sway.core.observe.sway_watch import SwayChange  # noqa: E402
 from tree_sway.core.observe.tree_fit import TreeFit  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
@@ -28,7 +29,7 @@ from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
-from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
+from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
 
 
@@ -177,6 +178,20 @@ def test_a_status_says_how_sure_the_motion_is():
         status.values[f'highest tip of 80 % of trees, {end} [m]'] for end in ('from', 'to')
     )
     assert low < 0.0 < high < 0.5
+
+
+def test_a_status_warns_of_a_tree_that_sways_differently(monkeypatch):
+    twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
+    intake = ImuIntake(IntakeNode(), Run(twin, 60.0), twin, arrived=lambda: None)
+    (track,) = twin.observer.tracks
+    monkeypatch.setattr(track, 'in_use', True)
+    (watch,) = twin.observer._fit.watches
+    for ratio, level, said in ((1.01, OK, 'as before'), (1.2, WARN, 'differently')):
+        monkeypatch.setattr(watch, 'change', SwayChange(ratio, 0.02, 3.0))
+        (status,) = intake.statuses()
+        assert status.level == level
+        assert f'sways {said}' in status.message
+        assert status.values['frequencies over those before'] == ratio
 
 
 def test_the_solver_keeps_what_was_learned(compose, tmp_path, tree_file, monkeypatch):

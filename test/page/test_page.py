@@ -564,6 +564,17 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
          'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
          'Highest tip: -1.2 to +2.0 cm from this for 80 % of trees that yours may be\n'
          'First frequency 0.663 Hz, learned in 0.45 h of sway'),
+        ({'change': {'is_change': True, 'percent': 7.64, 'hours': 1.33}, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
+         'Sways differently: frequencies +7.6 % from those of 1.3 h; a limb lost, loose roots, '
+         'ice or leaves?'),
+        ({'change': {'is_change': False, 'percent': -0.62, 'hours': 0.5}, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
+         'Sways as before: frequencies -0.6 % from those of 0.5 h'),
         ({'explained': 1.0, 'sensors': [
             {'name': 'phyphox at 3.2', 'in_use': False,
              'problem': 'phyphox at 3.2: no sample yet'}]},

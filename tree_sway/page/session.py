@@ -277,6 +277,13 @@ class Session:
             'sensors': sensors,
             'explained': round(simulator.explained, 3),
         }
+        if changes := simulator.sway_changes:
+            first = max(changes, key=lambda each: each.size)
+            told['change'] = {
+                'is_change': first.is_change,
+                'percent': round(100.0 * (first.ratio - 1.0), 1),
+                'hours': round(first.hours, 2),
+            }
         if (learned := simulator.learned) is not None:
             told['learned'] = {
                 'frequency': round(learned.frequency, 4),

@@ -167,6 +167,13 @@ class ImuIntake:
             if apart and not counts.accepted:
                 problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
                 problem += 'synchronise the clocks (chrony, or that of micro-ROS)'
-            text = problem or '; '.join(('the tree follows it', *each.notes))
-            found.append(Status(f'imu {each.name}', WARN if problem else OK, text, values))
+            said = ['the tree follows it', *each.notes]
+            has_changed = False
+            if each.change is not None:
+                said.append(str(each.change))
+                has_changed = each.change.is_change
+                values['frequencies over those before'] = round(each.change.ratio, 3)
+                values['their error by chance and wind'] = round(each.change.error, 3)
+            level = WARN if problem or has_changed else OK
+            found.append(Status(f'imu {each.name}', level, problem or '; '.join(said), values))
         return found

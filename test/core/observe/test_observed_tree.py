@@ -203,6 +203,17 @@ def test_a_sensor_that_comes_loose_is_refused() -> None:
     np.testing.assert_allclose(tips[after], alone().tips[after], atol=5e-3)
 
 
+def test_a_sensor_that_is_knocked_is_followed_again() -> None:
+    motion = measured()
+    shaken = motion.acceleration.copy()
+    knocked = (motion.time > 46.0) & (motion.time < 46.5)
+    shaken[knocked] *= np.where(np.arange(knocked.sum()) % 2, 8.0, -8.0)[:, None]
+    twin, *_ = replayed(motion._replace(acceleration=shaken))
+    assert twin.sensors['phone'].counts.disagreed == 1
+    assert not twin.problems
+    assert twin.observer.is_active
+
+
 @pytest.mark.parametrize('size', [30.0, 300.0])
 def test_a_hostile_sensor_does_not_move_the_tree_beyond_its_storms(size: float) -> None:
     motion = measured()

@@ -69,6 +69,15 @@ def test_a_second_run_goes_on_from_the_first(
     assert LearnedFile(path, open_tree(path)).opened.learned == again.learned
 
 
+def test_a_change_of_the_sway_is_in_the_file(tmp_path: Path) -> None:
+    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    LearnedFile(str(path), opened).write(replace(ONCE, change='it sways differently: +9 %'))
+    again = open_tree(str(path))
+    assert again.notes[-1].endswith('; it sways differently: +9 %')
+    assert again.learned is not None
+    assert replace(ONCE, hours=2.0).after(again.learned).change == 'it sways differently: +9 %'
+
+
 def test_a_file_that_would_be_lost_is_refused(tmp_path: Path) -> None:
     opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
     LearnedFile(str(path), opened).write(ONCE)

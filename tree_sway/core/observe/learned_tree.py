@@ -30,6 +30,8 @@ class LearnedTree:
         Factor on the drag [-].
     hours
         Length of the motion that it was learned from in [h].
+    change
+        How its sway has changed meanwhile, a sentence; empty if it has not.
 
     """
 
@@ -41,6 +43,7 @@ class LearnedTree:
     drag: float
     drag_error: float
     hours: float
+    change: str = ''
 
     def __str__(self) -> str:
         """Return it as a sentence."""
@@ -52,6 +55,7 @@ class LearnedTree:
             f'times that before +- {100.0 * self.stiffness_error:.1f} %, damping '
             f'{self.damping:.3g} times +- {100.0 * self.damping_error:.0f} %, drag '
             f'{self.drag:.3g} times +- {100.0 * self.drag_error:.0f} %'
+            f'{"; " + self.change if self.change else ""}'
         )
 
     def after(self, before: LearnedTree | None) -> LearnedTree:
@@ -78,6 +82,7 @@ class LearnedTree:
             drag_error=share * self.drag_error + (1.0 - share) * before.drag_error,
             frequency=before.frequency * (self.frequency / before.frequency) ** share,
             hours=before.hours + self.hours,
+            change=self.change or before.change,
         )
 
     def over(self, before: LearnedTree | None) -> LearnedTree:

@@ -36,6 +36,7 @@ from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
 from tree_sway.core.observe.sensor_track import SensorTrack
+from tree_sway.core.observe.sway_watch import SwayChange
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.setup.prepare import prepared
@@ -455,6 +456,12 @@ class ObservedTree(SwaySimulator):
         return self._explained.share
 
     @property
+    def sway_changes(self) -> list[SwayChange]:
+        """How the sway has changed by each sensor that has a past."""
+        found = [self.observer.sway_change(k) for k in range(len(self.sensors))]
+        return [each for each in found if each is not None]
+
+    @property
     def learned(self) -> LearnedTree | None:
         """What the sensors have told, in earlier runs too; None before the first fit of all."""
         fit = self.observer.fit
@@ -475,6 +482,7 @@ class ObservedTree(SwaySimulator):
             fit.drag,
             fit.drag_error,
             fit.hours,
+            next((str(each) for each in self.sway_changes if each.is_change), ''),
         )
         return found.after(self.learned_before)
 

@@ -34,6 +34,7 @@ from tree_sway.core.observe.sensor_readings import LATEST, SensorReadings
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.smoothed_motion import SMOOTHED_LAG, SmoothedMotion
 from tree_sway.core.observe.steady_filter import SteadyFilter
+from tree_sway.core.observe.sway_watch import SwayChange
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 from tree_sway.core.setup.one_thread import one_thread
@@ -157,6 +158,10 @@ class Observer:
         """Stiffness and damping by the sensors, over those of the model as it was made."""
         return self._fit.found
 
+    def sway_change(self, sensor: int) -> SwayChange | None:
+        """Return how the sway has changed by a sensor; None before there is a past."""
+        return self._fit.watches[sensor].change
+
     @property
     def is_active(self) -> bool:
         """Whether a sensor is in use."""
@@ -199,6 +204,7 @@ class Observer:
             self._moved[:] = 0.0
             self._smooth_unmeasured()
         elif not self.is_active:
+            self._judge_refused(self._estimate)
             self._fade(self._estimate, n_periods)
             self._smooth_unmeasured()
         else:

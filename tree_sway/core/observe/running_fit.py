@@ -14,6 +14,7 @@ from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.sensor_spectrum import SensorSpectrum
 from tree_sway.core.observe.sensor_track import as_felt, sensed_rows, SensorTrack
+from tree_sway.core.observe.sway_watch import SwayWatch
 from tree_sway.core.observe.tree_fit import fits, N_CANDIDATES, Spectrum, TreeFit
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
@@ -59,6 +60,8 @@ class RunningFit:
         n = unknown.count
         self._places = [each.first(n) for each in places]
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
+        self.watches = [SwayWatch(each) for each in self._spectra]
+        """Whether the tree still sways as it did, by each sensor."""
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
         self._work: LaterWork[TreeFit] | None = None
         self._fit_after = _FIRST
@@ -67,11 +70,13 @@ class RunningFit:
 
     def add(self, is_known: NDArray[np.bool_], forces: Floats) -> None:
         """Add the motion that sensors have just read, and the forces of the wind then, (n,)."""
-        for known, track, spectrum in zip(
-            is_known.tolist(), self._tracks, self._spectra, strict=True
+        wind = self._unknown.mean_speed
+        for known, track, spectrum, watch in zip(
+            is_known.tolist(), self._tracks, self._spectra, self.watches, strict=True
         ):
             if known:
                 spectrum.add(track.fitted_motion, forces)
+                watch.note(wind, track.fitted_noise)
             elif track.is_silent:
                 spectrum.skip()
 

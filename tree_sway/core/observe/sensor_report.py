@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tree_sway.core.observe.motion_sensor import SensorCounts
 from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.sway_watch import SwayChange
 
 
 class SensorReport(NamedTuple):
@@ -33,6 +34,8 @@ class SensorReport(NamedTuple):
         Counts of its samples.
     notes
         What was recognised, such as a unit.
+    change
+        Whether the tree sways as it did; None before there is a past.
 
     """
 
@@ -44,6 +47,7 @@ class SensorReport(NamedTuple):
     late: float
     counts: SensorCounts
     notes: tuple[str, ...]
+    change: SwayChange | None = None
 
     @property
     def refused(self) -> int:
@@ -54,7 +58,7 @@ class SensorReport(NamedTuple):
 def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
     """Report every sensor of a tree."""
     found = []
-    for track in twin.observer.tracks:
+    for number, track in enumerate(twin.observer.tracks):
         sensor, alignment = track.sensor, track.alignment
         found.append(
             SensorReport(
@@ -66,6 +70,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 twin.observer.late * twin.period,
                 sensor.counts,
                 () if alignment is None else alignment.notes,
+                twin.observer.sway_change(number),
             )
         )
     return found

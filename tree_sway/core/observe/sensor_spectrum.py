@@ -9,6 +9,8 @@ series at each step.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +27,18 @@ _CYCLES = 40.0
 
 _HALVES = 3
 """Halves that are kept: the last stretch, and the half that is being measured."""
+
+
+class SpectrumBlock(NamedTuple):
+    """
+    Power of east and north together at each frequency, (f,), a sum over ``n_stretches``.
+
+    ``seconds`` is the length of the motion in [s].
+    """
+
+    power: Floats
+    n_stretches: int
+    seconds: float
 
 
 class SensorSpectrum:
@@ -58,6 +72,7 @@ class SensorSpectrum:
         n_frequencies = len(self.circular)
         self._waves = np.zeros((n_frequencies, n_series), dtype=np.complex128)
         self._products = np.zeros((n_frequencies, n_series, n_series), dtype=np.complex128)
+        self._block = SpectrumBlock(np.zeros(n_frequencies), 0, 0.0)
         self._now, self._filled, self._n_halves = 0, 0, 0
         self._next = n_series
         self.count = 0
@@ -102,6 +117,24 @@ class SensorSpectrum:
         if self._next == len(self._series):
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
             self.count += 1
+
+    @property
+    def block_seconds(self) -> float:
+        """Length of the motion of the present block in [s]."""
+        return self.seconds - self._block.seconds
+
+    def end_block(self) -> SpectrumBlock:
+        """Begin a block; return the last one."""
+        before = self._block
+        power = self._products[:, (0, 1), (0, 1)].real.sum(axis=1)
+        self._block = SpectrumBlock(power, self.count, self.seconds)
+        return SpectrumBlock(
+            power - before.power, self.count - before.n_stretches, self.seconds - before.seconds
+        )
+
+    def power_of_noise(self, deviation: float) -> float:
+        """Power of white noise of a deviation, east and north, at each frequency of a stretch."""
+        return 2.0 * deviation**2 * float(np.square(self._window).sum())
 
     @property
     def products(self) -> Waves:

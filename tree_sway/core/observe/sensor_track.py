@@ -29,11 +29,14 @@ LEARNING = 20.0
 
 _LATER, _MEMORY = 1.4, 600.0
 _ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
+_KNOCKED = 5.0
 _AVERAGED = 2.0
 _COMPARED = 1.0
 """Periods of the first sway over which motions are averaged to find a mounting."""
 
 _DISAGREES, _AGREES = 16.0, 4.0
+_LARGEST = 1e4
+"""Largest square that counts: after a knock a sensor is to be followed again in half a minute."""
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
@@ -264,6 +267,11 @@ class SensorTrack:
         return self._moved[self._fitted_rows]
 
     @property
+    def fitted_noise(self) -> float:
+        """Standard deviation of the noise of this quantity in each sample, as measured."""
+        return 0.0 if self.alignment is None else float(self.alignment.noise[self.fitted])
+
+    @property
     def is_silent(self) -> bool:
         """Whether there was no sample for longer than networks delay one."""
         return self._absent > _ABSENT_AFTER
@@ -333,6 +341,11 @@ class SensorTrack:
         self.bias[:] = mounting.bias
         self.in_use = not self._is_refused
 
+    def _forget_motion(self) -> None:
+        """Find the mounting next from what comes after a knock: it may have moved the sensor."""
+        self._count = -round(_KNOCKED / self._dt)
+        self._next_fit = round(LEARNING / self._dt)
+
     def judge(self, size: float) -> None:
         """
         Judge a sensor by the mean square of its innovations over that expected.
@@ -340,10 +353,11 @@ class SensorTrack:
         One whose innovations stay far beyond those expected is refused until they are not.
         """
         share = self._dt / _AVERAGED
-        self.excess += share * (min(size, 1e6) - self.excess)
+        self.excess += share * (min(size, _LARGEST) - self.excess)
         if self.excess > _DISAGREES and not self._is_refused:
             self._is_refused, self.in_use, self._agreed = True, False, 0.0
             self.sensor.counts.disagreed += 1
+            self._forget_motion()
         elif self._is_refused:
             self._agreed = self._agreed + self._dt if self.excess < _AGREES else 0.0
             if self._agreed > _TRUSTED_AGAIN:

@@ -46,7 +46,9 @@ class UnknownMotion:
     def __init__(self, simulator: SwaySimulator, count: int, dt: float) -> None:
         self._simulator, self._dt, self.count = simulator, dt, count
         self._steps = 0
-        self._mean_speed = self._found_for = 0.0
+        self.mean_speed = 0.0
+        """Mean speed of the wind in [m/s]."""
+        self._found_for = 0.0
         self._found: Disturbance | None = None
         self._law: SwayLaw | None = None
         self._variance: Floats | None = None
@@ -83,17 +85,17 @@ class UnknownMotion:
         share = self._dt / _RECENT
         if self._steps * self._dt < _RECENT:
             share = 1.0 / self._steps
-        self._mean_speed += share * (speed - self._mean_speed)
+        self.mean_speed += share * (speed - self.mean_speed)
 
     @property
     def is_outdated(self) -> bool:
         """Whether the law was found for another wind, or for another tree."""
-        speed = max(self._mean_speed, _SLOWEST_WIND)
+        speed = max(self.mean_speed, _SLOWEST_WIND)
         return not 1.0 / _OTHER_WIND < speed / max(self._found_for, 1e-9) < _OTHER_WIND
 
     def find(self) -> SwayLaw:
         """Find the law in the present wind."""
-        speed = max(self._mean_speed, _SLOWEST_WIND)
+        speed = max(self.mean_speed, _SLOWEST_WIND)
         self._found_for, n = speed, self.count
         found = self._found = disturbance(self._simulator, speed, n)
         self._found_with = (self.all_stiffness, self.all_damping)

@@ -276,6 +276,7 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
             f'{100.0 * fit.stiffness_error:.0f} %, its damping {fit.damping:.2g} times, within '
             f'{100.0 * fit.damping_error:.0f} %'
         )
+    found += [str(each) for each in simulator.sway_changes]
     return tuple(found)
 
 

@@ -187,6 +187,8 @@ interface MotionStatus {
   explained?: number;
   /** First frequency [Hz] that the sensors told, and the length of the motion behind it [h]. */
   learned?: { frequency: number; hours: number };
+  /** Frequencies of the sway over those of some hours [h] before, less 1 [%]. */
+  change?: { is_change: boolean; percent: number; hours: number };
   /** Where 80 % of the trees are that the real one may be, less the motion of the highest tip [m]. */
   band?: number[];
 }

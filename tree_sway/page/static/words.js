@@ -77,7 +77,7 @@ export function windSource(source = {}) {
 
 /** What motion sensors on the real tree tell, a line for each. @param {MotionStatus} [motion] of a status */
 export function motionSensors(motion) {
-  const { sensors, explained, learned, band } = motion ?? {};
+  const { sensors, explained, learned, band, change } = motion ?? {};
   if (!Array.isArray(sensors)) return "";
   if (!sensors.length) return word("sensor_elsewhere");
   const lines = sensors.slice(0, 8).map(({ name = "", in_use, problem = "", rate, residual, notes = [] }) => {
@@ -93,6 +93,11 @@ export function motionSensors(motion) {
   if (isFollowed && band) lines.push(word("band_of_tip", (100 * band[0]).toFixed(1), (100 * band[1]).toFixed(1)));
   if (learned && Number.isFinite(learned.frequency) && Number.isFinite(learned.hours)) {
     lines.push(word("learned_sway", learned.frequency.toFixed(3), learned.hours.toFixed(2)));
+  }
+  if (change && Number.isFinite(change.percent) && Number.isFinite(change.hours)) {
+    const { is_change, percent, hours } = change;
+    const signed = `${percent > 0 ? "+" : ""}${percent.toFixed(1)}`;
+    lines.push(word(is_change ? "sways_differently" : "sways_as_before", signed, hours.toFixed(1)));
   }
   return lines.join("\n");
 }
