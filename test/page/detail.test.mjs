@@ -6,7 +6,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
-import { leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
+import { deadWood, leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
 import { barkMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { cornersAbout } from "../../tree_sway/page/static/drawing/impostors.js";
@@ -124,6 +124,17 @@ function edges({ values, indices }, i) {
   const [a, b, c] = [0, 1, 2].map((k) => values.slice(19 * indices[6 * i + k] + 1).slice(0, 3));
   return [Math.hypot(...b.map((x, k) => x - a[k])), Math.hypot(...c.map((x, k) => x - b[k]))];
 }
+
+test("stubs below the crown of a conifer bear no needles, short limbs at its top do", () => {
+  // A stem of two parts, a stub with a twig on it, a long limb, and a short one above.
+  const arrays = {
+    branch_first: Int32Array.of(0, 2, 3, 4, 5, 6, 7), branch_parent: Int32Array.of(-1, 0, 0, 2, 0, 1),
+    segment_length: Float32Array.of(5, 5, 5, 0.2, 0.1, 4, 0.2),
+  };
+  const rest = new Float32Array(8 * 7);
+  [0, 5, 15, 5, 5, 7, 12].forEach((high, segment) => (rest[8 * segment + 2] = high));
+  assert.deepEqual([...deadWood({ arrays, nBranches: 6 }, rest, 2)], [3, 4]);
+});
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
   const { leaf_size: size } = lookOf(kind);

@@ -45,7 +45,8 @@ new GLTFLoader().load("/tree.glb", ({ scene: tree, animations }) => {
   const mixer = new THREE.AnimationMixer(tree);
   for (const each of animations) mixer.clipAction(each).play();
   mixer.setTime(2);
-  const box = new THREE.Box3().setFromObject(tree);
+  tree.updateMatrixWorld(true);
+  const box = new THREE.Box3().setFromObject(tree, true);
   const [size, middle] = [box.getSize(new THREE.Vector3()), box.getCenter(new THREE.Vector3())];
   const far = 2.2 * Math.max(size.x, size.y, size.z);
   const camera = new THREE.PerspectiveCamera(36, 1, 0.1, 1000);

@@ -23,17 +23,25 @@ def quaternions_of(vectors: Floats) -> Floats:
     return quaternions
 
 
+_CYCLES = (0, 1, 2), (1, 2, 0), (2, 0, 1)
+"""Cyclic permutations of the axes x, y, z."""
+
+
 def cross(a: Floats, b: Floats) -> Floats:
-    """Cross products of vectors."""
-    # Three times as fast as `np.cross`, and most of the time of a small tree.
-    product = np.empty((len(a), 3))
-    for axis in range(3):
-        one = (axis + 1) % 3
-        two = (axis + 2) % 3
-        forward = a[:, one] * b[:, two]
-        backward = a[:, two] * b[:, one]
-        np.subtract(forward, backward, out=product[:, axis])
+    """Cross products along the last axis, (..., 3); numpy's own take several times as long."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for i, j, k in _CYCLES:
+        product[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
     return product
+
+
+def cross_matrix(v: Floats) -> Floats:
+    """Matrices whose product with a vector is the cross product of v with it, (..., 3, 3)."""
+    matrix = np.zeros((*v.shape, 3))
+    for i, j, k in _CYCLES:
+        matrix[..., k, j] = v[..., i]
+        matrix[..., j, k] = -v[..., i]
+    return matrix
 
 
 def quaternion_product(a: Floats, b: Floats) -> Floats:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
-from tree_sway.core.beams.beam import cross_matrix
 from tree_sway.core.kernel import fused
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.numpy_rotation import cross_matrix
 from tree_sway.core.rotation import turned
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup import branch_loads

@@ -327,6 +327,17 @@ def test_what_a_file_lacks_is_named(name: str, tmp_path: Path) -> None:
         read_wind(path)
 
 
+STATE = {'entity_id': 'sensor.wind_speed', 'state': '3', 'last_changed': '2024-03-01T00:00:00Z'}
+
+
+@pytest.mark.parametrize('damaged', [[[STATE, 5]], [7, [STATE]], [[{**STATE, 'entity_id': {}}]]])
+def test_states_that_are_damaged_are_refused(damaged: list, tmp_path: Path) -> None:
+    path = tmp_path / 'states.json'
+    path.write_text(json.dumps(damaged), encoding='utf-8')
+    with pytest.raises(FormatError, match='direction'):
+        read_wind(path)
+
+
 def test_a_speed_alone_blows_from_where_it_is_told(tmp_path: Path) -> None:
     path = tmp_path / 'cup.csv'
     path.write_text('time,wind speed (km/h)\n0,36\n1,18\n')

@@ -27,6 +27,7 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.numpy_rotation import cross
 
 N_POINTS = 5
 
@@ -104,13 +105,20 @@ class BranchBeam(Batched):
         """Set the quadrature points along the branch."""
         step = end - start
         many = step.shape[:-2]
+        n_segments = step.shape[-2]
+        # Panels, and the points on them, are at the same places along the segments of a batch.
         seats = np.round(children.segment + children.fraction, _DIGITS)
-        cuts = np.unique(np.concatenate([np.arange(step.shape[-2] + 1.0), seats]))
+        cuts = np.unique(np.concatenate([np.arange(n_segments + 1.0), seats]))
         on = cuts[:-1].astype(np.int64)
+        share = np.diff(cuts)
+        along = (cuts[:-1] - on)[:, None] + share[:, None] * _POINTS
+        foot = np.searchsorted(cuts, seats)
+        self._feet = foot.tolist()
+        self._first_panels = np.searchsorted(on, np.arange(n_segments)).tolist()
+
         self.segment: Ints = np.broadcast_to(on, (*many, len(on)))
         """Segment of each panel, (p,)."""
         self.segment_length: Floats = np.linalg.norm(step, axis=-1)
-        share = np.diff(cuts)
         self.length = share * self.segment_length[..., on]
         """Length of each panel in [m], (p,)."""
         self.tangent = (step / self.segment_length[..., None])[..., on, :]
@@ -118,32 +126,30 @@ class BranchBeam(Batched):
         np.cumsum(self.length, axis=-1, out=self.node[..., 1:])
         self.place = self.node[..., :-1, None] + self.length[..., None] * _POINTS
         self.weight = self.length[..., None] * _WEIGHTS
-        along = (cuts[:-1] - on)[:, None] + share[:, None] * _POINTS
-        thinning = (tip_diameter - base_diameter)[..., on, None]
-        self.diameter = base_diameter[..., on, None] + thinning * along
         self.point = start[..., on, None, :] + step[..., on, None, :] * along[..., None]
-        foot = np.searchsorted(cuts, seats)
-        # The same for every branch of a batch.
-        self._feet = foot.tolist()
-        self._first_panels = np.searchsorted(on, np.arange(step.shape[-2])).tolist()
+
         self.child_place = self.node[..., foot]
-        self.child_point = (
-            start[..., children.segment, :]
-            + children.fraction[:, None] * step[..., children.segment, :]
-        )
+        on_segment = step[..., children.segment, :] * children.fraction[:, None]
+        self.child_point = start[..., children.segment, :] + on_segment
+
         chord = end[..., -1, :] - start[..., 0, :]
         self.chord_length = np.linalg.norm(chord, axis=-1)
         length = self.chord_length[..., None]
-        self.chord = np.where(length > 1e-9, chord, self.tangent[..., 0, :])
-        self.chord /= np.where(length > 1e-9, length, 1.0)
+        has_chord = length > 1e-9
+        self.chord = np.where(has_chord, chord, self.tangent[..., 0, :])
+        self.chord /= np.where(has_chord, length, 1.0)
+
+        thinning = (tip_diameter - base_diameter)[..., on, None]
+        self.diameter = base_diameter[..., on, None] + thinning * along
         self.second_moment = np.pi / 64.0 * self.diameter**4
         """
         Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the
         first panel, with the spring in series.
         """
         if root_compliance > 0.0:
-            own = 1.0 / self.second_moment[..., 0, 0] + root_compliance / self.weight[..., 0, 0]
-            self.second_moment[..., 0, 0] = 1.0 / own
+            own_compliance = 1.0 / self.second_moment[..., 0, 0]
+            spring = root_compliance / self.weight[..., 0, 0]
+            self.second_moment[..., 0, 0] = 1.0 / (own_compliance + spring)
 
     @property
     def area(self) -> Floats:
@@ -153,9 +159,11 @@ class BranchBeam(Batched):
     def integral(self, values: Floats) -> Floats:
         """Integral over the branch of values at the points, (p, 5, ...)."""
         tail = values.shape[self.weight.ndim :]
-        flat = values.reshape(*self.weight.shape[:-2], -1, math.prod(tail))
-        total: Floats = self.weight.reshape(*flat.shape[:-2], 1, -1) @ flat
-        return total.reshape((*flat.shape[:-2], *tail))
+        many = self.weight.shape[:-2]
+        flat = values.reshape(*many, -1, math.prod(tail))
+        weights = self.weight.reshape(*many, 1, -1)
+        total: Floats = weights @ flat
+        return total.reshape((*many, *tail))
 
     def from_base(self, values: Floats) -> tuple[Floats, Floats, Floats]:
         """
@@ -186,7 +194,8 @@ class BranchBeam(Batched):
     def over_segments(self, values: Floats) -> Floats:
         """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
         tail = values.shape[self.weight.ndim :]
-        panels = (self.weight[..., None] * values.reshape(*self.weight.shape, -1)).sum(axis=-2)
+        flat = values.reshape(*self.weight.shape, -1)
+        panels = (self.weight[..., None] * flat).sum(axis=-2)
         sums = np.add.reduceat(panels, self._first_panels, axis=-2)
         sums /= self.segment_length[..., None]
         return np.asarray(sums.reshape(*self.segment_length.shape, *tail))
@@ -391,21 +400,3 @@ def many_of(ones: Sequence[_Kind], **others: Any) -> _Kind:
     for name, value in others.items():
         setattr(many, name, value)
     return many
-
-
-def cross(a: Floats, b: Floats) -> Floats:
-    """Cross product along the last axis, (..., 3); numpy's own costs eight times as much."""
-    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
-    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    x = ay * bz - az * by
-    out = np.empty((*x.shape, 3))
-    out[..., 0], out[..., 1], out[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
-    return out
-
-
-def cross_matrix(v: Floats) -> Floats:
-    """Matrix whose product with a vector is the cross product of v with it, (..., 3, 3)."""
-    out = np.zeros((*v.shape, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        out[..., k, j], out[..., j, k] = v[..., i], -v[..., i]
-    return out

@@ -20,14 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.beams.beam import (
-    Attachments,
-    BranchBeam,
-    cross,
-    one_of,
-    RotationField,
-    SlopeShape,
-)
+from tree_sway.core.beams.beam import Attachments, BranchBeam, one_of, RotationField, SlopeShape
 from tree_sway.core.beams.bent_by_weight import bent_by_weight
 from tree_sway.core.beams.field_counts import (
     BRANCH_PAIRS_OF_SMALL,
@@ -43,6 +36,7 @@ from tree_sway.core.beams.field_counts import (
 from tree_sway.core.beams.shape_fields import shaken_energies, shape_fields
 from tree_sway.core.beams.subtree_sums import SubtreeSums
 from tree_sway.core.beams.wind_on_branch import wind_loads
+from tree_sway.core.numpy_rotation import cross
 from tree_sway.core.tree.tree import Tree
 
 _LEFT = 1e-4

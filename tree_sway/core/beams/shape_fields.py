@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.beams.beam import BranchBeam, cross, RotationField, SlopeShape
+from tree_sway.core.beams.beam import BranchBeam, RotationField, SlopeShape
 from tree_sway.core.beams.energy_basis import energy_vector, EnergyBasis
 from tree_sway.core.beams.field_counts import (
     MOST_IN_ALL,
@@ -29,6 +29,7 @@ from tree_sway.core.beams.field_counts import (
 )
 from tree_sway.core.beams.opposed_limbs import missed_curvatures
 from tree_sway.core.beams.subtree_sums import SubtreeSums
+from tree_sway.core.numpy_rotation import cross
 
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])

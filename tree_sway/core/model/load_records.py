@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.beams.beam import cross
 from tree_sway.core.model.load_layouts import load_layout
 from tree_sway.core.model.records import WIDTH, zeros_in_lines
+from tree_sway.core.numpy_rotation import cross
 
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:

@@ -22,23 +22,23 @@ _FINEST_SCALE = 0.01
 
 def placements_of(scene: PlacedTrees, tables: Ints, profile: WindProfile) -> Records:
     """Make the records of a scene's trees by their tables, (t,)."""
-    places = np.array([(each.x, each.y, each.z, each.yaw, each.scale) for each in scene.trees])
+    places = np.array([(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in scene.trees])
     return placement_records(tables, places, _wind_ratios(scene, profile))
 
 
 def kind_heights(scene: PlacedTrees) -> Floats:
     """Heights of the trees' kinds in [m], (t,)."""
-    return np.array([each.tree.height for each in scene.kinds])[scene.kind_numbers]
+    heights = np.array([kind.tree.height for kind in scene.kinds])
+    return heights[scene.kind_numbers]
 
 
 def _wind_ratios(scene: PlacedTrees, profile: WindProfile) -> Floats:
     """Wind at the crown of each tree over that at the crown of its kind, (t,)."""
-    scales = np.array([each.scale for each in scene.trees])
-    relative = np.stack([np.ones(len(scales)), scales])
-    crowns = profile.ground + _CROWN * kind_heights(scene) * relative
-    of_kind, of_tree = profile.over_anemometer(crowns)
-    has_wind = of_kind > 0.0
-    return np.where(has_wind, of_tree / np.where(has_wind, of_kind, 1.0), 1.0)
+    scales = np.array([tree.scale for tree in scene.trees])
+    crowns = _CROWN * kind_heights(scene)
+    of_kind = profile.over_anemometer(profile.ground + crowns)
+    of_tree = profile.over_anemometer(profile.ground + crowns * scales)
+    return np.divide(of_tree, of_kind, out=np.ones(len(scales)), where=of_kind > 0.0)
 
 
 def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
@@ -48,17 +48,24 @@ def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
     Places are x, y, z [m], turn about the vertical [rad] and scale, (t, 5); winds are those of
     the trees over those of their kinds, (t,).
     """
+    half_turn = 0.5 * places[:, 3]
     rows: Records = np.zeros(len(places), dtype=PLACEMENT)
-    rows['kind'], rows['at'] = kinds, places[:, :3]
-    rows['scale'], rows['speed'] = places[:, 4], speeds
-    rows['cosine'], rows['sine'] = np.cos(0.5 * places[:, 3]), np.sin(0.5 * places[:, 3])
+    rows['kind'] = kinds
+    rows['at'] = places[:, :3]
+    rows['scale'] = places[:, 4]
+    rows['speed'] = speeds
+    rows['cosine'] = np.cos(half_turn)
+    rows['sine'] = np.sin(half_turn)
     return rows
 
 
 def own_steps(kinds: Ints, scales: Floats, dt: float) -> tuple[list[tuple[int, float]], Ints]:
     """Return the kinds and time steps [s] for a step of the scene, and that of each tree."""
-    steps = np.rint(np.log(scales) / _FINEST_SCALE)
-    pairs = np.stack([kinds, steps], axis=1)
-    found, number = np.unique(pairs, axis=0, return_inverse=True)
-    own = [(int(kind), dt / math.exp(step * _FINEST_SCALE)) for kind, step in found.tolist()]
-    return own, number.ravel()
+    scale_numbers = np.rint(np.log(scales) / _FINEST_SCALE)
+    pairs = np.stack([kinds, scale_numbers], axis=1)
+    found, number_of_pair = np.unique(pairs, axis=0, return_inverse=True)
+    own = []
+    for kind, scale_number in found.tolist():
+        scale = math.exp(scale_number * _FINEST_SCALE)
+        own.append((int(kind), dt / scale))
+    return own, number_of_pair.ravel()

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.beams.beam import cross, cross_matrix, stacked
+from tree_sway.core.beams.beam import stacked
 from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.wind_on_branch import exposure
+from tree_sway.core.numpy_rotation import cross, cross_matrix
 from tree_sway.core.setup.slanting_winds import SlantingWinds
 
 _STRAIGHT = 0.03

@@ -32,8 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.beams.beam import cross, cross_matrix
-from tree_sway.core.numpy_rotation import quaternions_of
+from tree_sway.core.numpy_rotation import cross, cross_matrix, quaternions_of
 from tree_sway.core.setup.numpy_branch_loads import of_slots
 from tree_sway.core.setup.tree_motion import joint_motion, levels_of, own_motion, sum_outward
 

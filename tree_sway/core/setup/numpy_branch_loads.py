@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.beams.beam import cross_matrix
 from tree_sway.core.model.records import WIDTH
 from tree_sway.core.numpy_rotation import (
     cross,
+    cross_matrix,
     quaternion_product,
     quaternion_rotated,
     quaternions_of,

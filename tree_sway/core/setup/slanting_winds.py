@@ -24,12 +24,14 @@ class SlantingWinds:
 
     def __init__(self, direction: Floats) -> None:
         """Make winds of 16 bearings at each of three elevations."""
-        bearings = _bearing_of(direction) + np.arange(_N_BEARINGS) * 2.0 * np.pi / _N_BEARINGS
+        turns = np.arange(_N_BEARINGS) * 2.0 * np.pi / _N_BEARINGS
+        bearings = _bearing_of(direction) + turns
         level = np.cos(_ELEVATIONS)[:, None]
-        rise = np.sin(_ELEVATIONS)[:, None]
-        along_x, along_y = level * np.cos(bearings), level * np.sin(bearings)
-        upward = np.broadcast_to(rise, along_x.shape)
-        self.winds = np.stack([along_x, along_y, upward], axis=2).reshape(-1, 3)
+        winds = np.empty((len(_ELEVATIONS), _N_BEARINGS, 3))
+        winds[..., 0] = level * np.cos(bearings)
+        winds[..., 1] = level * np.sin(bearings)
+        winds[..., 2] = np.sin(_ELEVATIONS)[:, None]
+        self.winds = winds.reshape(-1, 3)
         """Unit vectors, (48, 3)."""
         x, y, z = self.winds.T
         products = [x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z]

@@ -100,7 +100,8 @@ class Turbulence:
         """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
         time = self.scales / self.mean_speed
         x = np.asarray(frequency, dtype=np.float64)[..., None] * time
-        return np.asarray(self.deviations**2 * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3))
+        variance = self.deviations**2
+        return np.asarray(variance * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3))
 
     def record(self, n_samples: int, rate: float, rng: np.random.Generator) -> Floats:
         """
@@ -112,15 +113,15 @@ class Turbulence:
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
         frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
         power = self.spectrum(frequency)
-        power *= self.deviations**2 / np.maximum(power.sum(axis=0), np.finfo(np.float64).tiny)
+        variance = np.maximum(power.sum(axis=0), np.finfo(np.float64).tiny)
+        power *= self.deviations**2 / variance
         phase = rng.uniform(0.0, 2.0 * np.pi, size=(3, n_lines)).T
-        # For a coherency c of u and w, w is opposite to u up to a phase of up to +-a, the mean of
-        # whose cosine is sin a / a = c.
-        angle = np.linspace(0.0, np.pi, 2001)
-        widest = np.interp(-self._coherency(frequency, power), -np.sinc(angle / np.pi), angle)
-        phase[:, 2] = phase[:, 0] + np.pi + widest * (phase[:, 2] / np.pi - 1.0)
+        widest = _widest_phase(self._coherency(frequency, power))
+        share = phase[:, 2] / np.pi - 1.0
+        phase[:, 2] = phase[:, 0] + np.pi + widest * share
+        amplitude = np.sqrt(0.5 * power)
         lines = np.zeros((n_samples // 2 + 1, 3), dtype=np.complex128)
-        lines[1 : n_lines + 1] = n_samples * np.sqrt(0.5 * power) * np.exp(1j * phase)
+        lines[1 : n_lines + 1] = n_samples * amplitude * np.exp(1j * phase)
         return np.fft.irfft(lines, n=n_samples, axis=0)
 
     def _coherency(self, frequency: Floats, power: Floats) -> Floats:
@@ -130,19 +131,35 @@ class Turbulence:
         It follows the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter
         2), up to 1, with the sum of `STRESS`.
         """
-        shape = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
+        cospectrum = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
         both = np.sqrt(power[:, 0] * power[:, 2])
         wanted = -STRESS * float(np.prod(self.deviations[[0, 2]]))
         if not wanted > 0.0:
             return np.zeros(len(frequency))
-        ratio = np.divide(shape, both, out=np.zeros_like(both), where=both > 0.0)
-        low, high = 0.0, 1.0 / max(float(ratio[ratio > 0.0].min(initial=1.0)), 1e-300)
+        ratio = np.divide(cospectrum, both, out=np.zeros_like(both), where=both > 0.0)
+        least_ratio = float(ratio[ratio > 0.0].min(initial=1.0))
+        low = 0.0
+        high = 1.0 / max(least_ratio, 1e-300)
         for _ in range(60):
             middle = 0.5 * (low + high)
+            coherency = np.minimum(middle * ratio, 1.0)
             # Without BLAS, whose threads may wait for each other far longer than the sum takes.
-            is_less = float((np.minimum(middle * ratio, 1.0) * both).sum()) < wanted
-            low, high = (middle, high) if is_less else (low, middle)
+            stress = float((coherency * both).sum())
+            if stress < wanted:
+                low = middle
+            else:
+                high = middle
         return np.minimum(high * ratio, 1.0)
+
+
+def _widest_phase(coherency: Floats) -> Floats:
+    """
+    Return the phases a [rad] up to which lines are apart from opposite ones, either way.
+
+    Their coherency is the mean of the cosine of such phases, ``sin a / a``.
+    """
+    angle = np.linspace(0.0, np.pi, 2001)
+    return np.interp(-coherency, -np.sinc(angle / np.pi), angle)
 
 
 def turbulence_scale(height: float) -> float:

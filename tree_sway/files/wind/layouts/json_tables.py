@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 import json
-from typing import Any
+from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
@@ -23,6 +23,14 @@ from tree_sway.files.wind.layouts.long import Value, wide_table
 
 _DEEPEST = 12
 Cells = dict[str, str]
+
+
+class _Quantity(NamedTuple):
+    """Values of a quantity by time."""
+
+    name: str
+    unit: str
+    by_time: dict[str, Any]
 
 
 def _is_json(lines: Sequence[str]) -> bool:
@@ -36,10 +44,11 @@ def read_json_table(lines: list[str], source: str) -> TextTable:
         document = json.loads('\n'.join(lines))
     except (ValueError, RecursionError) as error:
         raise FormatError(f'not JSON: {error}', where=source, cure='save it again whole') from None
-    if tables := list(_tables(document, {}, source, 0)):
-        return max(tables, key=lambda table: len(table.texts))
-    cure = 'give columns or records with a time, a speed and a direction'
-    raise FormatError('no table in the JSON', where=source, cure=cure)
+    tables = list(_tables(document, {}, source, 0))
+    if not tables:
+        cure = 'give columns or records with a time, a speed and a direction'
+        raise FormatError('no table in the JSON', where=source, cure=cure)
+    return max(tables, key=lambda table: len(table.texts))
 
 
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:
@@ -47,16 +56,20 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if depth > _DEEPEST:
         return
     if isinstance(node, dict):
-        if values := list(_of_times(node, '')):
-            yield _by_time(node, values, source)
-        if table := _columns(node, units, source):
+        quantities = list(_quantities(node, ''))
+        if quantities:
+            yield _by_time(quantities, source)
+        table = _columns(node, units, source)
+        if table is not None:
             yield table
         for name, each in node.items():
             below = node.get(f'{name}_units', _said_units(node))
-            yield from _tables(each, below if isinstance(below, dict) else {}, source, depth + 1)
+            own_units = below if isinstance(below, dict) else {}
+            yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
-        if states := list(_states(node)):
-            yield _of_states(node, states, source)
+        states = _lists_of_states(node)
+        if states:
+            yield _of_states(states, source)
         elif node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
         else:
@@ -72,29 +85,32 @@ def _said_units(node: dict[str, Any]) -> Cells:
 
 
 def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
+    """Return the table of the lists in a node, if they are columns."""
     columns = {name: each for name, each in node.items() if isinstance(each, list)}
-    lengths = {len(each) for each in columns.values()}
-    if len(columns) < 2 or len(lengths) != 1 or not lengths.pop():
+    lengths = set(map(len, columns.values()))
+    if len(columns) < 2 or len(lengths) != 1 or 0 in lengths:
         return None
-    if any(isinstance(cell, dict | list) for each in columns.values() for cell in each[:1]):
+    if any(isinstance(column[0], dict | list) for column in columns.values()):
         return None
-    cells = [[_text(cell) for cell in each] for each in columns.values()]
+    cells = [list(map(_text, column)) for column in columns.values()]
     rows = list(zip(*cells, strict=True))
-    return table_of_cells(
-        list(columns), rows, source, units=[_unit(units.get(name)) for name in columns]
-    )
+    units_of_columns = [_unit(units.get(name)) for name in columns]
+    return table_of_cells(list(columns), rows, source, units=units_of_columns)
 
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
-    flat = [dict(_flat(each, '', 0)) for each in node]
-    names = list(dict.fromkeys(name for each in flat for name in each))
-    of_names = [_unit(_unit_beside(flat[0], name)) for name in names]
-    if system := units.get('*'):
-        names.append('units')
-        flat = [{**each, 'units': system} for each in flat]
-        of_names.append('')
-    rows = [[each.get(name, '') for name in names] for each in flat]
-    return table_of_cells(names, rows, source, units=of_names)
+    """Return the table of records; a system of units becomes a column of its own."""
+    records = [dict(_flat(each, '', 0)) for each in node]
+    system = units.get('*')
+    if system:
+        for record in records:
+            record['units'] = system
+    names: Cells = {}
+    for record in records:
+        names |= dict.fromkeys(record, '')
+    units_of_columns = [_unit(_unit_beside(records[0], name)) for name in names]
+    rows = [[record.get(name, '') for name in names] for record in records]
+    return table_of_cells(list(names), rows, source, units=units_of_columns)
 
 
 def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, str]]:
@@ -114,49 +130,55 @@ def _unit_beside(record: Cells, name: str) -> str | None:
     return next((record[each] for each in beside if each in record), None)
 
 
-def _of_times(node: dict[str, Any], before: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield name, unit and values by time of Ecowitt's quantities."""
+def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
+    """Yield Ecowitt's quantities."""
     for name, each in node.items():
         if not isinstance(each, dict):
             continue
         if isinstance(each.get('list'), dict):
-            yield f'{before}{name}', _text(each.get('unit', '')), each['list']
+            yield _Quantity(f'{before}{name}', _text(each.get('unit', '')), each['list'])
         else:
-            yield from _of_times(each, f'{name}_')
+            yield from _quantities(each, f'{name}_')
 
 
-def _by_time(
-    node: dict[str, Any], values: list[tuple[str, str, dict[str, Any]]], source: str
-) -> TextTable:
-    times = sorted({time for _, _, by_time in values for time in by_time})
-    rows = [[time, *(_text(by_time.get(time)) for _, _, by_time in values)] for time in times]
-    names, units = ['time', *(name for name, _, _ in values)], ['', *(u for _, u, _ in values)]
+def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
+    """Return the table of quantities, with a row for each time that any of them has."""
+    times: set[str] = set()
+    for each in quantities:
+        times.update(each.by_time)
+    rows = []
+    for time in sorted(times):
+        values = [_text(each.by_time.get(time)) for each in quantities]
+        rows.append([time, *values])
+    names = ['time', *(each.name for each in quantities)]
+    units = ['', *(each.unit for each in quantities)]
     return table_of_cells(names, rows, source, units=units)
 
 
-def _states(node: Any) -> Iterator[Value]:
-    """Yield the states of Home Assistant in a list of lists of them."""
-    lists = [each for each in node if isinstance(each, list)]
+def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
+    """Return those elements of a list that are lists of states of Home Assistant."""
+    return [each for each in node if isinstance(each, list) and each and all(map(_is_state, each))]
+
+
+def _is_state(node: Any) -> bool:
+    return isinstance(node, dict) and 'state' in node
+
+
+def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
+    """Return the table of the states of some entities; only the first of each may name it."""
+    values: list[Value] = []
+    unit_of: Cells = {}
     for states in lists:
         name = ''
         for state in states:
-            if not isinstance(state, dict) or 'state' not in state:
-                return
-            name = state.get('entity_id', name)
+            name = _text(state.get('entity_id', name))
+            attributes = state.get('attributes')
+            if isinstance(attributes, dict):
+                unit_of.setdefault(name, _unit(attributes.get('unit_of_measurement')))
             time = _text(state.get('last_changed', state.get('last_updated')))
             if state['state'] not in ('unavailable', 'unknown'):
-                yield 1, time, name, _text(state['state'])
-
-
-def _of_states(node: list[Any], states: list[Value], source: str) -> TextTable:
-    table = wide_table(states, source, 'last_changed')
-    units = ['']
-    for each in dict.fromkeys(name for _, _, name, _ in states):
-        of_one = [s for group in node for s in group if s.get('entity_id') == each]
-        inside = of_one[0].get('attributes') if of_one else None
-        units.append(_unit(inside.get('unit_of_measurement')) if isinstance(inside, dict) else '')
-    rows = [list(table.split(text)) for text in table.texts]
-    return table_of_cells(table.columns, rows, source, units=units)
+                values.append((len(values) + 1, time, name, _text(state['state'])))
+    return wide_table(values, source, 'last_changed', unit_of)
 
 
 def _text(cell: Any) -> str:

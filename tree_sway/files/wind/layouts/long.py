@@ -10,7 +10,7 @@ holds until the next of its name, as Home Assistant stores changes alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 import re
 
@@ -29,8 +29,14 @@ Value = tuple[int, str, str, str]
 """Line, time, name and value."""
 
 
-def wide_table(values: Iterable[Value], source: str, clock: str) -> TextTable:
-    """Return a row for each time, in the column ``clock``, with the newest value of each name."""
+def wide_table(
+    values: Iterable[Value], source: str, clock: str, unit_of: Mapping[str, str] | None = None
+) -> TextTable:
+    """
+    Return a row for each time, in the column ``clock``, with the newest value of each name.
+
+    ``unit_of`` are the units of some names.
+    """
     by_time: dict[str, dict[str, str]] = {}
     lines: dict[str, int] = {}
     for line, time, name, value in values:
@@ -46,7 +52,9 @@ def wide_table(values: Iterable[Value], source: str, clock: str) -> TextTable:
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
     short = [_STATION.sub('', name, count=1) for name in names]
     columns = short if len(set(short)) == len(short) else names
-    return table_of_cells([clock, *columns], rows, source, [lines[time] for time in times])
+    numbers = [lines[time] for time in times]
+    units = ['', *((unit_of or {}).get(name, '') for name in names)]
+    return table_of_cells([clock, *columns], rows, source, numbers, units)
 
 
 def _split(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, list[int]] | None:

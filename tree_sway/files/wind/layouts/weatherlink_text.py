@@ -10,7 +10,7 @@ was set to, which the file does not say.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import compress, zip_longest
+from itertools import zip_longest
 import re
 
 from tree_sway.files.cell_table import table_of_lines
@@ -18,6 +18,7 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
+_WORD = re.compile(r'\S+')
 _WIND = ('Date', 'Time', 'Wind Speed', 'Wind Dir', 'Hi Speed')
 
 
@@ -27,26 +28,30 @@ def _has_two_lines(lines: Sequence[str]) -> bool:
 
 def _read(lines: list[str], source: str) -> TextTable:
     names = _names(lines[0], lines[1])
-    wanted = [name in _WIND for name in names]
+    wanted = [column for column, name in enumerate(names) if name in _WIND]
     rows = []
     for number, line in enumerate(lines[2:], start=3):
         cells = line.split('\t') if '\t' in line else line.split()
         if len(cells) == len(names):
-            rows.append((number, [cell.strip() for cell in compress(cells, wanted)]))
-    return table_of_lines(list(compress(names, wanted)), rows, source)
+            rows.append((number, [cells[column].strip() for column in wanted]))
+    return table_of_lines([names[column] for column in wanted], rows, source)
 
 
 def _names(above: str, below: str) -> list[str]:
     """Names of the columns: by tabs, else by where the words of the second line stand."""
-    if '\t' in below:
-        pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
-        return [' '.join(f'{a} {b}'.split()) for a, b in pairs]
-    spans = [match.span() for match in re.finditer(r'\S+', below)]
-    words = list(re.finditer(r'\S+', above))
     names = []
-    for begin, end in spans:
-        over = [word[0] for word in words if word.start() < end and word.end() > begin]
-        names.append(' '.join([*over[:1], below[begin:end]]))
+    if '\t' in below:
+        for pair in zip_longest(above.split('\t'), below.split('\t'), fillvalue=''):
+            words = ' '.join(pair).split()
+            names.append(' '.join(words))
+        return names
+    for word in _WORD.finditer(below):
+        name = word[0]
+        for over in _WORD.finditer(above):
+            if over.start() < word.end() and over.end() > word.start():
+                name = f'{over[0]} {name}'
+                break
+        names.append(name)
     return names
 
 

@@ -22,6 +22,8 @@ const VARIETY = 200;
 /** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
  * drawn there over that of a cluster, and at most [m]. */
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
+/** Length of a limb below the crown that is dead, at most, over that of the longest. */
+const DEAD = 0.1;
 /** Length of a dead stub over the size of what is drawn on thin wood. */
 const STUB = 4;
 /** From which droop a tree weeps: the same wood of it, whose boughs a curtain hides, down to the ground. */
@@ -51,7 +53,7 @@ const BOW = 0.1;
  * @param {boolean} [isPlain] whether a large card is one triangle, as each costs much without a graphics unit
  * @returns {{mesh: Mesh, along: number, isSpread: boolean}} and how many leaves the picture is long, and whether
  * its cards are small ones */
-export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most, isFlowering, isPlain = false) {
+export function leafMesh({ kind, placer, rest, high, highest, shade }, branches, cards, most, isFlowering, isPlain = false) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1, isSpread: false };
   const random = seeded();
@@ -60,6 +62,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   const { each, along, spray, isSpread } = cardsOf(look, mean, carrier.length, cards, most);
   const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, mean));
+  const dead = look.has_needles ? deadWood(kind, rest, highest) : new Set();
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
   const share = leafShare(look, along, isFlowering);
@@ -72,6 +75,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   const values = /** @type {number[]} */ ([]);
   const faces = /** @type {number[][]} */ ([]);
   for (const shoot of shoots) {
+    if (dead.has(shoot.segment)) continue;
     const p = STRIDE * hung[shoot.segment];
     const slot = placer.slots[hung[shoot.segment]];
     const back = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
@@ -135,6 +139,29 @@ function leafyShoot(kind, rest, i) {
   return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
+/** Segments of the stubs that a conifer's crown has left below it on the stem, which bear no needles: limbs that are
+ * lower than the longest and much shorter, with what grows on them. @param {Kind} kind @param {Float32Array} rest
+ * @param {number} highest segment, up to which the stem goes */
+export function deadWood({ arrays, nBranches }, rest, highest) {
+  const { branch_first: first, branch_parent: parents, segment_length: length } = arrays;
+  const stem = new Set();
+  for (let part = first.findIndex((from) => from > highest) - 1; part >= 0; part = parents[part]) stem.add(part);
+  const isLimb = (/** @type {number} */ branch) => !stem.has(branch) && stem.has(parents[branch]);
+  const limbs = Array.from(parents, (_, branch) => branch).filter(isLimb).map((branch) => {
+    const reach = Array.from(length.subarray(first[branch], first[branch + 1])).reduce((sum, each) => sum + each, 0);
+    return { branch, reach, base: rest[STRIDE * first[branch] + 2] };
+  });
+  const longest = limbs.reduce((most, each) => (each.reach > most.reach ? each : most), { reach: 0, base: 0 });
+  const dead = new Set(limbs.filter(({ reach, base }) => reach < DEAD * longest.reach && base < longest.base).map(({ branch }) => branch));
+  const segments = new Set();
+  for (let branch = 0; branch < nBranches; branch++) {
+    if (dead.has(parents[branch])) dead.add(branch);
+    if (!dead.has(branch)) continue;
+    for (let segment = first[branch]; segment < first[branch + 1]; segment++) segments.add(segment);
+  }
+  return segments;
+}
+
 /** Shoots at the end of each branch, and along thin wood that has no cluster: none of it is bare.
  * @param {Kind} kind @param {Look} look @param {Float32Array} rest @param {Int32Array} branches that are drawn
  * @param {number} mean size of clusters [m] @returns {Shoot[]} */
@@ -191,7 +218,8 @@ function cardsOf(look, mean, clusters, cards, most) {
   const finer = look.form === "tufts" ? TUFTS : 1;
   const small = finer * length * Math.max(LEAST_CARD, (rolls.length / each) ** SMALLER);
   if (look.has_needles || small * mean > 1.6 * leaf) {
-    return { each, along: leavesAlong(look, small * mean), spray: { rolls, width, length: small }, isSpread: true };
+    const along = leavesAlong(look, small * mean, true);
+    return { each, along, spray: { rolls, width: pictureWidth(look, along, true), length: small }, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
   const spray = { ...alone, length: leaf / mean };

@@ -308,16 +308,20 @@ export class Scene {
     const isClump = isSpread || along >= CLUMP;
     const name = `${number} ${along} ${isClump}`;
     if (!pictures.has(name)) {
-      const picture = leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump });
+      const picture = leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump, isSpread });
       pictures.set(name, this.isSlow ? chosenTexture(gl, picture) : pictureTexture(gl, picture, false));
     }
     const relief = look.bark_pattern;
+    const turned = this.isAutumn ? look.autumn : null;
+    const unturned = turned ? look.green.map((each, c) => each / turned[c]) : [1, 1, 1];
     const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
-      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0 : GLOSS },
+      foliage: {
+        leaves: [2, pictures.get(name)], unturned, gloss: look.autumn || look.has_needles ? 0 : GLOSS,
+      },
     };
   }
 

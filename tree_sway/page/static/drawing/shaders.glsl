@@ -165,13 +165,14 @@ uniform float time;
 uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
+uniform vec3 unturned; // colour of a leaf before autumn over that of the picture
 uniform float gloss; // light thrown back like a mirror, 0 of a dull leaf
 uniform vec3 horizon;
 uniform vec4 paint; // colour of the whole tree, and its share
 out vec2 at;
 out vec3 lit; // what the colour of the leaf is multiplied by
-out vec3 veil; // what is added: haze, paint, light that is thrown back like a mirror
-out float edge; // share of the picture that is seen; a card that is seen along itself would be a blade
+flat out vec3 veil; // what is added: haze, paint, light that is thrown back like a mirror
+flat out float edge; // share of the picture that is seen; a card that is seen along itself would be a blade
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -201,8 +202,10 @@ void main() {
   // A leaf with the sun behind it shines yellow.
   vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
-  // No two leaves have the same green.
+  // No two leaves have the same green. In autumn those in the shade of the crown, and some others, turn last.
   vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
+  float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
+  hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
   vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
   float clear = clearness(p);
@@ -214,8 +217,8 @@ void main() {
 precision highp float;
 in vec2 at;
 in vec3 lit;
-in vec3 veil;
-in float edge;
+flat in vec3 veil;
+flat in float edge;
 uniform sampler2D leaves;
 out vec4 color;
 void main() {
@@ -238,8 +241,8 @@ void main() {
 precision mediump float;
 in vec2 at;
 in vec3 lit;
-in vec3 veil;
-in float edge;
+flat in vec3 veil;
+flat in float edge;
 uniform sampler2D leaves;
 out vec4 color;
 void main() {
@@ -260,8 +263,8 @@ in vec3 tree; // scale, row of the top, tint
 in vec4 paint;
 out vec2 at;
 out vec3 lit; // what the picture is multiplied by
-out vec3 veil; // the haze that is added
-out vec3 painted; // colour of paint, which has the light and shade of the picture
+flat out vec3 veil; // the haze that is added
+flat out vec3 painted; // colour of paint, which has the light and shade of the picture
 void main() {
   float scale = tree.x;
   vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
@@ -297,8 +300,8 @@ void main() {
 precision mediump float;
 in vec2 at;
 in vec3 lit;
-in vec3 veil;
-in vec3 painted;
+flat in vec3 veil;
+flat in vec3 painted;
 uniform sampler2D picture;
 out vec4 color;
 void main() {

@@ -14,7 +14,11 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which it is one of a clump rather than of a shoot, whatever the cards; and how many
  * times they would cover it. */
-export const [CLUMP, CLUMP_FILLED] = [12, 1.7];
+export const [CLUMP, CLUMP_FILLED] = [12, 1.3];
+/** Length of a leaf of a large card over its own. */
+const LARGER = 1.4;
+/** Width of a small card of short needles over that of another. */
+const TWIG = 0.55;
 /** Length of a shoot that is clad in long needles, over theirs. */
 const BRUSH = 1.9;
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
@@ -23,10 +27,10 @@ const LAYERS = 3;
 /** Length of a leaf with all its leaflets [m]. @param {Look} look */
 export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
 
-/** Width of a picture over its length: that of a spray or of a leaf alone. @param {Look} look
- * @param {number} along as in `leafPicture` */
-export const pictureWidth = ({ form, slenderness, spray }, along) =>
-  along > 1 ? spray.width : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+/** Width of a picture over its length: that of a spray, of a twig clad in short needles, or of a leaf alone.
+ * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
+export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
+  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Share of the width of a picture that leaves have; the flowers of a horse chestnut stand beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -34,21 +38,21 @@ export const leafShare = ({ form }, along, isFlowering) =>
   (isFlowering && form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
 /** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
- * @param {Look} look @param {number} long length of a card [m] */
-export function leavesAlong(look, long) {
+ * @param {Look} look @param {number} long length of a card [m] @param {boolean} [isSpread] of small cards */
+export function leavesAlong(look, long, isSpread = false) {
   const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
-  const wanted = long / (1.4 * look.leaf_size);
+  const wanted = long / ((isSpread ? 1 : LARGER) * look.leaf_size);
   return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {{isAutumn?: boolean, isFlowering?: boolean, isClump?: boolean, size?: number}} [options] whether it
- * shows a clump of leaves seen from afar, and its size [px] */
-export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isClump = false, size } = {}) {
+ * @param {{isAutumn?: boolean, isFlowering?: boolean, isClump?: boolean, isSpread?: boolean,
+ * size?: number}} [options] whether it shows a clump of leaves seen from afar, is of small cards, and its size [px] */
+export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isClump = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
   const hasLeaflets = look.form in IN_LEAFLETS;
   const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
-  const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along), seeded(97 + along), share);
+  const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
   else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
@@ -236,7 +240,9 @@ class Brush {
     const unit = this.unit * leaf;
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
-      const [turn, far] = [2 * Math.PI * random(), Math.sqrt(random())];
+      const turn = 2 * Math.PI * random();
+      // Boughs stand out of it on all sides: no disc is seen.
+      const far = Math.sqrt(random()) * (0.8 + 0.2 * Math.sin(5 * turn + 1));
       const [along, across] = [far * Math.cos(turn), far * Math.sin(turn)];
       const [x, y] = [0.5 + (0.5 - unit) * along, (half - unit) * across];
       const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
