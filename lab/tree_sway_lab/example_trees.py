@@ -11,6 +11,7 @@ coupling is strongest.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -166,3 +167,39 @@ def branch_order(tree: Tree) -> Ints:
     for branch in np.flatnonzero(tree.branch_parent >= 0):
         order[branch] = order[tree.branch_parent[branch]] + 1
     return order
+
+
+def leafy_sapling(wander: float = 0.0, seed: int = 0) -> Tree:
+    """
+    Return a stem of 1.6 m with twelve petioles of 9 cm by 1.8 mm, each for a leaf.
+
+    Parameters
+    ----------
+    wander
+        Step [m] by which the stem leaves the vertical from one segment to the next.
+    seed
+        Of its random numbers.
+
+    """
+    rng = np.random.default_rng(seed)
+    nodes = np.zeros((13, 3))
+    nodes[:, 2] = 1.6 * np.arange(13) / 12.0
+    nodes[1:, :2] = np.cumsum(wander * rng.normal(size=(12, 2)), axis=0)
+    thickness = np.interp(nodes[:, 2], [0.0, 1.6], [0.012, 0.004])
+    start, end = list(nodes[:-1]), list(nodes[1:])
+    diameter = list(itertools.pairwise(thickness))
+    parent, branch = list(range(-1, 11)), [0] * 12
+    for leaf in range(12):
+        turn = 2.4 * leaf + 40.0 * wander * rng.normal()  # about the golden angle
+        away = np.array([np.cos(turn), np.sin(turn), 0.5])
+        away *= 0.03 / np.linalg.norm(away)
+        before = 3 + 9 * leaf // 12
+        base = end[before]
+        for piece in range(3):
+            start.append(base + piece * away)
+            end.append(base + (piece + 1) * away)
+            diameter.append((0.0018, 0.0018))
+            parent.append(before)
+            branch.append(leaf + 1)
+            before = len(start) - 1
+    return tree_from_segments(start, end, diameter, parent=parent, branch=branch)

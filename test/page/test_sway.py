@@ -18,6 +18,7 @@ import pytest
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
+from tree_sway_lab.example_trees import leafy_sapling  # noqa: E402
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
@@ -28,6 +29,7 @@ from tree_sway.core.run.table_model import fill_time_step, Propagators  # noqa: 
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
+from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_tables  # noqa: E402
@@ -189,6 +191,18 @@ def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:
     scan = open_scene(str(SCAN / 'fork.treeqsm24.txt'))
     found = compared(scan.simulator(Settings()), tmp_path)
     assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
+
+
+def test_leaves_that_drag_stops_within_a_step_sway_as_in_python(tmp_path: Path) -> None:
+    on_petioles = np.ones(13)
+    on_petioles[0] = 0.0
+    settings = Settings(
+        in_leaf=True, leaf_mass=0.0009 * on_petioles, leaf_area=0.006 * on_petioles
+    )
+    species = replace(species_named('broadleaf'), modulus=9.0e9)
+    tree = PlacedTree('tree', leafy_sapling(0.012, 1), species=species)
+    found = compared(Scene([tree], 'one').simulator(settings), tmp_path)
+    assert found['wrong'] <= 1e3 * ROUNDING  # half a step of drag is 200 times the inertia
 
 
 def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 import json
-from math import atan2, factorial, floor, pi, sin, sqrt
+from math import atan2, ceil, factorial, floor, log2, pi, sin, sqrt
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
@@ -86,12 +86,16 @@ class PageSolver:
         c, n, c0 = self.a['drag_law']
         streamlined = np.clip(speed, 4, 20) ** -n if n else 1.0
         p = 0.5 * 1.225 * (c * streamlined + c0)
-        middle, rate = self.moved(self.half, self.f)
         s = min(p * speed**2, self.a['most_pressure'])
-        force, slope = self.force(p, s, direction, middle, rate)
-        r = self.half[:, 1, 2]
-        before = self.energy()
-        self.f = (force - slope * r * self.f) / (1 - slope * r)
+        before, r, change = self.energy(), self.half[:, 1, 2], 0
+        passes, k = 1, 0
+        while k < passes:
+            force, slope = self.force(p, s, direction, *self.moved(self.half, self.f))
+            change = (1.5 if k else 1) * (force - self.f) / (1 - slope * r) + 0.1 * change
+            self.f = self.f + change
+            if k == 0:
+                passes = 1 + min(7, ceil(log2(max(*(-slope * r), 1))))
+            k += 1
         self.q, self.v = self.moved(self.whole, self.f)
         most = max(before, self.a['most_energy'])
         if self.energy() > most:

@@ -7,11 +7,16 @@ Over azimuths and levels the slopes of the load have a low rank: they are export
 ``slopes = sqrt(k_i k_j) rows @ shapes``, weighted with the stiffness k of the coordinates, so that
 the error is that of the bending of the tree. Shapes are integers of one step. `table_of` makes the
 exported arrays a table again, which every receiver solves.
+
+What factors leave out of a damping may feed a motion. Damping in proportion to the stiffness, as
+much as the largest gain, is added before, so that the exported damping takes energy from every
+motion as that of the model does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+import math
 from typing import Any
 
 import numpy as np
@@ -32,6 +37,9 @@ exact.
 SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
 """Fields of a table that are exported as factors."""
 
+PASSIVE = ('damping', 'steep_damping')
+"""Those which take energy from every motion."""
+
 PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
          'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
@@ -40,6 +48,9 @@ NUMBERS = ('most_pressure', 'most_energy')
 
 _ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
 """Number of last bits that are left out of some fields: to 1.5e-5, and a bound to 0.4 %."""
+
+_MARGIN = 1e-6
+"""Least energy that damping takes, over the most: single precision errs by less."""
 
 _LARGEST_STEP = 32767
 _QUANTISED = 12.0**-0.5
@@ -62,7 +73,8 @@ def exported_table(
     root = np.sqrt(arrays['stiffness'].astype(np.float64))
     for name in SLOPES:
         slopes = getattr(model, name) / (root[:, None] * root)
-        arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = _factors(slopes.reshape(-1, m * m))
+        factors = _passive_factors if name in PASSIVE else _factors
+        arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = factors(slopes.reshape(-1, m * m))
     return numbers, arrays
 
 
@@ -96,6 +108,21 @@ def rounded(values: Floats, bits: int) -> Singles:
     single = values.astype(np.float32).view(np.uint32).astype(np.uint64)
     single += (1 << bits) >> 1
     return (single >> bits << bits).astype(np.uint32).view(np.float32)
+
+
+def _passive_factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return rows and shapes as `_factors`, whose product adds energy to no motion."""
+    m = math.isqrt(slopes.shape[1])
+    unit = np.eye(m).ravel()
+    added = 0.0
+    while True:
+        rows, shapes = _factors(slopes - added * unit)
+        product = (rows.astype(np.float64) @ shapes).reshape(-1, m, m)
+        work = np.linalg.eigvalsh(product + product.swapaxes(1, 2)) / 2.0
+        gain = float(work.max()) + _MARGIN * float(np.abs(work).max())
+        if gain <= 0.0 or not work.any():
+            return rows, shapes
+        added += gain
 
 
 def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:

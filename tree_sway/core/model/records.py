@@ -183,6 +183,7 @@ class Instance:
     middle_rate: Annotated[Floats, 'modes']
     wanted: Annotated[Floats, 'modes']
     diagonal: Annotated[Floats, 'modes']
+    change: Annotated[Floats, 'modes']  # of the force in the last pass of a step
     # Load by the distance from poses of the table, damping by rates, and the rates themselves:
     turned: Annotated[Singles, 'modes']
     damped: Annotated[Singles, 'modes']

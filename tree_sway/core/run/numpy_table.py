@@ -23,7 +23,7 @@ from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.run.table_load import STEEP
-from tree_sway.core.run.table_model import WindBasisBank
+from tree_sway.core.run.table_model import MOMENTUM, MOST_PASSES, STRIDE, WindBasisBank
 
 Views = Mapping[str, NDArray[Any]]
 """Fields of one record as arrays that share its memory; a number is an array of no axis."""
@@ -203,20 +203,19 @@ def step_instance(
     is_outside = not (is_clamped or dynamic_pressure <= most_pressure)
     dynamic_pressure = min(dynamic_pressure, most_pressure)
     eta, rate, force = instance['eta'], instance['rate'], instance['force']
-    stiffness, half, whole = table['stiffness'], time_step['half'], time_step['whole']
+    stiffness, whole = table['stiffness'], time_step['whole']
     before = _energy(stiffness, eta, rate)
-    middle, middle_rate = instance['middle'], instance['middle_rate']
-    middle[:] = half[0] * eta + half[1] * rate + half[2] * force
-    middle_rate[:] = half[3] * eta + half[4] * rate + half[5] * force
-    n_coupled = int(table['n_modes']) - int(instance['left_out'])
-    wanted, diagonal = wind_force(
-        table, direction, dynamic_pressure, per_speed_squared, middle, middle_rate, n_coupled
-    )
-    instance['wanted'][:], instance['diagonal'][:] = wanted, diagonal
-    instance['wind'][:], instance['drag_density'][...] = wind, per_speed_squared
+    wind_now = direction, dynamic_pressure, per_speed_squared
+    wanted, own = _load_of_middle(table, time_step, instance, wind_now)
     # Implicit in all damping, with equal rates of the others: stable for any wind and step.
-    own = diagonal * half[5]
-    force[:] = (wanted - own * force) / (1.0 - own)
+    new = (wanted - own * force) / (1.0 - own)
+    change = new - force
+    force[:] = new
+    for _ in range(_more_passes(float(np.max(-own)))):
+        wanted, own = _load_of_middle(table, time_step, instance, wind_now)
+        change = STRIDE * (wanted - force) / (1.0 - own) + MOMENTUM * change
+        force += change
+    instance['wind'][:], instance['drag_density'][...] = wind, per_speed_squared
     moved = whole[0] * eta + whole[1] * rate + (whole[2] + whole[3]) * force
     rate[:] = whole[4] * eta + whole[5] * rate + (whole[6] + whole[7]) * force
     eta[:] = moved
@@ -229,6 +228,34 @@ def step_instance(
         is_outside = True
     instance['outside'][...] = is_outside
     return int(is_outside)
+
+
+def _more_passes(stiffest: float) -> int:
+    """Return how many more passes the force of a step takes, as `table_model._more_passes`."""
+    if not stiffest > 1.0:
+        return 0
+    return math.ceil(math.log2(min(stiffest, 2.0 ** (MOST_PASSES - 1))))
+
+
+def _load_of_middle(
+    table: Views, time_step: Views, instance: Views,
+    wind: tuple[tuple[float, float, float], float, float],
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """
+    Go to the middle of the step under the force, and find the load of a wind there.
+
+    The wind is direction, dynamic pressure and load per squared speed. Returns modal forces, and
+    their slopes by the force of the coordinate, (m,).
+    """
+    eta, rate, force = instance['eta'], instance['rate'], instance['force']
+    half = time_step['half']
+    middle, middle_rate = instance['middle'], instance['middle_rate']
+    middle[:] = half[0] * eta + half[1] * rate + half[2] * force
+    middle_rate[:] = half[3] * eta + half[4] * rate + half[5] * force
+    n_coupled = int(table['n_modes']) - int(instance['left_out'])
+    wanted, diagonal = wind_force(table, *wind, middle, middle_rate, n_coupled)
+    instance['wanted'][:], instance['diagonal'][:] = wanted, diagonal
+    return wanted, diagonal * half[5]
 
 
 def _energy(stiffness: Floats, eta: Floats, rate: Floats) -> float:

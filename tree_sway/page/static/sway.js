@@ -19,6 +19,8 @@ export const STEP = 1 / 60;
 const [AZIMUTHS, LEVELS] = [24, 7];
 /** Sine of the elevation from which on a wind goes over to one straight up or down. */
 const STEEP = Math.sin(Math.PI / 4);
+/** Passes in which the force of a step is found, as of tree_sway/core/run/table_model.py. */
+const [MOST_PASSES, STRIDE, MOMENTUM] = [8, 1.5, 0.1];
 const HALF_AIR_DENSITY = 0.5 * 1.225; // [kg/m^3]
 /** Speeds between which leaves streamline [m/s]. */
 const [STREAMLINING_FROM, STREAMLINING_TO] = [4, 20];
@@ -68,6 +70,8 @@ export class Table {
     this.lean = this._slopes(arrays, ["lean"]);
     /** What is worked in. */
     this.scratch = Array.from({ length: 10 }, () => new Float64Array(m));
+    /** Change of the forces in the last pass of a step. */
+    this.change = new Float64Array(m);
     this.values = new Float64Array(arrays.harmonics.values.length / m);
   }
 
@@ -172,27 +176,38 @@ export class TreeState {
   step(half, whole, wx, wy, wz) {
     const { table, eta, rate, force } = this;
     const { m, mostPressure, mostEnergy, arrays: { stiffness } } = table;
-    const [midEta, midRate, wanted, diagonal] = table.scratch;
+    const change = table.change;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
     const drag = table.dragDensity(speed);
     let isOutside = drag * speed * speed > mostPressure;
     let before = 0;
-    for (let i = 0, at = 0; i < m; i++, at += 6) {
-      before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
-      midEta[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
-      midRate[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
-    }
+    for (let i = 0; i < m; i++) before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
     const push = Math.min(drag * speed * speed, mostPressure);
-    windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag, this.count);
+    const way = speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0];
+    let [passes, stiffest] = [1, 0];
+    for (let pass = 0; pass < passes; pass++) {
+      const [wanted, diagonal] = this.loadOfMiddle(half, way, push, drag);
+      for (let i = 0; i < m; i++) {
+        // Implicit in all damping, as if the others moved with it: stable for any wind and step.
+        const own = diagonal[i] * half[6 * i + 5];
+        if (pass) {
+          change[i] = STRIDE * ((wanted[i] - force[i]) / (1 - own)) + MOMENTUM * change[i];
+          force[i] += change[i];
+        } else {
+          const f = (wanted[i] - own * force[i]) / (1 - own);
+          change[i] = f - force[i];
+          force[i] = f;
+          stiffest = Math.max(stiffest, -own);
+        }
+      }
+      // So bounded, the force lags where drag stops a coordinate within half a step.
+      for (; !pass && stiffest > 1 && passes < MOST_PASSES; passes++) stiffest *= 0.5;
+    }
     let energy = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {
-      // Implicit in all damping, as if the others moved with it: stable for any wind and step.
-      const own = diagonal[i] * half[at + 5];
-      const f = (wanted[i] - own * force[i]) / (1 - own);
-      const [q, v] = [eta[i], rate[i]];
+      const [q, v, f] = [eta[i], rate[i], force[i]];
       eta[i] = whole[at] * q + whole[at + 1] * v + whole[at + 2] * f;
       rate[i] = whole[at + 3] * q + whole[at + 4] * v + whole[at + 5] * f;
-      force[i] = f;
       energy += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
     }
     const most = Math.max(before, mostEnergy);
@@ -206,6 +221,20 @@ export class TreeState {
     }
     this.isBentTooFar = isOutside && push < 0.5 * mostPressure;
     return isOutside;
+  }
+
+  /** Go to the middle of a step under the force; returns the forces of the wind there and the diagonal of
+   * their slope by the rates. @param {Float64Array} half `toMiddle` of half a step @param {number[]} way of
+   * the wind @param {number} push dynamic pressure @param {number} drag the same over speed squared */
+  loadOfMiddle(half, way, push, drag) {
+    const { table, eta, rate, force } = this;
+    const [midEta, midRate, wanted, diagonal] = table.scratch;
+    for (let i = 0, at = 0; i < table.m; i++, at += 6) {
+      midEta[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
+      midRate[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
+    }
+    windForce(table, way, push, drag, this.count);
+    return [wanted, diagonal];
   }
 
   /** Write the coordinates of the description that hold this state.
