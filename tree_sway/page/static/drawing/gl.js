@@ -162,9 +162,11 @@ export function chosenTexture(gl, picture) {
   const texture = textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
   const context = /** @type {CanvasRenderingContext2D} */ (picture.getContext("2d"));
   let size = picture.width;
-  let points = Float32Array.from(context.getImageData(0, 0, size, size).data, (each) => each / 255);
-  for (let i = 0; i < points.length; i += 4) {
-    for (let c = 0; c < 3; c++) points[i + c] *= points[i + 3];
+  const { data } = context.getImageData(0, 0, size, size);
+  let points = new Float32Array(data.length);
+  for (let i = 0; i < data.length; i += 4) {
+    points[i + 3] = data[i + 3] / 255;
+    for (let c = 0; c < 3; c++) points[i + c] = (points[i + 3] * data[i + c]) / 255;
   }
   for (let level = 0; size >= 1; level++) {
     const own = new Uint8Array(points.length);
@@ -173,8 +175,8 @@ export function chosenTexture(gl, picture) {
       const alpha = points[i + 3];
       const least = 0.5 + share * (0.04 + 0.55 * random() - 0.5);
       for (let c = 0; c < 3; c++) own[i + c] = Math.round(255 * Math.min(1, points[i + c] / Math.max(alpha, 0.01)));
-      const place = i / 4;
-      const isRim = size > SMALLEST_RIM && [place % size, Math.floor(place / size)].some((at) => at === 0 || at === size - 1);
+      const x = (i / 4) % size;
+      const isRim = size > SMALLEST_RIM && (x === 0 || x === size - 1 || i < 4 * size || i >= 4 * size * (size - 1));
       own[i + 3] = isRim ? 0 : Math.round(255 * Math.min(1, (0.25 * alpha) / least));
     }
     gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, own);
@@ -189,11 +191,13 @@ export function chosenTexture(gl, picture) {
 function halved(points, size) {
   const half = size >> 1;
   const row = 4 * size;
-  return Float32Array.from({ length: 4 * half * half }, (_, i) => {
-    const [x, y, c] = [(i >> 2) % half, Math.floor((i >> 2) / half), i & 3];
-    const at = 2 * y * row + 8 * x + c;
-    return 0.25 * (points[at] + points[at + 4] + points[at + row] + points[at + row + 4]);
-  });
+  const smaller = new Float32Array(4 * half * half);
+  for (let i = 0; i < smaller.length; i++) {
+    const [x, y] = [(i >> 2) % half, Math.floor((i >> 2) / half)];
+    const at = 2 * y * row + 8 * x + (i & 3);
+    smaller[i] = 0.25 * (points[at] + points[at + 4] + points[at + row] + points[at + row + 4]);
+  }
+  return smaller;
 }
 
 /** Rows of a texture with the poses of segments, of two texels each. @param {number} segments */
