@@ -71,15 +71,17 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
 
     A piece has two segments or more.
     """
-    first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
-    cosine = np.einsum('bk,bk->b', tree.direction[first], tree.direction[last])
+    base = tree.direction[tree.branch_first[:-1]]
+    tip = tree.direction[tree.branch_first[1:] - 1]
+    cosine = np.einsum('bk,bk->b', base, tip)
     bow = np.arccos(np.clip(cosine, -1.0, 1.0))
-    most = np.diff(tree.branch_first) // 2
-    most_turned = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
-    carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
-    wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
-    wanted = np.ceil(wanted).astype(np.int64)
-    return np.asarray(np.clip(wanted, 1, np.maximum(most, 1)))
+    for_turn = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
+    for_turn = np.minimum(for_turn, MOST_PIECES)
+    n_children = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches)
+    for_children = np.minimum(n_children / CARRIED, MOST_CARRYING)
+    wanted = np.ceil(np.maximum(for_turn, for_children)).astype(np.int64)
+    most = np.maximum(np.diff(tree.branch_first) // 2, 1)
+    return np.asarray(np.clip(wanted, 1, most))
 
 
 def cut_tree(tree: Tree, pieces: Ints) -> CutTree:
@@ -88,15 +90,23 @@ def cut_tree(tree: Tree, pieces: Ints) -> CutTree:
         return whole_tree(tree)
     from tree_sway.core.tree.building import tree_from_segments
 
-    size = np.diff(tree.branch_first)
-    within = np.arange(tree.n_segments) - np.repeat(tree.branch_first[:-1], size)
-    first = np.cumsum(pieces) - pieces
-    key = np.repeat(first, size) + within * np.repeat(pieces, size) // np.repeat(size, size)
+    # By segment: its place in its branch, and the size, pieces and first piece of that.
+    own = tree.branch_of_segment
+    size = np.diff(tree.branch_first)[own]
+    within = np.arange(tree.n_segments) - tree.branch_first[own]
+    first_piece = np.cumsum(pieces) - pieces
+    piece = first_piece[own] + within * pieces[own] // size
     names = np.repeat(np.array(tree.branch_names, dtype=object), pieces)
     cut = tree_from_segments(
-        tree.start, tree.end, np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
-        parent=tree.segment_parent, branch=key, branch_names=names.tolist(), name=tree.name,
+        tree.start,
+        tree.end,
+        np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
+        parent=tree.segment_parent,
+        branch=piece,
+        branch_names=names.tolist(),
+        name=tree.name,
         species=tree.species,
-    )  # fmt: skip
-    branch = tree.branch_of_segment[cut.source_index[cut.branch_first[:-1]]]
-    return CutTree(cut, branch, cut.source_index, cut.branch_length / tree.branch_length[branch])
+    )
+    branch = own[cut.source_index[cut.branch_first[:-1]]]
+    share = cut.branch_length / tree.branch_length[branch]
+    return CutTree(cut, branch, cut.source_index, share)

@@ -42,6 +42,13 @@ class Bases(NamedTuple):
         return cls(np.zeros((count, 6)), orientation, *np.zeros((3, count, 3)))
 
 
+_FIELDS = (
+    'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever', 'speed', 'base',
+    'arm', 'per_arm', 'spread', 'area', 'frame',
+)  # fmt: skip
+"""Fields of the records that the passes read."""
+
+
 class NumpyPasses:
     """
     Outward pass, wind and inward pass over `Branch` records, parents before children.
@@ -51,18 +58,14 @@ class NumpyPasses:
 
     def __init__(self, branches: Records) -> None:
         """Read the fields of the records, and sort the branches by level."""
-        names = (
-            'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
-            'speed', 'base', 'arm', 'per_arm',
-        )  # fmt: skip
-        self.air, self.wrench = np.zeros((len(branches), 3)), np.zeros((len(branches), 6))
+        self.air = np.zeros((len(branches), 3))
+        """Wind in the turned frame of each base [m/s], (b, 3), of the last `wind_forces`."""
+        self.wrench = np.zeros((len(branches), 6))
         """
-        Wind in the turned frame of each base [m/s], (b, 3), and force and moment on each branch
-        and its subtree [N, N m], (b, 6), of the last `wind_forces` and `bent_loads`.
+        Force and moment on each branch and its subtree [N, N m], (b, 6), of the last `bent_loads`.
         """
         self._branch: dict[str, NDArray[Any]] = {
-            name: np.ascontiguousarray(branches[name])
-            for name in (*names, 'spread', 'area', 'frame')
+            name: np.ascontiguousarray(branches[name]) for name in _FIELDS
         }
         self._coupling = branches['coupling'] - cross_matrix(branches['base'])
         xx, yy, zz, xy, xz, yz = branches['projector'].T
@@ -77,26 +80,42 @@ class NumpyPasses:
         return np.asarray(np.where(self.is_there, x[self._column], 0.0))
 
     def outward(self, x: Floats, v: Floats) -> Bases:
-        """Move the bases by angles and rates (b, c)."""
+        """
+        Move the bases by angles and rates (b, c).
+
+        A base is displaced by d and turned by r on its parent. Its arm keeps its length, to second
+        order: ``a (1 - d.d / 2 a.a) + d``. The rotation vector changes at the rate r', the base
+        spins with ``r' + r x r' / 2 + r x (r x r') / 6``.
+        """
         bases = Bases.at_rest(len(x))
         for level in self.levels:
-            names = ('parent', 'twist', 'base', 'arm')
-            parent, twist, at, arm = (self._branch[name][level] for name in names)
-            moved, rate = (np.einsum('bc,bck->bk', each[parent], twist) for each in (x, v))
-            rotation, spin = moved[:, 3:], rate[:, 3:]
-            shift, slide = moved[:, :3] + cross(rotation, at), rate[:, :3] + cross(spin, at)
-            per = self._branch['per_arm'][level, None]
-            bent = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
-            slide -= 2.0 * per * (shift * slide).sum(axis=1, keepdims=True) * arm
-            parent_velocity = bases.velocity[parent]
-            gyration = cross(rotation, spin)
-            spin = parent_velocity[:, 3:] + spin + 0.5 * gyration + cross(rotation, gyration) / 6.0
-            place = parent_velocity[:, :3] + cross(parent_velocity[:, 3:], bent) + slide
-            moving = [turned_by(-rotation, each) for each in (place, spin)]
-            bases.velocity[level] = np.hstack(moving)
-            turned = quaternion_product(bases.orientation[parent], quaternions_of(rotation))
-            bases.orientation[level], bases.rotation[level] = turned, rotation
-            bases.displacement[level], bases.arm[level] = shift, bent
+            branch = {name: self._branch[name][level] for name in _OF_JOINTS}
+            parent = branch['parent']
+            base = branch['base']
+            arm = branch['arm']
+            per_arm = branch['per_arm'][:, None]
+            moved = _sums(x[parent], branch['twist'])
+            moving = _sums(v[parent], branch['twist'])
+            rotation = moved[:, 3:]
+            turning = moving[:, 3:]
+            shift = moved[:, :3] + cross(rotation, base)
+            shifting = moving[:, :3] + cross(turning, base)
+
+            bent_arm = arm * (1.0 - per_arm * _dot(shift, shift)) + shift
+            shifting -= 2.0 * per_arm * _dot(shift, shifting) * arm
+            parent_velocity = bases.velocity[parent, :3]
+            parent_spin = bases.velocity[parent, 3:]
+            gyration = cross(rotation, turning)
+            spin = parent_spin + turning + 0.5 * gyration + cross(rotation, gyration) / 6.0
+            velocity = parent_velocity + cross(parent_spin, bent_arm) + shifting
+
+            bases.velocity[level, :3] = turned_by(-rotation, velocity)
+            bases.velocity[level, 3:] = turned_by(-rotation, spin)
+            own_turn = quaternions_of(rotation)
+            bases.orientation[level] = quaternion_product(bases.orientation[parent], own_turn)
+            bases.rotation[level] = rotation
+            bases.displacement[level] = shift
+            bases.arm[level] = bent_arm
         return bases
 
     def wind_forces(
@@ -114,15 +133,18 @@ class NumpyPasses:
         air = self.air - bases.velocity[:, :3]
         rotation = self.load_rotation(x)
         spin = turned_by(-rotation, bases.velocity[:, 3:])
-        u = turned_by(-rotation, air) - np.einsum('bij,bi->bj', self._coupling, spin)
-        u += compliance[:, None] * impulse - np.einsum('bc,bck->bk', v, branch['damping_mode'])
-        across = np.einsum('bij,bj->bi', self._projector, u)
+        by_spin = np.einsum('bij,bi->bj', self._coupling, spin)
+        by_own_motion = _sums(v, branch['damping_mode'])
+        relative = turned_by(-rotation, air) - by_spin
+        relative += compliance[:, None] * impulse - by_own_motion
+        across = np.einsum('bij,bj->bi', self._projector, relative)
+        square = np.maximum(np.einsum('bi,bi->b', relative, across), 0.0)
         spread = branch['spread'] * np.square(v[:, :2]).sum(axis=1)
-        speed = np.sqrt(np.maximum(np.einsum('bi,bi->b', u, across), 0.0) + spread)
-        c = per_speed_squared * branch['area']
-        share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * c * speed))
-        per_speed = (c * speed * share**2)[:, None]
-        impulse[:] = per_speed * u
+        speed = np.sqrt(square + spread)
+        drag = per_speed_squared * branch['area']
+        share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * drag * speed))
+        per_speed = (drag * speed * share**2)[:, None]
+        impulse[:] = per_speed * relative
         return np.asarray(per_speed * across)
 
     def at_bases(self, x: Floats, force: Floats) -> Floats:
@@ -131,13 +153,14 @@ class NumpyPasses:
 
     def load_rotation(self, x: Floats) -> Floats:
         """Rotation vectors [rad] of the loaded pieces of branches at angles (b, c), (b, 3)."""
-        return np.asarray(np.einsum('bc,bck->bk', x, self._branch['load_rotation']))
+        return _sums(x, self._branch['load_rotation'])
 
     def own_loads(self, force: Floats) -> Floats:
         """Find the load along each chord and the moments on its key rotation in [N m], (b, 3)."""
         branch = self._branch
-        own = np.einsum('bck,bk->bc', branch['load_mode'][:, :2], force)
-        pull = branch['lever'] * np.einsum('bk,bk->b', branch['frame'][:, 0], force)
+        own = _works(branch['load_mode'][:, :2], force)
+        along_chord = np.einsum('bk,bk->b', branch['frame'][:, 0], force)
+        pull = branch['lever'] * along_chord
         return np.hstack([pull[:, None], own])
 
     def bent_loads(self, bases: Bases, x: Floats, force: Floats, moment: Floats) -> Floats:
@@ -146,26 +169,50 @@ class NumpyPasses:
 
         Forces (b, 3) are those of `wind_forces`; they are returned in the frame of the tree.
         """
-        branch = self._branch
         load_rotation = self.load_rotation(x)
-        own = np.einsum('bck,bk->bc', branch['load_mode'], force)
-        couple = turned_by(load_rotation, np.einsum('bij,bj->bi', self._coupling, force))
-        wrench = np.hstack([turned_by(load_rotation, force), couple])
+        own = _works(self._branch['load_mode'], force)
+        couple = np.einsum('bij,bj->bi', self._coupling, force)
+        wrench = np.hstack([turned_by(load_rotation, force), turned_by(load_rotation, couple)])
         world = quaternion_rotated(bases.orientation, wrench[:, :3])
         for level in reversed(self.levels):
-            names = ('parent', 'twist', 'base', 'arm')
-            parent, twist, at, arm = (branch[name][level] for name in names)
-            rotation, shift = bases.rotation[level], bases.displacement[level]
-            per = branch['per_arm'][level, None]
-            f, m = (turned_by(rotation, wrench[level][:, k : k + 3]) for k in (0, 3))
-            np.add.at(wrench, parent, np.hstack([f, m + cross(bases.arm[level], f)]))
-            f = f - 2.0 * per * (arm * f).sum(axis=1, keepdims=True) * shift
-            gyration = cross(m, rotation)
-            m = m + 0.5 * gyration + cross(gyration, rotation) / 6.0 + cross(at, f)
-            np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
+            branch = {name: self._branch[name][level] for name in _OF_JOINTS}
+            parent = branch['parent']
+            per_arm = branch['per_arm'][:, None]
+            rotation = bases.rotation[level]
+            shift = bases.displacement[level]
+            handed = turned_by(rotation, wrench[level, :3])
+            turning = turned_by(rotation, wrench[level, 3:])
+            on_parent = turning + cross(bases.arm[level], handed)
+            np.add.at(wrench, parent, np.hstack([handed, on_parent]))
+
+            # The transpose of the motion in `outward`.
+            pull = handed - 2.0 * per_arm * _dot(branch['arm'], handed) * shift
+            gyration = cross(turning, rotation)
+            turn = turning + 0.5 * gyration + cross(gyration, rotation) / 6.0
+            turn = turn + cross(branch['base'], pull)
+            np.add.at(own, parent, _works(branch['twist'], np.hstack([pull, turn])))
         self.wrench = wrench
         moment[self._column[self.is_there]] = own[self.is_there]
         return world
+
+
+_OF_JOINTS = ('parent', 'twist', 'base', 'arm', 'per_arm')
+"""Fields of the joint of a branch to its parent."""
+
+
+def _sums(amounts: Floats, modes: Floats) -> Floats:
+    """Sum modes (b, c, k) times the amounts (b, c) of each, (b, k)."""
+    return np.asarray(np.einsum('bc,bck->bk', amounts, modes))
+
+
+def _works(modes: Floats, forces: Floats) -> Floats:
+    """Return what forces (b, k) do per unit of modes (b, c, k), (b, c)."""
+    return np.asarray(np.einsum('bck,bk->bc', modes, forces))
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Scalar products of vectors (b, 3), (b, 1)."""
+    return np.asarray((a * b).sum(axis=1, keepdims=True))
 
 
 def copies_of(branches: Records, count: int) -> Records:

@@ -84,10 +84,9 @@ def stream_arrays(
     found = {each.speed: each for each in responses}
     motions = np.hstack([_weighted(inner, found[speed]) for speed in WEIGHTS])
     basis, projection = principal_components(inner, motions)
-    reach = _largest(found[REACH], projection)
-    scale = MARGIN * np.maximum(reach, _LEAST_SCALE * _size(branches))
+    scale = _scale(branches, _largest(found[REACH], projection))
     poses = _gusty_poses(found[REACH])
-    missed = poses - basis @ rounded((projection @ poses).T, scale).T
+    missed = _missed(poses, basis, projection, scale)
     error = _largest_error(branches, shapes @ missed)
     return arrays_of_stream(StateBasis(basis, projection, scale, error))
 
@@ -122,11 +121,23 @@ def basis_of_responses(branches: Records, responses: Floats, greatest: Floats) -
     tips, between = np.split(moved, [3 * len(branches)])
     projection = tip_moments(branches, tips.reshape(len(branches), 3, mixes.shape[1]))
     projection += _between(branches) * between
-    basis, projection = responses @ mixes, projection.T
+    basis = responses @ mixes
+    projection = projection.T
     reach = np.abs(projection @ greatest).max(axis=1, initial=0.0)
-    scale = MARGIN * np.maximum(reach, _LEAST_SCALE * _size(branches))
-    missed = greatest - basis @ rounded((projection @ greatest).T, scale).T
+    scale = _scale(branches, reach)
+    missed = _missed(greatest, basis, projection, scale)
     return StateBasis(basis, projection, scale, _largest_error(branches, missed))
+
+
+def _scale(branches: Records, reach: Floats) -> Floats:
+    """Return the full scale of coordinates by their largest values, (k,)."""
+    return MARGIN * np.maximum(reach, _LEAST_SCALE * _size(branches))
+
+
+def _missed(poses: Floats, basis: Floats, projection: Floats, scale: Floats) -> Floats:
+    """Return what a stream in a basis leaves out of poses (m, p), and loses by rounding."""
+    streamed = rounded((projection @ poses).T, scale)
+    return poses - basis @ streamed.T
 
 
 def principal_components(inner: Floats, motions: Floats) -> tuple[Floats, Floats]:
@@ -146,19 +157,29 @@ def principal_components(inner: Floats, motions: Floats) -> tuple[Floats, Floats
         R, (m, k), and P, (k, m): the smallest number of `COUNTS` that suffices.
 
     """
-    squares, ways = np.linalg.eigh(motions @ motions.T)
-    factor = ways * np.sqrt(np.maximum(squares, 0.0))
-    squares, mixes = np.linalg.eigh(factor.T @ inner @ factor)
-    squares, mixes = np.maximum(squares[::-1], 0.0), mixes[:, ::-1]
+    own_squares, axes = np.linalg.eigh(motions @ motions.T)
+    factor = axes * np.sqrt(np.maximum(own_squares, 0.0))
+    ascending, mixes = np.linalg.eigh(factor.T @ inner @ factor)
+    squares = np.maximum(ascending[::-1], 0.0)
+    count = _count_needed(squares)
+    mixes = mixes[:, ::-1][:, :count]
+    shapes = factor @ (mixes / np.sqrt(squares[:count]))
+    # The largest number of each shape is positive.
+    if count > 0:
+        largest = np.abs(shapes).argmax(axis=0)
+        shapes = shapes * np.sign(shapes[largest, np.arange(count)])
+    return shapes, shapes.T @ inner
+
+
+def _count_needed(squares: Floats) -> int:
+    """Return the smallest of `COUNTS` that covers motions, by descending squares of shapes."""
     # Below rounding a shape is none.
     most = int((squares > 1e-14 * squares.max(initial=0.0)).sum())
     left_out = 1.0 - np.cumsum(squares) / max(float(squares.sum()), _TINY)
-    enough = (k for k in COUNTS if k >= most or left_out[k - 1] <= LEFT_OUT**2)
-    count = min(most, next(enough, COUNTS[-1]))
-    shapes = factor @ (mixes[:, :count] / np.sqrt(squares[:count]))
-    signs = np.sign(shapes[np.abs(shapes).argmax(axis=0), np.arange(count)]) if count else 1.0
-    shapes = shapes * signs
-    return shapes, shapes.T @ inner
+    for count in COUNTS:
+        if count >= most or left_out[count - 1] <= LEFT_OUT**2:
+            return min(most, count)
+    return min(most, COUNTS[-1])
 
 
 def _moved(branches: Records, rotations: Floats) -> Floats:
@@ -180,14 +201,18 @@ def _size(branches: Records) -> float:
 
 def _weighted(inner: Floats, response: Leaning) -> Floats:
     """Motions in a steady wind, (m, any), of the same size in every wind but for its weight."""
-    m = len(inner)
-    gusts = np.moveaxis(response.gusts, 2, 0).reshape(m, -1)
-    parts = (_STEADY, response.poses.T), (1.0, np.hstack([gusts.real, gusts.imag]))
-    sized = []
-    for weight, motion in parts:
-        size = np.sqrt(np.einsum('mi,mi->', motion, inner @ motion))
-        sized.append(weight / size * motion if size > _STILL else np.zeros_like(motion))
-    return WEIGHTS[response.speed] * np.hstack(sized)
+    waves = np.moveaxis(response.gusts, 2, 0).reshape(len(inner), -1)
+    gusts = _of_size(1.0, np.hstack([waves.real, waves.imag]), inner)
+    steady = _of_size(_STEADY, response.poses.T, inner)
+    return WEIGHTS[response.speed] * np.hstack([steady, gusts])
+
+
+def _of_size(size: float, motions: Floats, inner: Floats) -> Floats:
+    """Scale motions (m, any) to a root of the sum of their squares; zeros where they are still."""
+    own_size = np.sqrt(np.einsum('mi,mi->', motions, inner @ motions))
+    if not own_size > _STILL:
+        return np.zeros_like(motions)
+    return np.asarray(size / own_size * motions)
 
 
 def _largest(response: Leaning, projection: Floats) -> Floats:
