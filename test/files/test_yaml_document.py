@@ -20,8 +20,8 @@ def schemas(schema):
 
 ENFORCED = {
     'type', 'properties', 'required', 'additionalProperties', 'items', 'minItems', 'maxItems',
-    'minimum', 'maximum', 'exclusiveMinimum', 'minLength', 'anyOf', '$ref', '$defs', '$schema',
-    'title', 'description', 'oneOf',
+    'minimum', 'maximum', 'exclusiveMinimum', 'minLength', 'maxLength', 'anyOf', '$ref', '$defs',
+    '$schema', 'title', 'description', 'oneOf',
 }  # fmt: skip
 
 

@@ -34,7 +34,7 @@ _TYPES = {yaml.MappingNode: 'object', yaml.SequenceNode: 'array', yaml.ScalarNod
 _KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
           'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
 _LIMITS = {'minimum': 'at least', 'exclusiveMinimum': 'more than', 'maximum': 'at most',
-           'minItems': 'at least', 'maxItems': 'at most'}  # fmt: skip
+           'minItems': 'at least', 'maxItems': 'at most', 'maxLength': 'at most'}  # fmt: skip
 
 
 def packaged_schema(name: str) -> Schema:
