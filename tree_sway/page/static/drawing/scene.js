@@ -43,8 +43,8 @@ const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
-/** Light that leathery leaves of evergreens throw back like a mirror. */
-const GLOSS = 0.2;
+/** Light that leathery leaves of evergreens throw back like a mirror; and a card of many, which face all ways. */
+const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
 /** Rows that no branch has. */
 const NONE = [-2, -2];
 /** When a horse chestnut flowers, in months from 1. */
@@ -320,7 +320,8 @@ export class Scene {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned, gloss: look.autumn || look.has_needles ? 0 : GLOSS,
+        leaves: [2, pictures.get(name)], unturned,
+        gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };
   }
