@@ -38,8 +38,8 @@ def failure_text(error: Exception) -> str:
     """
     certificate = getattr(error, 'certificate_error', error)  # of aiohttp
     if isinstance(certificate, ssl.SSLCertVerificationError):
-        cure = 'if the site signed it itself, name it: SSL_CERT_FILE=there.pem'
-        return shown(f'untrusted certificate ({certificate.verify_message}); {cure}', _LONGEST)
+        advice = 'if the site signed it itself, name it: SSL_CERT_FILE=there.pem'
+        return shown(f'untrusted certificate ({certificate.verify_message}); {advice}', _LONGEST)
     inner = getattr(error, 'os_error', error)  # of aiohttp
     if isinstance(inner, socket.gaierror):
         return 'no such name: check it, and the network'
