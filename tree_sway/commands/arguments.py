@@ -18,7 +18,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import LEAVES
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError, SpeciesError
+from tree_sway.errors import ParameterError, shown, SpeciesError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -225,4 +225,4 @@ def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
 def what_was_written(path: str, tree: Tree) -> str:
     """Return a line about a tree in a file."""
     size = f'{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
-    return f'{path}: {tree.name}, {size}'
+    return f'{path}: {shown(tree.name)}, {size}'

@@ -42,7 +42,10 @@ def watch(
         while check() and (left := begin + seconds - time.monotonic()) > 0.0:
             monitor.spin(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
             line = status_line(monitor.take_recent(), time.monotonic() - begin)
-            print(f'\r\033[K{line}' if is_live else line, end='' if is_live else '\n', flush=True)
+            if is_live:
+                # `sys.stdout` escapes control sequences inside a command.
+                print('\r\033[K', end='', file=sys.__stdout__, flush=True)
+            print(line, end='' if is_live else '\n', flush=True)
     except KeyboardInterrupt:
         pass
     if is_live:
