@@ -161,12 +161,12 @@ class SensorReadings:
 
     def _lags_of(self, track: SensorTrack) -> LagRange:
         """Find which lags of the wind a sensor may tell."""
-        if self._told_lag is None:
-            least = max(round(_LEAST_LAG / self._dt), track.window)
-        elif self._told_lag is track:
+        delay = self._wind.delay
+        if self._told_lag not in (None, track):
+            return NO_LAG
+        if delay:
             least = round(_LEAST_CHANGE / self._dt)
         else:
-            return NO_LAG
-        delay = self._wind.delay
+            least = max(round(_LEAST_LAG / self._dt), track.window)
         earliest = -math.floor(delay / self._dt)
         return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)
