@@ -43,7 +43,8 @@ Limits = tuple[tuple[float, float], tuple[float, float]]
 
 def seen(points: ArrayLike) -> Floats:
     """Right, up and away of points (..., 3), all in [m]."""
-    sine, cosine = np.sin(ELEVATION), np.cos(ELEVATION)
+    sine = np.sin(ELEVATION)
+    cosine = np.cos(ELEVATION)
     right = [1.0, 0.0, 0.0]
     up = [0.0, sine, cosine]
     away = [0.0, cosine, -sine]
@@ -152,7 +153,8 @@ def _hazed(colors: Floats, away: Floats, limits: Limits) -> Floats:
 
 def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
     """Four corners of each segment: right, up and away, (n, 4, 3)."""
-    base, tip = seen(start), seen(end)
+    base = seen(start)
+    tip = seen(end)
     across = np.cross(tip - base, [0.0, 0.0, 1.0])
     across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
     base_diameter = np.concatenate([tree.base_diameter for tree in trees])[:, None]

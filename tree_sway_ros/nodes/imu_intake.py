@@ -63,7 +63,10 @@ class ImuIntake:
     def __init__(
         self, node: TreeSwayNode, run: Run, twin: ObservedTree, arrived: Callable[[], object]
     ) -> None:
-        self._node, self._run, self._twin, self._arrived = node, run, twin, arrived
+        self._node = node
+        self._run = run
+        self._twin = twin
+        self._arrived = arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}
@@ -148,7 +151,8 @@ class ImuIntake:
         found = []
         self._run.request(self._find_band)
         for each in sensor_reports(self._twin):
-            problem, counts = each.problem, each.counts
+            problem = each.problem
+            counts = each.counts
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
                 'place': self._twin.at[each.name],

@@ -158,13 +158,15 @@ class AdaptiveSimulator(SwaySimulator):
     ) -> None:
         """Push as `SwaySimulator.push`, on most coordinates until the free swing is over."""
         super().push(segment, force, seconds, along=along)
-        was_free, self._touched_for = self._touched_for <= 0.0, seconds + SWINGS_ON
+        was_free = self._touched_for <= 0.0
+        self._touched_for = seconds + SWINGS_ON
         if was_free:
             self.review()
 
     def review(self, *, at_best: bool = False) -> Estimate:
         """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
-        self._since_review, self._judged = 0.0, self._gust
+        self._since_review = 0.0
+        self._judged = self._gust
         climate = self._tracker.climate
         # The wind to come has the last gust and the last minute's turbulence.
         mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
@@ -188,13 +190,16 @@ class AdaptiveSimulator(SwaySimulator):
         """Choose among the numbers up to a count from now on, until `reset`."""
         dialled(self._bank).keep_only(count)
         self.review()
-        self._shares[count:], self._begun[:] = 0.0, 0.0
+        self._shares[count:] = 0.0
+        self._begun[:] = 0.0
         self._show()
 
     def _expect(self) -> None:
         """Choose for the expected wind."""
         self._tracker = ClimateTracker()
-        self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
+        self._gust = 0.0
+        self._bearing = np.array([1.0, 0.0, 0.0])
+        self._since_review = 0.0
         self._judged = float(np.linalg.norm(self._expected_wind.mean))
         self.choice = self._choose(self.estimates(self._expected_wind))
         self._add()
@@ -204,12 +209,15 @@ class AdaptiveSimulator(SwaySimulator):
         """Show in full what was not, from its present displacement on."""
         count = self.choice.n_coordinates
         if self._shares[:count].min(initial=1.0) < 1.0:
-            self._begun[:count], self._shares[:count], self._left[:] = self._hidden[:count], 1, 1
+            self._begun[:count] = self._hidden[:count]
+            self._shares[:count] = 1
+            self._left[:] = 1
             self._show()
 
     def _fade(self, dt: float) -> None:
         """Fade what is left out, and the displacement that added coordinates began with."""
-        left_out, before = self._shares[self.choice.n_coordinates :], _smooth(self._left)
+        left_out = self._shares[self.choice.n_coordinates :]
+        before = _smooth(self._left)
         if before > 0.0 or left_out.max(initial=0.0) > 0.0:
             self._left[:] = np.maximum(self._left - dt / ADD_IN, 0.0)
             self._begun *= _smooth(self._left) / np.maximum(before, 1e-300)
@@ -231,7 +239,8 @@ class AdaptiveSimulator(SwaySimulator):
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):
-            self._gust, self._bearing = load, np.array([x, y, z])
+            self._gust = load
+            self._bearing = np.array([x, y, z])
             if load > SURPRISE * self._judged:
                 self.review(at_best=load > LOAD_JUMP * self._tracker.largest_load)
 

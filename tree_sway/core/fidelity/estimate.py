@@ -136,8 +136,10 @@ class ErrorEstimator:
 
     def __init__(self, tree: Tree, bank: Bank, drag_law: DragLaw) -> None:
         """Find the motion of the tips by each coordinate."""
-        self._bank, self._law = bank, drag_law
-        branches, shapes = bank.branches, bank.oscillators.shapes
+        self._bank = bank
+        self._law = drag_law
+        branches = bank.branches
+        shapes = bank.oscillators.shapes
         m = shapes.shape[1]
         self.dial = tuple(sorted({k for k in DIAL if k < m} | {m}))
         """Numbers of coordinates that are estimated."""
@@ -155,7 +157,8 @@ class ErrorEstimator:
     def refresh(self) -> None:
         """Take over the present tuning of the tree."""
         tunable = self._bank.oscillators.tunable
-        self._stiffness, self._own_damping = tunable.stiffness.copy(), tunable.damping.copy()
+        self._stiffness = tunable.stiffness.copy()
+        self._own_damping = tunable.damping.copy()
         natural = np.sqrt(self._stiffness) / (2.0 * np.pi)
         self._frequencies = np.union1d(_FREQUENCIES, np.outer(natural, _BESIDE))
         self._grams = lru_cache(maxsize=8)(self._find_grams)
@@ -170,7 +173,8 @@ class ErrorEstimator:
         load = self._loads[bearing] @ _AXES[bearing] @ (per_square * steady)
         turn, soft = self._largest_turns(load)
         gusts = 1.0 + 2.0 * swing / max(offset, 1e-12)
-        turn, soft = gusts * turn, gusts * soft
+        turn = gusts * turn
+        soft = gusts * soft
         nonlinear = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
         nonlinear += (LIFT_FLOOR + LIFT * turn) * upward
         # A branch that rotates far yields to the wind, and moves no farther than its length.
@@ -258,7 +262,8 @@ def frame_cost(bank: Bank, n_coordinates: int | None = None) -> float:
 
     Prices are fits to trees of 31 to 1,001 branches, timed on one core of a server of 2020.
     """
-    branches, oscillators = bank.branches, bank.oscillators
+    branches = bank.branches
+    oscillators = bank.oscillators
     n = len(branches)
     enriched = int((branches['n_coordinates'] > 2).sum())
     segments = int((branches['end'] - branches['first']).sum())

@@ -130,7 +130,9 @@ class _Growing:
         exact: bool,
     ) -> None:
         """Sort the rows into classes."""
-        self._inventory, self._given, self._seed = inventory, given, seed
+        self._inventory = inventory
+        self._given = given
+        self._seed = seed
         self.notes = notes
         wood = inventory.wood
         self.keys = [wood[each].key if each in wood else each for each in inventory.species]
@@ -181,7 +183,8 @@ def grown_kind(
 
     An impossible stem is made thinner or thicker, which is added to the notes.
     """
-    key, diameter = species.key, None
+    key = species.key
+    diameter = None
     if slenderness:
         low, high = stem_range(species, height)
         diameter = min(max(height / slenderness, low), high)

@@ -66,13 +66,15 @@ class LearnedFile:
 
     def write(self, learned: LearnedTree) -> None:
         """Write the tree with what was learned, before and in this run."""
-        before, species = self.opened.learned, self.opened.species
+        before = self.opened.learned
+        species = self.opened.species
         species = learned.over(before).of(species, in_leaf=self._in_leaf)
         write_text_whole(self.path, yaml_of_tree(self.opened.tree, species, learned))
 
     def keep(self, twin: ObservedTree) -> bool:
         """Write what a tree has learned since the last call, if anything; tell whether it was."""
-        fit, learned = twin.observer.fit, twin.learned
+        fit = twin.observer.fit
+        learned = twin.learned
         if fit is None or fit is self._kept or learned is None:
             return False
         self._kept = fit

@@ -86,7 +86,8 @@ class InventoryColumns:
 
         A cell may have several ``stems``, which count as one of their whole section.
         """
-        values, units = np.full(self.n_rows, np.nan), Counter[str]()
+        values = np.full(self.n_rows, np.nan)
+        units = Counter[str]()
         n_ranges = 0
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)

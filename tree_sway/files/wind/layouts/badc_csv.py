@@ -16,7 +16,8 @@ from tree_sway.files.table_file import parse_table, split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'conventions,g,badc-csv'
-_BEGIN, _END = 'data', 'end data'
+_BEGIN = 'data'
+_END = 'end data'
 _UNIT = 3
 """Field of a line ``long_name`` with the unit."""
 

@@ -20,7 +20,8 @@ from tree_sway.files.wind.layouts.layout import Layout
 _NAMES = ('time', 'wind direction', 'wind speed')
 _UNITS = ('', 'deg', 'm/s')
 _HEADER = 8
-_DIRECTION, _SPEED = 20, 21
+_DIRECTION = 20
+_SPEED = 21
 _MISSING = '999'
 
 

@@ -20,10 +20,14 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'ダウンロードした時刻'
-_SPEED, _GUST, _DIRECTION, _QUALITY = '風速(m/s)', '最大瞬間風速(m/s)', '風向', '品質情報'
+_SPEED = '風速(m/s)'
+_GUST = '最大瞬間風速(m/s)'
+_DIRECTION = '風向'
+_QUALITY = '品質情報'
 _MEANS = (_SPEED, '平均風速(m/s)')
 """Elements that are a mean wind speed: of ten minutes or of a day."""
-_STATIONS, _ELEMENTS = 2, 3
+_STATIONS = 2
+_ELEMENTS = 3
 _ROW = re.compile(r'\d{4}/\d{1,2}/\d{1,2}')
 _NAMES = ('time (Asia/Tokyo)', 'wind speed', 'wind direction', 'gust')
 _UNITS = ('', 'm/s', '', 'm/s')
@@ -43,7 +47,8 @@ def _read(lines: list[str], source: str) -> TextTable:
     if len(stations) > 1:
         what = f'several stations: {", ".join(sorted(stations)[:5])}'
         raise FormatError(what, where=source, cure='download one at a time')
-    elements, labels = cells[_ELEMENTS], cells[_ELEMENTS + 1 : first]
+    elements = cells[_ELEMENTS]
+    labels = cells[_ELEMENTS + 1 : first]
     mean = next((each for each in _MEANS if each in elements), _SPEED)
     columns = [
         _column(elements, labels, mean, ()),

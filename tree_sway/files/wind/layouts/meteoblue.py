@@ -39,7 +39,8 @@ def _read(lines: list[str], source: str) -> TextTable:
     header = _header(lines) or 0
     names = lines[header].split(',')
     units = next((line.split(',') for line in lines[:header] if line.startswith('unit,')), [])
-    places, columns = [0], ['time']
+    places = [0]
+    columns = ['time']
     for quantity, ending in _QUANTITIES.items():
         found = [place for place, name in enumerate(names) if name.endswith(ending)]
         places += found[:1]
