@@ -23,7 +23,10 @@ _UNIT = 3
 
 
 def _is_badc(lines: Sequence[str]) -> bool:
-    return bool(lines) and lines[0].replace(' ', '').lower().startswith(_FIRST)
+    if not lines:
+        return False
+    first = lines[0].replace(' ', '').lower()
+    return first.startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -37,7 +40,8 @@ def _read(lines: list[str], source: str) -> TextTable:
             units[fields[1]] = fields[_UNIT]
     blank = [''] * begin  # keeps the numbers of the lines
     table = parse_table(blank + lines[begin:end], source)
-    return replace(table, units=tuple(units.get(column, '') for column in table.columns))
+    units_of_columns = [units.get(column, '') for column in table.columns]
+    return replace(table, units=tuple(units_of_columns))
 
 
 BADC_CSV = Layout('badc-csv', _is_badc, _read)
