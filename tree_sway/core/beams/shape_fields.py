@@ -151,9 +151,11 @@ def shaken_energies(
         the fields.
 
     """
-    force = subtrees.mass[:, None, None] * np.eye(3)
-    moment = cross(subtrees.mass_moment[:, None], np.eye(3))
-    moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
+    axes = np.eye(3)
+    load = mass[..., None, None] * axes
+    force = subtrees.mass[:, None, None] * axes
+    moment = cross(subtrees.mass_moment[:, None], axes)
+    moments = beam.moment_in_space(load, force, moment)
     by_shaking = np.moveaxis(beam.curvature_in_space(moments, shear_ratio), 2, 0)
     of_fields = [field.curvature for field in fields]
     vectors = np.array(
