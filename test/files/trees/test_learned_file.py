@@ -95,3 +95,17 @@ def test_a_file_that_would_be_lost_is_refused(tmp_path: Path) -> None:
         LearnedFile(str(tmp_path / 'own.glb'), opened)
     with pytest.raises(FormatError, match='no such folder'):
         LearnedFile(str(tmp_path / 'none' / 'own.yaml'), opened)
+
+
+def test_what_another_program_learned_meanwhile_stays(tmp_path: Path) -> None:
+    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    ours, theirs = LearnedFile(str(path), opened), LearnedFile(str(path), opened)
+    theirs.write(replace(ONCE, hours=9.0))
+    kept = path.read_text(encoding='utf-8')
+    with pytest.raises(FormatError, match='was written by another program meanwhile'):
+        ours.write(ONCE)
+    assert path.read_text(encoding='utf-8') == kept
+    theirs.write(replace(ONCE, hours=10.0))
+    path.unlink()
+    ours.write(ONCE)
+    assert path.is_file()
