@@ -56,8 +56,10 @@ class TreeFile:
         return (*self.faults, *oddities(self.tree, self.species))
 
     def of_species(self, species: Species) -> TreeFile:
-        """Return the tree with a different species, and its leaves."""
-        return replace(self, tree=replace(self.tree, species=species.key), species=species)
+        """Return the tree with a species and its leaves; nothing was learned of another one."""
+        tree = replace(self.tree, species=species.key)
+        learned = self.learned if species == self.species else None
+        return replace(self, tree=tree, species=species, learned=learned)
 
     def checked(self) -> TreeFile:
         """Return the tree if it is plausible, else raise as `refuse_implausible`."""
