@@ -21,12 +21,12 @@ those of its gusts::
 
     x'' + (z s^1/2 c + a d) x' + s k x = a (F + d q') + g
 
-x is the member's coordinate and q the model's; k, c stiffness and damping of the wood, d damping by
-the air, F the force on the model; s, z, a the member's stiffness, damping and drag over the model's,
-g the force of its gusts.
+x is the member's coordinate and q the model's; k, c stiffness and damping of the wood, d damping
+by the air, F the force on the model; s, z, a the member's stiffness, damping and drag over those
+of the model, g the force of its gusts.
 
-Where there are sensors, the filter runs once for each member, on a simulated measurement of it. The
-band is what remains between the members and the filter's estimates of them (an ensemble as in
+Where there are sensors, the filter runs once for each member, on a simulated measurement of it.
+The band is what remains between the members and the filter's estimates of them (an ensemble as in
 Evensen 2003, Ocean Dynamics 53, 343-367, with fixed gains). Arrays are (coordinates n, members e).
 """
 
@@ -86,9 +86,9 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     """
     Draw values of the normal distribution, (n_values, count), one from each stratum.
 
-    Independent draws would be correlated by chance, and the lean of a tree varies with the ratio of
-    its wood and drag. Ranks are taken from draws whose correlation is removed (Iman & Conover 1982,
-    Communications in Statistics B11, 311-334).
+    Independent draws would be correlated by chance, and the lean of a tree varies with the ratio
+    of its wood and drag. Ranks are taken from draws whose correlation is removed (Iman & Conover
+    1982, Communications in Statistics B11, 311-334).
     """
     strata = ndtri((np.arange(count) + 0.5) / count)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
@@ -137,7 +137,6 @@ class Members:
         """Displacement and rate of each, (2, n, e)."""
         self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
         self._next = np.zeros((2, n, N_MEMBERS))
-        self._terms = np.zeros((3, n, N_MEMBERS))
         self._felt = np.zeros((3, n, N_MEMBERS))
         self._estimate = np.zeros((3, n, N_MEMBERS))
         self._moved = np.zeros((3, 3, n, N_MEMBERS))
