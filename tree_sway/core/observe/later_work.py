@@ -18,14 +18,14 @@ _T_co = TypeVar('_T_co', covariant=True)
 
 
 class Awaited(Protocol[_T_co]):
-    """What is waited for, as a `concurrent.futures.Future`."""
+    """What is waited for, as a ``concurrent.futures.Future``."""
 
     def result(self) -> _T_co:
         """Wait for the result."""
 
 
 class Submit(Protocol):
-    """Begin a call beside the caller, as `concurrent.futures.Executor.submit`."""
+    """Begin a call beside the caller, as ``concurrent.futures.Executor.submit``."""
 
     def __call__(self, call: Callable[[], _T], /) -> Awaited[_T]:
         """Begin a call."""
