@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Work that is begun at one step and needed at a later one.
+Work in another thread that one step begins and a later one needs.
 
 Gains, mountings and fits take milliseconds and change slowly. Each is due a fixed number of steps
 after its beginning. Until then it is done a part at each step, or by a thread of the caller beside
