@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree with sensors against the true one: error, roughness, and what its band holds."""
+"""A tree with sensors against the true one: error, roughness, coverage of its band."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees of another making: error, roughness and the first frame after a step, all winds."""
+"""Kinds of trees from another generator: error, roughness and the first frame after a step."""
 
 from __future__ import annotations
 

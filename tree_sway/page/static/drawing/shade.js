@@ -14,8 +14,9 @@ const WAYS = Array.from({ length: 16 }, (_, i) => {
   return [flat * Math.cos(2.399963 * i), flat * Math.sin(2.399963 * i), z];
 });
 
-/** Make a function from places to their shade. @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2] @param {number[]} low
- * corner of the box of the tree @param {number[]} high @returns {(place: ArrayLike<number>) => Shade} */
+/** Make a function from places to their shade. @param {number[][]} places of leaves [m]
+ * @param {number[]} areas of theirs [m^2] @param {number[]} low corner of the box of the tree @param {number[]} high
+ * @returns {(place: ArrayLike<number>) => Shade} */
 export function crownShade(places, areas, low, high) {
   if (!places.length) return () => ({ open: 1, towards: [0, 0, 0] });
   const step = low.map((l, c) => (Math.max(high[c] - l, 0.1) * 1.02) / CELLS);
