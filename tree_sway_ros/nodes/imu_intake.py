@@ -53,7 +53,7 @@ class ImuIntake:
     node
         The node that subscribes.
     run
-        What steps the tree.
+        Runtime that steps the tree.
     twin
         The tree.
     arrived

@@ -23,7 +23,7 @@ class Measured:
     Parameters
     ----------
     name
-        What was measured.
+        Quantity that was measured.
     value
         The figure; less is better, unless stated otherwise.
     unit

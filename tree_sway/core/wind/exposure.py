@@ -80,7 +80,7 @@ class Exposure:
     spacing
         Mean distance between the trees of the stand in [m].
     crown_width, crown_depth
-        Of the trees of the stand in [m].
+        Width and depth of the crowns of the stand in [m].
     drag
         Drag coefficient of a crown in [-], at 10 m/s.
     anemometer_height

@@ -34,7 +34,7 @@ class TreeFile:
     origin
         Origin of the tree in the frame of the file in [m].
     learned
-        What motion sensors told about it, in its species already; None without.
+        Findings of motion sensors, which its species already has; None without.
 
     """
 
