@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Slow work on the newest request, on a thread that lives while there is any."""
+"""Slow work on the newest request, on a thread that ends when there is none."""
 
 from __future__ import annotations
 

@@ -44,12 +44,13 @@ RATE = 60.0
 """Steps per second in [Hz]."""
 
 _MOST_LATE = 0.25
+"""Delay [s] that steps catch up at most."""
 _NEWEST = 0.05
+"""Weight of the newest step in the means of the status."""
 _BUSY = 0.2
+"""Share of a period of work above which only every second step is sent."""
 _BAND_EVERY = 15
-"""Steps after which it is found anew how sure the motion is."""
-
-"""Share of a period above which only every second step is sent."""
+"""Steps from one estimate of the uncertainty band to the next."""
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ class WindSource(Protocol):
     @property
     def source(self) -> Mapping[str, object]:
         """
-        What the wind is, for viewers: its ``kind``, simulated, recorded or live, and a ``name``.
+        Source of the wind for viewers: its ``kind``, simulated, recorded or live, and a ``name``.
 
-        That of a live one has the newest reading and its age too.
+        A live one has its newest reading and the age of that too.
         """
 
     def between(self, since: float, until: float) -> Iterator[Sample]:

@@ -33,7 +33,8 @@ _TWIG = np.array([0.36, 0.28, 0.22])
 _SUN = np.array([-0.35, -0.5, 0.8])
 _SUN /= np.linalg.norm(_SUN)
 # A leaf with the area of the disc of its cluster, from its stalk on.
-_ALONG, _ACROSS = np.array([0.8, 0.0, 0.0]), np.array([0.0, 0.48, 0.0])
+_ALONG = np.array([0.8, 0.0, 0.0])
+_ACROSS = np.array([0.0, 0.48, 0.0])
 _BLADE = np.stack([-_ALONG, _ACROSS, _ALONG, -_ACROSS])
 _NEEDLES_WIDTH = 0.4
 """Width of a spray of needles over that of a leaf."""

@@ -40,7 +40,7 @@ class LiveSource(ABC):
     messages
         Word for its messages.
     expects
-        What its messages should have.
+        Expected content of its messages.
     patience
         Time [s] in each state after which it is told why nothing comes; states without one are
         not told.

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""From frames of the wind only to whole ones: a receiver that solves the scene itself."""
+"""A receiver that solves the scene itself, from frames with the wind alone."""
 
 from __future__ import annotations
 

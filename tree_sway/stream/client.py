@@ -155,7 +155,7 @@ class StreamClient:
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
-        """Of placer, playout and counts; its lock may be taken again by the thread that has it."""
+        """Guards placer, playout and counts; a thread that has its lock may take it again."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._refusal: TransportError | None = None

@@ -66,11 +66,11 @@ def risk_work(
     inventory
         The trees.
     seed
-        Of grown trees and gusts.
+        Seed of grown trees and gusts.
     most
         Number of kinds, or two for each species if those are more, for each exposure.
     exposure
-        Of trees whose exposure the inventory does not say, one of `EXPOSURES`.
+        Exposure of trees for which the inventory has none, one of `EXPOSURES`.
     spacing
         Mean distance between the trees of a stand in [m]; 0.18 of their height if None.
 

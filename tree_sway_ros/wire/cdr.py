@@ -41,7 +41,7 @@ class CdrTemplate:
     Parameters
     ----------
     message
-        A ROS message. `mark_stamp` and `mark_block` must have been called on its parts.
+        A ROS message, whose stamps `mark_stamp` has set, and whose blocks begin with `block_mark`.
     n_stamps
         Number of marked stamps, with numbers 0 .. n_stamps - 1.
     shapes
@@ -94,7 +94,7 @@ class CdrTemplate:
             block[...] = 0.0
 
     def to_bytes(self, stamp: int = 0) -> bytes:
-        """Return the message as bytes for `Publisher.publish`; its stamps are a time in [ns]."""
+        """Return the message as bytes for a publisher of rclpy; its stamps are a time in [ns]."""
         second, nanosecond = divmod(stamp, 1_000_000_000)
         for view in self._stamps:
             view[0] = second

@@ -79,7 +79,7 @@ class SwayModel:
     Parameters
     ----------
     tree, species, settings
-        What it was made of; the settings have the leaves that the tree bears.
+        Inputs of its set-up; the settings include the leaves that the tree bears.
     drag_law
         Drag of the whole tree.
     damping_ratio

@@ -1,32 +1,33 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How sure the motion is: 64 trees that the real one might be, in winds that its limbs might have.
+Uncertainty of the observed motion: an ensemble of 64 trees that the real one might be.
 
-Each member differs from the model by its wood, its damping, its drag area and the gusts that its
-limbs meet, each drawn from the spread of its source:
+Each member differs from the model in its wood, its damping, its drag area and the gusts that its
+limbs meet, each drawn from a published spread:
 
 - Wood: Young's modulus of clear wood of one species varies by 22 % (Forest Products Laboratory,
   Wood Handbook, 2010, table 5-6).
-- Damping: its logarithm by 0.5; 0.01 to 0.08 among bare stems (Moore & Maguire 2005) is +-2 of it.
+- Damping: standard deviation 0.5 of its logarithm; the 0.01 to 0.08 of bare stems (Moore & Maguire
+  2005) are +-2 of them.
 - Drag and leaf area: `load_spreads`.
 - Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), the rest one limb after
-  the other, as in `crown_wind`. After which delay a gust reaches a limb is not known: each member
-  draws its own. Where an anemometer averages fast gusts away, each meets gusts of its own instead,
-  of the law in `disturbance`.
+  the other, as in `crown_wind`. The delay of a limb is not known, so each member draws its own.
+  Where an anemometer averages fast gusts away, each member meets its own, by the law of
+  `disturbance`.
 
 A member is an oscillator for each of the first coordinates, driven by the forces on the model and
 those of its gusts::
 
     x'' + (z s^1/2 c + a d) x' + s k x = a (F + d q') + g
 
-k, c stiffness and damping of the wood, d damping by the air, F force on the model, q its motion;
-s, z, a the member's stiffness, damping and drag over the model's, g the force of its gusts.
+x is the member's coordinate and q the model's; k, c stiffness and damping of the wood, d damping
+by the air, F the force on the model; s, z, a the member's stiffness, damping and drag over those
+of the model, g the force of its gusts.
 
-Each member is a tree that might stand there. With sensors, its own would tell the filter something
-else: the filter runs on the simulated measurement of each, and the band is what remains between
-the members and what the filter makes of them (the ensemble of Evensen 2003, Ocean Dynamics 53,
-343-367, under fixed gains).
+Where there are sensors, the filter runs once for each member, on a simulated measurement of it.
+The band is what remains between the members and the filter's estimates of them (an ensemble as in
+Evensen 2003, Ocean Dynamics 53, 343-367, with fixed gains). Arrays are (coordinates n, members e).
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from tree_sway.core.observe.observer import Observer
 
 N_MEMBERS = 64
-"""Number of trees that the real one might be."""
+"""Number of members."""
 
 WOOD_SPREAD, DAMPING_SPREAD = 0.22, 0.5
 """Log-deviations of Young's modulus within a species, and of damping among trees."""
@@ -62,7 +63,9 @@ _ALONG, _ACROSS = 4.0 / 3.0, 2.0 / 3.0
 """Slopes of the drag along the wind and across it, over the mean that `disturbance` takes."""
 
 _AVERAGED = 30.0
+"""Time over which the variance of fast gusts is averaged [s]."""
 _BIAS_TIME = 60.0
+"""Time over which the mean of a simulated measurement is removed, as of a real one [s]."""
 
 
 class Uncertainty(NamedTuple):
@@ -74,7 +77,7 @@ class Uncertainty(NamedTuple):
 
 
 def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
-    """Return the spreads of a tree of which nothing has been measured."""
+    """Return the spreads for a tree without measurements."""
     leaf = LEAVES if in_leaf else 0.0
     return Uncertainty(drag=math.hypot(DRAG, leaf))
 
@@ -83,9 +86,9 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     """
     Draw values of the normal distribution, (n_values, count), one from each stratum.
 
-    Chance would correlate wood and drag, and the lean varies with their ratio. The ranks are those
-    of draws whose correlation is taken away (Iman & Conover 1982, Communications in Statistics
-    B11, 311-334).
+    Independent draws would be correlated by chance, and the lean of a tree varies with the ratio
+    of its wood and drag. Ranks are taken from draws whose correlation is removed (Iman & Conover
+    1982, Communications in Statistics B11, 311-334).
     """
     strata = ndtri((np.arange(count) + 0.5) / count)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
@@ -98,7 +101,7 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
 
 
 def most_of(found: Floats) -> Floats:
-    """Find the bounds of 80 % of the members, (2, ...), by what was found for each, (..., e)."""
+    """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
     ordered = np.sort(found, axis=-1)
     rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
     low = int(rank)
@@ -110,7 +113,7 @@ def most_of(found: Floats) -> Floats:
 
 class Members:
     """
-    Trees that the real one might be.
+    The ensemble, stepped beside the model.
 
     Parameters
     ----------
@@ -119,7 +122,7 @@ class Members:
     dt
         Time step in [s].
     spreads
-        How far they differ from the model.
+        How far members differ from the model.
 
     """
 
@@ -138,7 +141,6 @@ class Members:
         """Displacement and rate of each, (2, n, e)."""
         self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
         self._next = np.zeros((2, n, N_MEMBERS))
-        self._terms = np.zeros((3, n, N_MEMBERS))
         self._felt = np.zeros((3, n, N_MEMBERS))
         self._estimate = np.zeros((3, n, N_MEMBERS))
         self._moved = np.zeros((3, 3, n, N_MEMBERS))
@@ -150,10 +152,10 @@ class Members:
         self.stiffness = np.ones(N_MEMBERS)
         """Stiffness of each over the model's, (e,)."""
         self.errors = np.zeros((n, N_MEMBERS))
-        """Displacement of each beyond what the filter makes of it, (n, e)."""
+        """Displacement of each member less the filter's estimate of it, (n, e)."""
 
     def _fill(self) -> None:
-        """Find the law of each member in the present wind."""
+        """Find propagator, drag and gusts of each member for the present wind and spreads."""
         observer = self._observer
         n = self._count
         unknown = observer.unknown
@@ -178,7 +180,7 @@ class Members:
         self._draw_delays(unknown.limb_slopes, unknown.reach)
 
     def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
-        """Find the force on each member per wind of each delay, by those of its limbs."""
+        """Find the force on each member per wind of each delay, summed over its limbs."""
         if len(self._limb_draws) != len(reach):
             self._limb_draws = self._rng.random((len(reach), N_MEMBERS))
         drawn_reach = self._limb_draws * reach[:, None]
@@ -193,7 +195,7 @@ class Members:
 
     def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
-        Move every member by a step, and find what the filter makes of it.
+        Step every member, and the filter's estimate of it.
 
         Parameters
         ----------
@@ -202,7 +204,7 @@ class Members:
         wind
             Horizontal wind over the step [m/s].
         apart
-            Wind of each delay less that which moves the model [m/s], (`N_DELAYS`, 3).
+            Wind of each delay less the wind on the model [m/s], (`N_DELAYS`, 3).
 
         """
         observer = self._observer
@@ -241,7 +243,7 @@ class Members:
             np.subtract(self.motion[0], eta, out=self.errors)
 
     def _blow(self, x: float, y: float) -> None:
-        """Move the forces of the gusts that are not known, in a wind [m/s]."""
+        """Step the forces of the gusts that an anemometer averages away, in a wind [m/s]."""
         share = 1.0 - self._decay
         slow_x, slow_y = self._slow
         slow_x = slow_x + share * (x - slow_x)
@@ -262,7 +264,7 @@ class Members:
         self._gust += self._away
 
     def _reach_limbs(self, apart: Floats) -> None:
-        """Find the forces of gusts that reach the limbs of each after its own delays."""
+        """Find the forces of gusts that reach the limbs of each member after its own delays."""
         x, y = self._slow
         speed = max(math.hypot(x, y), 1e-9)
         along = (apart[:, 0] * x + apart[:, 1] * y) / speed
@@ -286,7 +288,7 @@ class Members:
         np.add.reduce(self._moved, axis=1, out=estimate)
         np.subtract(self.motion[0], eta, out=felt[0])
         np.subtract(self.motion[1], rate, out=felt[1])
-        # The force by which the rows of a sensor give the difference of both accelerations.
+        # The force that makes a sensor's rows give the difference of the two accelerations.
         np.multiply(self._stiff, self.motion[0], out=self._away)
         np.subtract(self._force, self._away, out=felt[2])
         felt[2] -= np.multiply(self._damp, self.motion[1], out=self._away)
@@ -308,26 +310,26 @@ class Members:
 
     def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
         """
-        Find where 80 % of the members are.
+        Find the interval of the middle 80 % of the members.
 
         Parameters
         ----------
         readout
-            What is read by each coordinate, (..., m).
+            Value per unit of each coordinate, (..., m).
         scale
             Further differences of the members to add, (..., e).
 
         Returns
         -------
         Floats
-            Lower and upper bound of what is beyond the corrected motion, (2, ...).
+            Lower and upper bound, less the corrected motion, (2, ...).
 
         """
         found = self.differences(readout)
         return most_of(found if scale is None else found + scale)
 
     def differences(self, readout: Floats) -> Floats:
-        """Read each member beyond the corrected motion, (..., e), by each coordinate, (..., m)."""
+        """Find a value of each member less the corrected motion, (..., e); `readout` as above."""
         return np.asarray(readout[..., : self._count] @ self.errors)
 
     def reset(self) -> None:

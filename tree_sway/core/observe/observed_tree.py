@@ -94,8 +94,8 @@ class ObservedTree(SwaySimulator):
     has_band
         Whether it also says how sure it is (`band`).
     submit
-        Begins a call in another thread, as ``submit`` of a `concurrent.futures.Executor` does, in
-        which gains, mountings and fits are found beside the steps. The motion is the same without.
+        Begins a call in another thread, as ``concurrent.futures.Executor.submit`` does, in which
+        gains, mountings and fits are found beside the steps. The motion is the same without.
 
     Raises
     ------

@@ -69,7 +69,7 @@ class CoupledStep(NamedTuple):
     own_damping: Floats
     """Diagonal of D for a drag of 1, of all coordinates, (m,)."""
     matrix: Floats
-    """Of the equation above, (c, c)."""
+    """Matrix of the equation above, (c, c)."""
     rights: Floats
     """Right-hand sides of this equation, then its solutions, (3, c)."""
     products: Floats

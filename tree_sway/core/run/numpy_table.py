@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A step of a tree on its table of winds in numpy: `wind_basis` without a compiler.
+A step of a tree on its table of winds in numpy: `table_model` without a compiler.
 
 The formulas and the records are those of `table_load.wind_force` and
 `table_model.step_instance`; a step is a few products of (m, m) matrices. Fields that the kernels

@@ -70,7 +70,7 @@ class PoseInertia(NamedTuple):
     columns_at_rest: Floats
     """The columns at rest, (m, 3 n)."""
     factor: Floats
-    """Of the inertia of the middles at rest by Cholesky's decomposition, (q, q)."""
+    """Cholesky factor of the inertia of the middles at rest, (q, q)."""
     weight_at_rest: Floats
     """Force of the weight at rest on the leading coordinates, (q,)."""
     slopes: Floats
@@ -88,7 +88,7 @@ class PoseInertia(NamedTuple):
     placed: Floats
     """Middles at these, (m + 3, 3 n)."""
     products: Floats
-    """Of the columns with the bend of the motion, then with each new column, (m + 1, q)."""
+    """Products of the columns with the bend of the motion, then with each new one, (m + 1, q)."""
     momentum: Floats
     """Scratch memory, (q,)."""
     sloped: Floats

@@ -1,12 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Model `wind_basis`: a tree as a few oscillators, driven by a table of all uniform winds.
+The default model: a tree as a few oscillators, driven by a table of all uniform winds.
 
-The cost of a step does not depend on the size of the tree. The coordinates cover most of the
-motion in steady winds and gusts (`setup.modes.leading_modes`); each has its inertia, so that
-none follows a wind at once. The load is that of the state at the middle of the step. It comes from
-a table (`load_table`) and not from the branches. A wind or a lean beyond the table is
+It is the one whose name is a number of coordinates, such as ``60``. The cost of a step does not
+depend on the size of the tree. The coordinates cover most of the motion in steady winds and gusts
+(`setup.modes.leading_modes`); each has its inertia, so that none follows a wind at once. The load
+is that of the state at the middle of the step. It comes from a table (`load_table`) and not from
+the branches. The law is on the page doc/sway_model.md. A wind or a lean beyond the table is
 clamped to its limit, and counted as ``outside``.
 """
 

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Where the springs of a tree balance the load of a steady wind.
+Equilibrium of a tree in a steady wind: its springs balance the load.
 
 It is found from the equilibrium in a weaker wind, by Broyden's method (Broyden 1965, Mathematics
 of Computation 19, 577-593) with the slopes there, or new ones where these do not converge. Where a

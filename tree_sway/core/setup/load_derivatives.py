@@ -102,7 +102,7 @@ class LoadSlopes:
     Parameters
     ----------
     records
-        Records of branches, work and loads that ``moments`` writes, as `modal.wind_moments`.
+        Records of branches, work and loads that ``moments`` (`branch_loads.wind_moments`) writes.
     moments
         Function that finds the loads at a pose (N,), rates (N,) and a wind [m/s], (3,), of 1
         kg/m^3.

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Table of the model `wind_basis`: loads of all uniform winds on the coordinates of a tree.
+Table of the loads of all uniform winds on the coordinates of a tree, for `run.table_model`.
 
 In a uniform wind U = |U| d all branches have one wind direction d, and the load is ``Q = s L(d)``
 with the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is

@@ -3,10 +3,10 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as
-one rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear,
-angular) of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate
-i are
+Coordinates are the key rotations of all branches here, before `modes` reduces them to a few. A
+child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as one
+rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear, angular)
+of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate i are
 
     M_ij = (v, w)_i . H_j          mass
     Kg_ij = g e_z . (w_i x p_j)     gravity, p_j the linear part of H_j

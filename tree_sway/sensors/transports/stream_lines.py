@@ -24,7 +24,7 @@ class Question:
 
 
 NO_QUESTION = Question()
-"""Of an instrument that sends by itself."""
+"""For an instrument that sends by itself."""
 
 
 def deliver_lines(

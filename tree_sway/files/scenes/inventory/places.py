@@ -152,5 +152,6 @@ def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
         return Places(x, y)
     east = float(np.floor(np.nanmin(x)))
     north = float(np.floor(np.nanmin(y)))
-    columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
+    if east or north:
+        columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
     return Places(x - east, y - north)

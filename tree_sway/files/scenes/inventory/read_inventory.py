@@ -60,7 +60,7 @@ class Inventory:
     exposures
         Exposure of each tree to the wind, a kind of `EXPOSURES`; None if none is given.
     notes
-        What was assumed, one sentence each.
+        Assumptions, one sentence each.
 
     """
 

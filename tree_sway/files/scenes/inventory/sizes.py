@@ -41,8 +41,8 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         index = columns.index_of(quantity)
         if index is None:
             continue
-        values, in_cells = columns.numbers(index, stems=True)
-        unit = columns.table.unit_of(index, quantity) or in_cells
+        in_header = columns.table.unit_of(index, quantity)
+        values, unit = columns.numbers(index, stems=True, unit=in_header)
         factor = unit_factor('length', unit) if unit else None
         if factor is None:
             factor, why = _stem_unit(values / over, columns, is_in_states)
@@ -70,8 +70,7 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     index = _height_column(columns)
     if index is None:
         return _CM, ''
-    height, in_cells = columns.numbers(index)
-    unit = columns.table.unit_of(index, 'height') or in_cells
+    height, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
     factor = unit_factor('length', unit) if unit else None
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
@@ -105,8 +104,7 @@ def heights_of(
     index = _height_column(columns)
     if index is None:
         return None
-    values, in_cells = columns.numbers(index)
-    unit = columns.table.unit_of(index, 'height') or in_cells
+    values, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
     factor = unit_factor('length', unit) if unit else None
     name = columns.table.columns[index]
     if factor is None:
