@@ -192,7 +192,7 @@ def require_token(address: str, token: str) -> None:
     """
     if not is_loopback(address) and len(token) < _SHORTEST_TOKEN:
         what = f'address {address} without a token of at least {_SHORTEST_TOKEN} characters'
-        cure = 'give a token_file, or keep the address 127.0.0.1'
+        cure = 'give a token file (--token-file FILE makes one), or keep the address 127.0.0.1'
         raise ParameterError(what, where='page', cure=cure)
 
 

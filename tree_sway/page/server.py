@@ -44,6 +44,11 @@ _BACKLOG = 256
 _MOST_WAITING = 3
 """Requests for the tree as a file that wait for the one that is written."""
 
+_OTHER_PORT = 'choose a different port, or end the program that uses this one'
+_CURES = {
+    errno.EADDRNOTAVAIL: "give an address of this machine's own, or 0.0.0.0 for all of them",
+    errno.EACCES: 'choose a port above 1023',
+}
 _MAY_LOOK = 'this link is to look only: ask for one with control'
 _LONGEST_NAME, _LONGEST_REASON = 80, 400
 
@@ -126,7 +131,7 @@ class PageServer:
             self._thread.join()
             where = f'{self.settings.address}:{self.port}'
             what = f'the page cannot be served ({self._failure})'
-            cure = 'choose a different port, or end the program that uses this one'
+            cure = _CURES.get(getattr(self._failure, 'errno', 0) or 0, _OTHER_PORT)
             raise TransportError(what, where=where, cure=cure) from self._failure
 
     def close(self) -> None:

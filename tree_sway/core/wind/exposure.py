@@ -104,9 +104,9 @@ class Exposure:
     def __post_init__(self) -> None:
         """Check the values."""
         one_of('exposure', self.kind, EXPOSURES)
-        for name, high in (('height', 150.0), ('crown_width', 60.0), ('crown_depth', 150.0)):
+        highs = {'height': 150.0, 'spacing': 100.0, 'crown_width': 60.0, 'crown_depth': 150.0}
+        for name, high in highs.items():
             within(name, getattr(self, name), 0.0, high, 'm', above=True)
-        within('spacing', self.spacing, 0.1, 100.0, 'm')
 
     @property
     def frontal_area(self) -> float:
