@@ -84,7 +84,9 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments)
     output = output_path(arguments)
     tree_file = opened_tree(arguments)
-    frequency, damping, error = arguments.frequency, arguments.damping, 0.0
+    frequency = arguments.frequency
+    damping = arguments.damping
+    error = 0.0
     if arguments.record is not None:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency

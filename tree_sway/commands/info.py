@@ -101,7 +101,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) -> dict[str, Any]:
     """Collect the facts on a kind of trees, in SI units, for JSON; strength is of its tallest."""
-    tree, species, count = kind.tree, kind.species, arguments.count
+    tree = kind.tree
+    species = kind.species
+    count = arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,

@@ -229,7 +229,9 @@ def whole_rows(
 
     A row has no more cells than the first. A quote that is not closed so is part of its line.
     """
-    kept, rows, at = list[int](), list[str](), 0
+    kept = list[int]()
+    rows = list[str]()
+    at = 0
     while at < len(texts):
         row, count = texts[at], 1
         if row.count('"') % 2:

@@ -128,7 +128,9 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         if _resolved(choice, root)['type'] == _TYPES[type(node)]:
             schema = _resolved(choice, root)
     if isinstance(node, yaml.MappingNode):
-        known, values, lines = schema.get('properties', {}), dict[str, Any](), dict[str, int]()
+        known = schema.get('properties', {})
+        values = dict[str, Any]()
+        lines = dict[str, int]()
         for key, child in node.value:
             line = key.start_mark.line + 1
             if not isinstance(key, yaml.ScalarNode):

@@ -66,7 +66,9 @@ class Guard:
     """
 
     def __init__(self, settings: PageSettings, doors: Doorkeeper, refusals: Refusals) -> None:
-        self._settings, self._doors, self._refusals = settings, doors, refusals
+        self._settings = settings
+        self._doors = doors
+        self._refusals = refusals
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._guesses = Guesses()

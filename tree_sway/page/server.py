@@ -182,7 +182,9 @@ class PageServer:
         the gusts in the scene, as `GustHistory.recent`.
         """
         published = self._published
-        published.description, published.tables, published.gusts = description, tables, gusts
+        published.description = description
+        published.tables = tables
+        published.gusts = gusts
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:

@@ -147,7 +147,10 @@ class Session:
         motion: MotionFeed | None = None,
     ) -> None:
         self._motion = MotionFeed() if motion is None else motion
-        self._build, self.wind, self._rate, self._period = build, wind, rate, 1.0 / rate
+        self._build = build
+        self.wind = wind
+        self._rate = rate
+        self._period = 1.0 / rate
         self.choices, self._tolerance = choices, tolerance
         self._scene, self._runtime = self._made(choices)
         self._next: tuple[SceneState, Run] | None = None

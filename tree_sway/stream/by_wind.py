@@ -45,7 +45,9 @@ class ByWind:
 
     def take(self, frame: Frame) -> Floats | None:
         """Advance to a frame; return its coordinates, (M,), None before the first state."""
-        scene, last, values = self._scene, self._last, self._description.coordinates(frame)
+        scene = self._scene
+        last = self._last
+        values = self._description.coordinates(frame)
         is_whole = len(values) == len(self._description.scale)
         if last is None:
             if not is_whole:

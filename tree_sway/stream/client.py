@@ -269,7 +269,9 @@ class StreamClient:
                     async with session.ws_connect(
                         self.url, max_msg_size=LARGEST_DESCRIPTION, heartbeat=_SILENCE
                     ) as socket:
-                        self._socket, self._awaited, self.state = socket, 0, 'open'
+                        self._socket = socket
+                        self._awaited = 0
+                        self.state = 'open'
                         self._refusal = None
                         await self._follow(socket)
                 except Exception as error:

@@ -103,7 +103,9 @@ def describe_scene(
 
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind for placing its branches by key rotations."""
-    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.banks[0].segments
+    tree = simulator.tree
+    branches = _in_order(simulator)
+    segments = simulator.banks[0].segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]

@@ -105,7 +105,9 @@ class Playout:
 
     def __init__(self, delay: float | None = None) -> None:
         self.delay = DELAY if delay is None else delay
-        self._adapts, self._spacing, self._jitter = delay is None, 0.0, 0.5 * DELAY
+        self._adapts = delay is None
+        self._spacing = 0.0
+        self._jitter = 0.5 * DELAY
         self._age, self._ahead = _FIRST, 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
@@ -200,7 +202,9 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
         Share of the way from b to c, 0 to 1.
 
     """
-    span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp
+    span = c.stamp - b.stamp
+    before = c.stamp - a.stamp
+    behind = d.stamp - b.stamp
     u2, u3 = u * u, u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
     # There are more coordinates while a branch is pulled.

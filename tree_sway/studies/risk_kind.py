@@ -90,7 +90,9 @@ def compute_kind(kind: RiskKind) -> KindResult:
 
 
 def _computed(kind: RiskKind) -> KindResult:
-    species, note, diameter = species_named(kind.species), '', None
+    species = species_named(kind.species)
+    note = ''
+    diameter = None
     if kind.slenderness:
         low, high = stem_range(species, kind.height)
         wanted = kind.height / kind.slenderness

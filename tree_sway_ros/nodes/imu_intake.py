@@ -64,7 +64,10 @@ class ImuIntake:
     def __init__(
         self, node: TreeSwayNode, run: Run, twin: ObservedTree, arrived: Callable[[], object]
     ) -> None:
-        self._node, self._run, self._twin, self._arrived = node, run, twin, arrived
+        self._node = node
+        self._run = run
+        self._twin = twin
+        self._arrived = arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}

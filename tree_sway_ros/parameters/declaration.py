@@ -141,7 +141,9 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         read_only=not parameter.live,
         dynamic_typing=True,
     )
-    kind, low, high = type(parameter.default), parameter.minimum, parameter.maximum
+    kind = type(parameter.default)
+    low = parameter.minimum
+    high = parameter.maximum
     if low is None or high is None:
         return descriptor
     if kind is float:

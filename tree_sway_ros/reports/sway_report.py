@@ -92,7 +92,9 @@ class SwayReport:
         now = time.monotonic()
         published = (frames - self._frames) / max(1e-9, now - self._time)
         skipped = timing.skipped - self._skipped
-        self._time, self._frames, self._skipped = now, frames, timing.skipped
+        self._time = now
+        self._frames = frames
+        self._skipped = timing.skipped
         level, text = OK, f'{timing.rate:.1f} Hz'
         if timing.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
             level, text = WARN, f'no frame for {timing.silence:.1f} s'

@@ -179,7 +179,9 @@ class Pacer(Worker):
         steady = time.monotonic_ns()
         since = steady - self._last_steady
         passed = since + self._late  # since the last tick's time on the grid
-        self._last, self._last_steady, self._late = index, steady, now % self.period
+        self._last = index
+        self._last_steady = steady
+        self._late = now % self.period
         longest = LONGEST_STEP
         if self.is_simulated:  # in a fast replay much of it passes while a thread is late
             longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))

@@ -127,7 +127,9 @@ class FrameListener:
         self._said: set[str] = set()
         self._until = time.monotonic() + _PATIENCE
         self._lack = 'no transform between the two on /tf'
-        self.text, self.is_lacking, self.is_waiting = '', False, False
+        self.text = ''
+        self.is_lacking = False
+        self.is_waiting = False
         self._latest = -math.inf
         if isinstance(self._frames, NoFrames):
             self._until, self._lack = 0.0, 'tf2_msgs is not installed'

@@ -366,7 +366,9 @@ class TreeBeams:
         key = branch, n_subtrees, n_pairs, n_turns
         if key not in self._models:
             loaded = self._loaded[branch]
-            beam, drag_area, mass = loaded.beam, loaded.drag_area, loaded.mass
+            beam = loaded.beam
+            drag_area = loaded.drag_area
+            mass = loaded.mass
             subtrees = self._sums.select(loaded.children[:n_subtrees])
             by_wind = self._curvatures(branch, n_subtrees)
             bent = bent_by_weight(beam, mass, subtrees, by_wind, self._shear_ratio, self._gravity)

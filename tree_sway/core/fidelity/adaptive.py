@@ -194,7 +194,9 @@ class AdaptiveSimulator(SwaySimulator):
     def _expect(self) -> None:
         """Choose for the expected wind."""
         self._tracker = ClimateTracker()
-        self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
+        self._gust = 0.0
+        self._bearing = np.array([1.0, 0.0, 0.0])
+        self._since_review = 0.0
         self._judged = float(np.linalg.norm(self._expected_wind.mean))
         self.choice = self._choose(self.estimates(self._expected_wind))
         self._add()

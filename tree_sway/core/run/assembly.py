@@ -120,7 +120,9 @@ def _places(model: SwayModel) -> Places:
 
 def _branches(model: SwayModel, places: Places) -> Records:
     """Fill the records of the branches for stepping and placing, (b,)."""
-    tree, first, last = model.tree, model.branch_first[:-1], model.branch_first[1:] - 1
+    tree = model.tree
+    first = model.branch_first[:-1]
+    last = model.branch_first[1:] - 1
     records: Records = np.zeros(len(first), dtype=branch_layout(model.branch_twist.shape[1]))
     fill_places(places, records)
     for name in LOADED:

@@ -195,7 +195,9 @@ class Touch:
         branches = self._bank.branches
         # A branch that is cut has one record per piece.
         has_segment = (branches['first'] <= push.segment) & (push.segment < branches['end'])
-        branch, keys, residual = int(np.flatnonzero(has_segment)[0]), list[int](), push.residual
+        branch = int(np.flatnonzero(has_segment)[0])
+        keys = list[int]()
+        residual = push.residual
         by_branch, modes = self._oscillators.compliance
         while branch >= 0:
             record = branches[branch]

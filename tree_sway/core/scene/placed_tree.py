@@ -102,7 +102,9 @@ class PlacedTree:
 
     def placed(self) -> Tree:
         """Return the tree in the scene's frame, under its name there."""
-        tree, c, s = self.tree, math.cos(self.yaw), math.sin(self.yaw)
+        tree = self.tree
+        c = math.cos(self.yaw)
+        s = math.sin(self.yaw)
         root, here = tree.start[0], np.array([self.x, self.y, self.z])
         if (self.scale, self.yaw) == (1.0, 0.0) and (root == here).all():
             return replace(tree, name=self.name)

@@ -101,13 +101,17 @@ class Run:
         """Number of samples that arrived after the step of their time, since the last restart."""
         self.newest: int | None = None
         """Time of the newest sample in [ns]; None before any."""
-        self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
+        self._make_wind = make_wind
+        self._stepped = stepped
+        self._timer = timer
         self._starting = starting
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
         self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
         self._index: int | None = None
-        self._origin, self._felt, self._cost = 0, -math.inf, 0.0
+        self._origin = 0
+        self._felt = -math.inf
+        self._cost = 0.0
 
     @property
     def is_wind_lost(self) -> bool:
@@ -225,7 +229,9 @@ class Run:
         self._begin(time)
         self._wind = self._make_wind()
         self._samples.clear()
-        self.newest, self.late, self._felt = None, 0, -math.inf
+        self.newest = None
+        self.late = 0
+        self._felt = -math.inf
         self.intake.gate.reset()
         self.simulator.reset()
 

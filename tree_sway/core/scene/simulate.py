@@ -164,7 +164,9 @@ class Rig:
         branches: Sequence[int] | None = None,
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`."""
-        tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
+        tree = self.tree
+        simulator = self.simulator
+        chosen = _chosen(self.tree, branches)
         if isinstance(simulator, ObservedTree):
             simulator.set_rate(rate)
             for each in self.motion:

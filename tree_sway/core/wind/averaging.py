@@ -72,7 +72,9 @@ class WindAverage:
     def reset(self) -> None:
         """Forget every sample and every step, but not the count of refused ones."""
         self._curve = WindCurve(CAPACITY)
-        self._before, self._fade_start, self._fade_end = _CALM, -math.inf, -math.inf
+        self._before = _CALM
+        self._fade_start = -math.inf
+        self._fade_end = -math.inf
         self._timing = SensorTiming(self._timeout)
         self._newest = -math.inf  # time of the newest sample
         self._passed = -math.inf  # end of the latest step: the curve before it does not change

@@ -184,7 +184,9 @@ class GustHistory:
         while True:
             before = self._n_changes
             at, run = self._at.copy(), self._run.copy()
-            mean, delay, first = self._mean.copy(), self.delay.copy(), float(self._first[0])
+            mean = self._mean.copy()
+            delay = self.delay.copy()
+            first = float(self._first[0])
             if self._n_changes == before and before % 2 == 0:
                 return at, run, mean, delay, first
 

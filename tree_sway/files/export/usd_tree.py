@@ -43,7 +43,9 @@ def usd_of_tree(
     """
     tree = simulator.tree
     frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
-    rest, name, look = tree.rest_poses, plain_name(tree.name), look_of(tree.species)
+    rest = tree.rest_poses
+    name = plain_name(tree.name)
+    look = look_of(tree.species)
     joints = f'uniform token[] joints = {_strings(_paths(tree))}'
     last = len(frames) - 1
     parts = [
@@ -94,7 +96,9 @@ def branch_groups(tree: Tree) -> Ints:
 
 def influences(simulator: SwaySimulator) -> Floats:
     """Own rotation of the branches' tips in a steady wind by groups, over the largest, (g,)."""
-    tree, before, dt = simulator.tree, simulator.state(), 1.0 / 60.0
+    tree = simulator.tree
+    before = simulator.state()
+    dt = 1.0 / 60.0
     simulator.reset()
     for _ in range(round(_SETTLED / dt)):
         simulator.step((_STEADY, 0.0, 0.0), dt)

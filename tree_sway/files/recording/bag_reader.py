@@ -64,7 +64,10 @@ def messages_of_bag(path: str, *types: str) -> Arrays:
         parts = sorted(each for each in parts[0].iterdir() if each.suffix in ('.db3', '.mcap'))
         if not parts:
             raise ValueError('no metadata.yaml, no .db3 and no .mcap file in it')
-    numbers, stamps, sizes, content = array('q'), array('q'), array('q'), bytearray()
+    numbers = array('q')
+    stamps = array('q')
+    sizes = array('q')
+    content = bytearray()
     for part in parts:
         with Reader(part) as reader:
             topics |= {each.topic: each.msgtype for each in reader.connections}

@@ -131,7 +131,9 @@ class _Growing:
         exact: bool,
     ) -> None:
         """Sort the rows into classes."""
-        self._inventory, self._given, self._seed = inventory, given, seed
+        self._inventory = inventory
+        self._given = given
+        self._seed = seed
         self.notes = notes
         wood = inventory.wood
         self.keys = [wood[each].key if each in wood else each for each in inventory.species]

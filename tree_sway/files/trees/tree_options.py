@@ -116,7 +116,9 @@ class TreeOptions:
         ``wood`` returns the species to use in place of that of the file or of the option: what a
         limb can carry depends on it.
         """
-        tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
+        tree = content.tree
+        notes = list(content.notes)
+        origin = np.zeros(3)
         given = content.species if self.species is None else species_named(self.species)
         species, faults = wood(given), list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter

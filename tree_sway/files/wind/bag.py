@@ -87,7 +87,9 @@ def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
 
 def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
     """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
-    order, at, stamp = '<' if data[1:2] == b'\1' else '>', 0, 0
+    order = '<' if data[1:2] == b'\1' else '>'
+    at = 0
+    stamp = 0
     if has_header:
         second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
         stamp = second * 1_000_000_000 + nanosecond

@@ -47,7 +47,9 @@ def branch_segments(document: YamlDocument) -> Values:
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
     placed: dict[int, _Placed] = {}
-    parent, owner, labels = list[int](), list[int](), list[str]()
+    parent = list[int]()
+    owner = list[int]()
+    labels = list[str]()
     for number in checked_order(parents, where).tolist():
         branch, its_parent = branches[number], placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
