@@ -95,7 +95,8 @@ def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, 
                     (f'{whole}.{axis}', each) for axis, each in zip(wanted, value, strict=True)
                 )
         elif whole and isinstance(value, Mapping):
-            yield from ((f'{whole}.{axis}', value[axis]) for axis in 'xyzw' if axis in value)
+            axes = {str(axis).lower(): each for axis, each in list(value.items())[:_MOST_NAMES]}
+            yield from ((f'{whole}.{axis}', axes[axis]) for axis in 'xyzw' if axis in axes)
         elif isinstance(value, Mapping):
             if depth < _DEEPEST:
                 yield from _leaves(value, depth + 1)
