@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Output of commands that cannot steer the terminal.
+Output of commands without control characters, by which a file could steer the terminal.
 
 Names of trees, columns and stations come from files and from the network. A control character
 among them could clear the screen, forge a line or change its direction.

@@ -90,7 +90,9 @@ class LiveWind(LiveSource):
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
         self.lacks_direction = opened.is_without_vane
         """Whether the newest reading has no direction of its own."""
-        self._opened, self._taken, self._heard = opened, taken, heard
+        self._opened = opened
+        self._taken = taken
+        self._heard = heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
@@ -211,7 +213,8 @@ class LiveWind(LiveSource):
         now = time.monotonic()
         is_first = self.newest is None
         is_guess = self._is_guess
-        before, self._gap = self._gap, now - self._arrival
+        before = self._gap
+        self._gap = now - self._arrival
         self._arrival = now
         interval = self._interval(reading, before)
         velocity = reading.velocity(self.bearing)

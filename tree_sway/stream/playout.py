@@ -105,8 +105,11 @@ class Playout:
 
     def __init__(self, delay: float | None = None) -> None:
         self.delay = DELAY if delay is None else delay
-        self._adapts, self._spacing, self._jitter = delay is None, 0.0, 0.5 * DELAY
-        self._age, self._ahead = _FIRST, 0.0
+        self._adapts = delay is None
+        self._spacing = 0.0
+        self._jitter = 0.5 * DELAY
+        self._age = _FIRST
+        self._ahead = 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
         """Numbers of states, and of late ones."""
@@ -160,7 +163,8 @@ class Playout:
         after = next((i for i, each in enumerate(moments) if each.stamp > time), newest)
         i2 = max(after, min(1, newest))
         i1 = max(i2 - 1, 0)
-        a, b = moments[i1], moments[i2]
+        a = moments[i1]
+        b = moments[i2]
         span = b.stamp - a.stamp
         u = min(max((time - a.stamp) / span, 0.0), 1.0) if span > 0.0 else 1.0
         curve = catmull_rom(moments[max(i1 - 1, 0)], a, b, moments[min(i2 + 1, newest)], u)
@@ -171,7 +175,8 @@ class Playout:
 
     def _blended(self, coordinates: Floats, now: float) -> Floats:
         """Blend from the motion before a gap in the stream."""
-        before, u = self._before, (now - self._blend_from) / _BLEND
+        before = self._before
+        u = (now - self._blend_from) / _BLEND
         if before is None or u >= 1.0 or before.shape != coordinates.shape:
             self._before = None
             return coordinates
@@ -182,8 +187,10 @@ def expected(a: Moment, b: Moment, c: Moment) -> Moment:
     """Extrapolate a, b and c by one period, on their parabola."""
     if not len(a.coordinates) == len(b.coordinates) == len(c.coordinates):
         return c
-    span, before = c.stamp - b.stamp, b.stamp - a.stamp
-    by, slower = c.coordinates - b.coordinates, (b.coordinates - a.coordinates) * span / before
+    span = c.stamp - b.stamp
+    before = b.stamp - a.stamp
+    by = c.coordinates - b.coordinates
+    slower = (b.coordinates - a.coordinates) * span / before
     values = c.coordinates + by + 2.0 * span / (span + before) * (by - slower)
     return Moment(c.stamp + span, values, c.wind, c.flags & PAUSED)
 
@@ -200,8 +207,11 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
         Share of the way from b to c, 0 to 1.
 
     """
-    span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp
-    u2, u3 = u * u, u * u * u
+    span = c.stamp - b.stamp
+    before = c.stamp - a.stamp
+    behind = d.stamp - b.stamp
+    u2 = u * u
+    u3 = u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
     # There are more coordinates while a branch is pulled.
     p, q, r, s = (each[: min(map(len, states))] for each in states)

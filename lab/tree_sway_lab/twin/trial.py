@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree with sensors against the true one: error, roughness, and what its band holds."""
+"""A tree with sensors against the true one: error, roughness, coverage of its band."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ class Score:
         Median and 99th percentile of the processor's time of a step in [us], sensors and all,
         while scored; not what gains and fits take in a thread beside the steps.
     beside
-        What they take, in [us] per step, over the whole record.
+        CPU time of these in [us] per step, over the whole record.
     notes
-        What the sensors say.
+        Notes of the sensors.
 
     """
 

@@ -98,8 +98,8 @@ class ObservedTree(SwaySimulator):
         Distance of the anemometer upwind of the tree in [m]: so far gusts travel. Sensors find it
         where it is not told.
     submit
-        Begins a call in another thread, as ``submit`` of a `concurrent.futures.Executor` does, in
-        which gains, mountings and fits are found beside the steps. The motion is the same without.
+        Begins a call in another thread, as ``concurrent.futures.Executor.submit`` does, in which
+        gains, mountings and fits are found beside the steps. The motion is the same without.
 
     Raises
     ------

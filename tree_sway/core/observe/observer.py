@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What sensors tell about the motion of a tree beyond that in the wind alone.
+Filter of the motion of a tree beyond that of the model, from all of its sensors.
 
 The observer holds the difference between the real and the computed motion on the first coordinates
 of a model. At each step the difference moves by its own law, and what the sensors measure beyond
