@@ -110,7 +110,8 @@ class Playout:
         self._adapts = delay is None
         self._spacing = 0.0
         self._jitter = 0.5 * DELAY
-        self._age, self._ahead = _YOUNGEST, 0.0
+        self._age = _YOUNGEST
+        self._ahead = 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
         """Numbers of states, and of late ones."""
@@ -164,7 +165,8 @@ class Playout:
         after = next((i for i, each in enumerate(moments) if each.stamp > time), newest)
         end = max(after, min(1, newest))
         begin = max(end - 1, 0)
-        a, b = moments[begin], moments[end]
+        a = moments[begin]
+        b = moments[end]
         span = b.stamp - a.stamp
         u = min(max((time - a.stamp) / span, 0.0), 1.0) if span > 0.0 else 1.0
         curve = catmull_rom(moments[max(begin - 1, 0)], a, b, moments[min(end + 1, newest)], u)
@@ -175,7 +177,8 @@ class Playout:
 
     def _blended(self, coordinates: Floats, now: float) -> Floats:
         """Blend from the motion before a gap in the stream."""
-        before, u = self._before, (now - self._blend_from) / _BLEND
+        before = self._before
+        u = (now - self._blend_from) / _BLEND
         if before is None or u >= 1.0 or before.shape != coordinates.shape:
             self._before = None
             return coordinates
@@ -186,7 +189,8 @@ def predicted(a: Moment, b: Moment, c: Moment) -> Moment:
     """Extrapolate a, b and c by one period, on their parabola."""
     if not len(a.coordinates) == len(b.coordinates) == len(c.coordinates):
         return c
-    span, before = c.stamp - b.stamp, b.stamp - a.stamp
+    span = c.stamp - b.stamp
+    before = b.stamp - a.stamp
     step = c.coordinates - b.coordinates
     last_step = (b.coordinates - a.coordinates) * span / before
     values = c.coordinates + step + 2.0 * span / (span + before) * (step - last_step)
@@ -208,7 +212,8 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
     span = c.stamp - b.stamp
     a_to_c = c.stamp - a.stamp
     b_to_d = d.stamp - b.stamp
-    u2, u3 = u * u, u * u * u
+    u2 = u * u
+    u3 = u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
     # There are more coordinates while a branch is pulled.
     p, q, r, s = (each[: min(map(len, states))] for each in states)
