@@ -98,7 +98,8 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
 def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
     """Return the species of the arguments for that of a file."""
-    given, changed = _species(arguments), _wood(arguments)
+    given = _species(arguments)
+    changed = _wood(arguments)
     if given is None and not changed:
         return same
     return lambda found: dataclasses.replace(given or found, **changed)

@@ -133,7 +133,8 @@ def _write_moments(
     scene: Scene, arguments: argparse.Namespace, moments: list[float] | None, paths: list[Path]
 ) -> None:
     """Write the triangles of a scene at rest, or of each moment in wind to its file."""
-    files, name = ObjScene(scene.tree, drawn_leaves(scene, arguments)), scene.name
+    files = ObjScene(scene.tree, drawn_leaves(scene, arguments))
+    name = scene.name
     axes = 'metres, x east, y north, z up'
     if moments is None:
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))

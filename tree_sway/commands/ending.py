@@ -73,7 +73,8 @@ class Ending:
         return self.is_asked
 
     def _hear(self, _number: int, _frame: FrameType | None) -> None:
-        is_first, self.is_asked = not self.is_asked, True
+        is_first = not self.is_asked
+        self.is_asked = True
         if is_first:
             self._end_by_all_means()
         if is_first and self._breaks_in:

@@ -109,7 +109,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
-    notes, modes = [], list[dict[str, Any]]()
+    notes = []
+    modes = list[dict[str, Any]]()
     try:
         whole = TreeReductions(tree, species, settings)
         modes, mass = mode_table(whole, count)
@@ -208,7 +209,8 @@ def _sums(
     """
     trees = []
     for each, number in zip(scene.trees, scene.kind_numbers.tolist(), strict=True):
-        facts, k = kinds[number], each.scale
+        facts = kinds[number]
+        k = each.scale
         tree = {name: facts[name] for name in ('branches', 'segments', 'species', 'in_leaf')}
         tree |= {name: facts[name] * k**power for name, power in _POWERS.items()}
         place = {'x': each.x, 'y': each.y, 'z': each.z, 'yaw': each.yaw}
@@ -256,7 +258,8 @@ def _short(name: str) -> str:
 
 
 def _tree_lines(facts: dict[str, Any]) -> list[str]:
-    breast, roots = facts['breast_height_diameter'], facts['root_stiffness']
+    breast = facts['breast_height_diameter']
+    roots = facts['root_stiffness']
     high = '' if breast is None else f', {breast * 1e3:.1f} mm at {BREAST_HEIGHT} m'
     return [
         f'  size       {facts["branches"]} branches, {facts["segments"]} segments, '
@@ -280,7 +283,8 @@ def _forest_lines(facts: dict[str, Any]) -> list[str]:
         f'  {"tree":{wide}}   species       east    north     height       mass       sways',
     ]
     for tree in shown:
-        place, slowest = tree['place'], tree['frequencies']
+        place = tree['place']
+        slowest = tree['frequencies']
         sways = f'{slowest[0]:6.3f} Hz' if slowest else '        -'
         lines.append(
             f'  {_short(tree["name"]):{wide}}   {tree["species"]:11} {place["x"]:6.2f}'

@@ -233,7 +233,8 @@ def whole_rows(
     rows = list[str]()
     at = 0
     while at < len(texts):
-        row, count = texts[at], 1
+        row = texts[at]
+        count = 1
         if row.count('"') % 2:
             most = len(split_row(rows[0], separator)) if rows else _MAX_COLUMNS
             row, count = _joined(texts[at : at + _MOST_LINES], separator, most)

@@ -50,7 +50,8 @@ _CURES = {
     errno.EACCES: 'choose a port above 1023',
 }
 _MAY_LOOK = 'this link is to look only: ask for one with control'
-_LONGEST_NAME, _LONGEST_REASON = 80, 400
+_LONGEST_NAME = 80
+_LONGEST_REASON = 400
 
 
 class PageServer:
@@ -92,11 +93,13 @@ class PageServer:
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
-        self.settings, self._tls = settings, settings.tls()
+        self.settings = settings
+        self._tls = settings.tls()
         self.port = USUAL_PORT if settings.port is None else settings.port
         """Port that the server is bound to."""
         self._panel = panel or ControlPanel()
-        self._status, self._written = status or dict, written
+        self._status = status or dict
+        self._written = written
         self._critical_winds = critical_winds
         self._published = Published()
         self._clients: set[PageClient] = set()
@@ -104,9 +107,11 @@ class PageServer:
         self._doors = Doorkeeper(4 * settings.max_clients, self._refusals.note)
         self._guard = Guard(settings, self._doors, self._refusals)
         # One tree is written to a file at a time; some requests may wait for their turn.
-        self._writing, self._n_waiting = asyncio.Lock(), 0
+        self._writing = asyncio.Lock()
+        self._n_waiting = 0
         self._loop = asyncio.new_event_loop()
-        self._started, self._ending = threading.Event(), asyncio.Event()
+        self._started = threading.Event()
+        self._ending = asyncio.Event()
         self._failure: Exception | None = None
         self._is_woken = False
         self._thread = threading.Thread(target=self._run, name='page', daemon=True)

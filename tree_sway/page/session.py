@@ -151,15 +151,18 @@ class Session:
         self.wind = wind
         self._rate = rate
         self._period = 1.0 / rate
-        self.choices, self._tolerance = choices, tolerance
+        self.choices = choices
+        self._tolerance = tolerance
         self._scene, self._runtime = self._made(choices)
         self._next: tuple[SceneState, Run] | None = None
         self._server: PageServer | None = None
         self._stop = threading.Event()
         self._is_paused = self._resets = False
-        self._ticks, self._steps = 0, 0
+        self._ticks = 0
+        self._steps = 0
         self._band: list[float] | None = None
-        self._work, self._spacing = 0.0, self._period
+        self._work = 0.0
+        self._spacing = self._period
         self._last = time.perf_counter()
         self._builder = Newest(self._build_wanted, 'builder')
         self._thread = threading.Thread(target=self._run, name='session', daemon=True)
@@ -367,7 +370,8 @@ class Session:
 
     def _step(self, begin: float) -> None:
         assert self._server is not None
-        has_restarted, self._resets = self._resets, False
+        has_restarted = self._resets
+        self._resets = False
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
             self._server.describe(self._scene.description, self._scene.tables, self._scene.gusts)

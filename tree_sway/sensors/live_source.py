@@ -139,7 +139,8 @@ class LiveSource(ABC):
         told = ''
         while not self._ended.wait(_LOOK) and not self.accepted:
             if self.state != state:
-                state, since = self.state, time.monotonic()
+                state = self.state
+                since = time.monotonic()
             waited = time.monotonic() - since
             if state != told and waited >= self._patience.get(state, math.inf):
                 told = state

@@ -213,7 +213,8 @@ class LiveWind(LiveSource):
         now = time.monotonic()
         is_first = self.newest is None
         is_guess = self._is_guess
-        before, self._gap = self._gap, now - self._arrival
+        before = self._gap
+        self._gap = now - self._arrival
         self._arrival = now
         interval = self._interval(reading, before)
         velocity = reading.velocity(self.bearing)

@@ -32,9 +32,11 @@ class ByWind:
 
     def __init__(self, description: Description, scene: ReceivedScene) -> None:
         """Wait for the first state."""
-        self._description, self._scene = description, scene
+        self._description = description
+        self._scene = scene
         self._last: Frame | None = None
-        self._spacing, self._heard = STEP, 0
+        self._spacing = STEP
+        self._heard = 0
         self.corrections = 0
         """Number of states that corrected the scene."""
 

@@ -229,7 +229,8 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
         'distributed.worker.http.routes': [],
     }
     page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # no page
-    dask, distributed = import_module('dask'), import_module('distributed')
+    dask = import_module('dask')
+    distributed = import_module('distributed')
     import_module('cryptography')  # keys that exclude other users of this machine
     parents: list[Any] = []
 

@@ -13,7 +13,8 @@ from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import status_line
 
 _SETTLING = 0.5
-_LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
+_LIVE_PERIOD = 0.5
+_LOG_PERIOD = 2.0
 
 
 def watch(

@@ -152,7 +152,8 @@ class ImuIntake:
         found = []
         self._run.request(self._find_band)
         for each in sensor_reports(self._twin):
-            problem, counts = each.problem, each.counts
+            problem = each.problem
+            counts = each.counts
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
                 'place': self._twin.at[each.name],

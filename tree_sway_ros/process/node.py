@@ -236,7 +236,8 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
         ``hardware`` is the subject of the report, for example the tree's name.
         """
-        self._hardware, self._collect = hardware, collect
+        self._hardware = hardware
+        self._collect = collect
         profile = qos_profile(DIAGNOSTICS)
         self._diagnostics = self.create_publisher(DiagnosticArray, DIAGNOSTICS.name, profile)
         steady = Clock(clock_type=ClockType.STEADY_TIME)

@@ -170,7 +170,8 @@ class Pacer(Worker):
         index = now // self.period
         if self._last is None or now < self._last * self.period - _BACK:
             self._restarts += self._last is not None
-            self._last, self._last_steady = index, time.monotonic_ns()
+            self._last = index
+            self._last_steady = time.monotonic_ns()
             self._late = now % self.period
             return Tick(index * self.period, 1, True)
         periods = index - self._last

@@ -424,7 +424,8 @@ class SwayModel:
 
     def _sizes(self) -> dict[int | str, int]:
         """Sizes that the names in shapes stand for."""
-        count, twists = len(self.branch_parent), self.branch_twist.shape
+        count = len(self.branch_parent)
+        twists = self.branch_twist.shape
         sizes: dict[int | str, int] = {'n': self.tree.n_segments, 'b': count, 'b + 1': count + 1}
         sizes |= {'k': twists[1] if len(twists) > 1 else 0, 'N': self.n_keys}
         sizes |= {'m': len(self.stiffness), 's': len(self.stream_scale)}
@@ -432,9 +433,13 @@ class SwayModel:
 
     def _check_indices(self) -> None:
         """Refuse indices by which a kernel would read past the end of an array."""
-        n, count, keys = self.tree.n_segments, len(self.branch_parent), self.branch_keys
-        own, last = np.arange(count), np.clip(self.branch_parent, 0, count - 1)
-        first, end = self.branch_first[:-1], self.branch_first[1:]
+        n = self.tree.n_segments
+        count = len(self.branch_parent)
+        keys = self.branch_keys
+        own = np.arange(count)
+        last = np.clip(self.branch_parent, 0, count - 1)
+        first = self.branch_first[:-1]
+        end = self.branch_first[1:]
         seat = self.branch_base_segment
         room = self.branch_twist.shape[1]
         block = np.sort(self.branch_coordinate)

@@ -41,7 +41,7 @@ from scipy.special import ndtri
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.observe.disturbance import GUST, TIME_CONSTANT
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagator import held_propagator
 from tree_sway.core.wind.crown_wind import N_DELAYS, USUAL_COHERENCE
 
 if TYPE_CHECKING:
@@ -92,8 +92,11 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     """
     strata = ndtri((np.arange(count) + 0.5) / count)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
-    root = np.linalg.cholesky(np.cov(drawn) + 1e-9 * np.eye(n_values))
-    ranks = np.linalg.solve(root, drawn).argsort(axis=1).argsort(axis=1)
+    covariance = np.cov(drawn) + 1e-9 * np.eye(n_values)
+    root = np.linalg.cholesky(covariance)
+    uncorrelated = np.linalg.solve(root, drawn)
+    order = uncorrelated.argsort(axis=1)
+    ranks = order.argsort(axis=1)
     return np.asarray(strata[ranks])
 
 
@@ -101,11 +104,11 @@ def most_of(found: Floats) -> Floats:
     """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
     ordered = np.sort(found, axis=-1)
     rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
-    low, share = int(rank), rank - int(rank)
-    ends = []
-    for first, second in ((low, low + 1), (-low - 1, -low - 2)):
-        ends.append((1.0 - share) * ordered[..., first] + share * ordered[..., second])
-    return np.stack(ends)
+    low = int(rank)
+    share = rank - int(rank)
+    from_below = (1.0 - share) * ordered[..., low] + share * ordered[..., low + 1]
+    from_above = (1.0 - share) * ordered[..., -low - 1] + share * ordered[..., -low - 2]
+    return np.stack([from_below, from_above])
 
 
 class Members:
@@ -124,7 +127,8 @@ class Members:
     """
 
     def __init__(self, observer: Observer, dt: float, spreads: Uncertainty) -> None:
-        self._observer, self._dt = observer, dt
+        self._observer = observer
+        self._dt = dt
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
@@ -152,18 +156,20 @@ class Members:
 
     def _fill(self) -> None:
         """Find propagator, drag and gusts of each member for the present wind and spreads."""
-        observer, n = self._observer, self._count
-        unknown, spreads = observer.unknown, self.spreads
+        observer = self._observer
+        n = self._count
+        unknown = observer.unknown
+        spreads = self.spreads
         factors = np.exp(np.array(spreads)[:, None] * self._drawn)
         self.stiffness, loss, self._drag = factors
         stiffness = np.outer(observer.stiffness, self.stiffness)
         damping = np.outer(observer.damping[:n], loss * np.sqrt(self.stiffness))
         self._air = unknown.air_damping[:, None]
         damping += self._air * self._drag
-        c = propagator(np.ones(stiffness.size), damping.ravel(), stiffness.ravel(), self._dt)
-        parts = [c[:, 0], c[:, 1], c[:, 2] + c[:, 3], c[:, 4], c[:, 5], c[:, 6] + c[:, 7]]
-        self._step = np.stack(parts).reshape(2, 3, n, N_MEMBERS)
-        self._stiff, self._damp = stiffness, damping
+        step = held_propagator(damping.ravel(), stiffness.ravel(), self._dt)
+        self._step = step.reshape(2, 3, n, N_MEMBERS)
+        self._stiff = stiffness
+        self._damp = damping
         values, vectors = np.linalg.eigh(unknown.gusts)
         kept = values > 1e-4 * values[-1]
         self._decay = math.exp(-self._dt / TIME_CONSTANT)
@@ -177,13 +183,15 @@ class Members:
         """Find the force on each member per wind of each delay, summed over its limbs."""
         if len(self._limb_draws) != len(reach):
             self._limb_draws = self._rng.random((len(reach), N_MEMBERS))
-        delays = np.rint(self._limb_draws * reach[:, None] * (N_DELAYS - 1)).astype(np.intp)
+        drawn_reach = self._limb_draws * reach[:, None]
+        delays = np.rint(drawn_reach * (N_DELAYS - 1)).astype(np.intp)
         n = self._count
         by_member = np.zeros((N_MEMBERS, N_DELAYS, 3, n))
         for forces, of_limb in zip(by_member, delays.T, strict=True):
             np.add.at(forces, of_limb, slopes)
         by_member *= self._drag[:, None, None, None]
-        self._per_delay = by_member.transpose(3, 0, 2, 1).reshape(n * N_MEMBERS, -1).copy()
+        by_coordinate = by_member.transpose(3, 0, 2, 1)
+        self._per_delay = by_coordinate.reshape(n * N_MEMBERS, -1).copy()
 
     def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
@@ -199,21 +207,26 @@ class Members:
             Wind of each delay less the wind on the model [m/s], (`N_DELAYS`, 3).
 
         """
-        observer, n = self._observer, self._count
+        observer = self._observer
+        n = self._count
         eta, rate, force = (each[:n, None] for each in swing)
         present = (observer.unknown, observer.stiffness, self.spreads)
         if any(now is not then for now, then in zip(present, self._filled_for, strict=True)):
             self._fill()
             self._filled_for = present
         if not self._steps:
-            self.motion[0], self.motion[1] = eta, rate
-            self._slow, self._steps = wind, 1
+            self.motion[0] = eta
+            self.motion[1] = rate
+            self._slow = wind
+            self._steps = 1
             self.errors[:] = 0.0
             return
         self._steps += 1
         self._blow(*wind)
         self._reach_limbs(apart)
-        total, x, v = self._force, self.motion[0], self.motion[1]
+        total = self._force
+        x = self.motion[0]
+        v = self.motion[1]
         np.multiply(force + self._air * rate, self._drag, out=total)
         total += self._gust
         total += self._late
@@ -233,12 +246,15 @@ class Members:
         """Step the forces of the gusts that an anemometer averages away, in a wind [m/s]."""
         share = 1.0 - self._decay
         slow_x, slow_y = self._slow
-        slow_x, slow_y = slow_x + share * (x - slow_x), slow_y + share * (y - slow_y)
+        slow_x = slow_x + share * (x - slow_x)
+        slow_y = slow_y + share * (y - slow_y)
         self._slow = slow_x, slow_y
         fast = 0.5 * ((x - slow_x) ** 2 + (y - slow_y) ** 2)
-        self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
+        share_of_step = max(self._dt / _AVERAGED, 1.0 / self._steps)
+        self._fast += share_of_step * (fast - self._fast)
         self._gust *= self._decay
-        missing = (_LEAST_FAST * math.hypot(slow_x, slow_y)) ** 2 - self._fast
+        least_fast = _LEAST_FAST * math.hypot(slow_x, slow_y)
+        missing = least_fast**2 - self._fast
         if missing <= 0.0:
             return
         size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
@@ -261,9 +277,11 @@ class Members:
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
-        n, gains = self._count, self._observer.gains
+        n = self._count
+        gains = self._observer.gains
         assert gains is not None
-        estimate, felt = self._estimate, self._felt
+        estimate = self._estimate
+        felt = self._felt
         stiffness = self._observer.stiffness[:, None]
         damping = self._observer.damping[:n, None]
         np.multiply(gains.law.step[..., None], estimate, out=self._moved)
@@ -278,7 +296,8 @@ class Members:
         felt[2] += stiffness * felt[0] + self._observer.damped[:, None] * felt[1]
         told = gains.sensed @ felt.reshape(3 * n, -1)
         if len(self._bias) != len(told):
-            self._bias, self._measured = np.zeros_like(told), 0
+            self._bias = np.zeros_like(told)
+            self._measured = 0
         self._measured += 1
         share = max(self._dt / _BIAS_TIME, 1.0 / self._measured)
         self._bias += share * (told - self._bias)

@@ -105,7 +105,8 @@ class PlacedTree:
         tree = self.tree
         c = math.cos(self.yaw)
         s = math.sin(self.yaw)
-        root, here = tree.start[0], np.array([self.x, self.y, self.z])
+        root = tree.start[0]
+        here = np.array([self.x, self.y, self.z])
         if (self.scale, self.yaw) == (1.0, 0.0) and (root == here).all():
             return replace(tree, name=self.name)
         turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -45,8 +45,10 @@ class EquilibriumSearch:
     def __init__(
         self, moments: WindMoments, slopes: LoadSlopes, shapes: Floats, stiffness: Floats
     ) -> None:
-        self._moments, self._slopes = moments, slopes
-        self._shapes, self._root = shapes, np.sqrt(stiffness)
+        self._moments = moments
+        self._slopes = slopes
+        self._shapes = shapes
+        self._root = np.sqrt(stiffness)
         self._still = np.zeros(len(shapes))
 
     def near(self, weaker: Floats, pressure: float, ahead: Floats, turning: Floats) -> Floats:
@@ -72,13 +74,15 @@ class EquilibriumSearch:
         """
         pose = nearest = weaker
         step = rest = weaker
-        least, size_before = np.inf, np.inf
+        least = np.inf
+        size_before = np.inf
         inverse: Floats = np.eye(len(pose))
         for turn in range(_MOST_TURNS):
             rest_before = rest
             rest, size = self._imbalance(pose, pressure, ahead)
             if size < least:
-                nearest, least = pose, size
+                nearest = pose
+                least = size
             if size < _AT_REST:
                 break
             if size < size_before < np.inf:

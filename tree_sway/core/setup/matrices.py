@@ -155,7 +155,8 @@ class _Assembly:
     """
 
     def __init__(self, tree: Tree, models: list[BranchModel], gravity: float) -> None:
-        self.tree, self.gravity = tree, gravity
+        self.tree = tree
+        self.gravity = gravity
         counts = [len(model.fields) for model in models]
         self.first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
         size = int(self.first[-1])
@@ -375,7 +376,8 @@ def _lift(model: BranchModel, mass_beyond: Floats, hanging: Floats) -> tuple[Flo
 
 def _work_of_weight(model: BranchModel, moment_beyond: Floats) -> Floats:
     """Sum the work of the moment at rest, e_z x the moment of mass, on rho x d rho, (k, k)."""
-    east, north = moment_beyond[..., 0], moment_beyond[..., 1]
+    east = moment_beyond[..., 0]
+    north = moment_beyond[..., 1]
     borne = np.stack([north, -east, np.zeros_like(east)], axis=-1)
     borne *= model.beam.weight[..., None]
     about = np.stack([cross(borne, field.slope) for field in model.fields], axis=-4)

@@ -160,7 +160,8 @@ class Exposure:
         """
         ratio = min(max(self.spacing / self.height, 0.075), 0.45)
         inside = 2.7193 * ratio - 0.061
-        at_edge, decay = 0.9701 - 1.273 * ratio, 1.1127 * ratio + 0.0311
+        at_edge = 0.9701 - 1.273 * ratio
+        decay = 1.1127 * ratio + 0.0311
         deep = at_edge * decay**9
         return (inside + at_edge) / (inside + deep)
 

@@ -26,7 +26,8 @@ from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _SECONDS = 10.0
-_STEADY, _SETTLED = 8.0, 30.0
+_STEADY = 8.0
+_SETTLED = 30.0
 _MAX_GROUPS = 4
 
 
@@ -105,7 +106,8 @@ def influences(simulator: SwaySimulator) -> Floats:
     steady = Rotation.from_quat(simulator.place()[:, 3:])
     simulator.set_state(before)
     turned = steady * Rotation.from_quat(tree.rest_poses[:, 3:]).inv()
-    first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
+    first = tree.branch_first[:-1]
+    last = tree.branch_first[1:] - 1
     carrier = tree.segment_parent[first]
     own = turned[np.maximum(carrier, 0)].inv() * turned[last]
     slope = np.where(carrier < 0, turned[last].magnitude(), own.magnitude())
@@ -115,7 +117,8 @@ def influences(simulator: SwaySimulator) -> Floats:
 
 
 def _wind_attributes(simulator: SwaySimulator) -> list[str]:
-    groups, found = branch_groups(simulator.tree), influences(simulator)
+    groups = branch_groups(simulator.tree)
+    found = influences(simulator)
     values = {
         'token[] unreal:dynamicWind:jointNames': _strings(plain_names(simulator.tree)),
         'int[] unreal:dynamicWind:jointSimulationGroups': groups.tolist(),

@@ -124,7 +124,8 @@ class TreeHistory:
         if now - self._began < PERIOD:
             return False
         means = np.mean(self._noted, axis=0).tolist()
-        self._began, self._noted = now, []
+        self._began = now
+        self._noted = []
         self._write(twin, means)
         return True
 

@@ -108,7 +108,8 @@ def _trees(
     notes = list[str]()
     faults = list[str]()
     for number, entry in enumerate(entries):
-        name, where = entry['name'], document.where('trees', number)
+        name = entry['name']
+        where = document.where('trees', number)
         try:
             file = opened(entry['tree'], entry.get('seed', 0), entry.get('species'))
         except TreeSwayError as error:

@@ -185,8 +185,10 @@ def grown_kind(
     A height beyond those of the habit is scaled from the nearest of them, and an impossible stem
     is made thinner or thicker, which is added to the notes.
     """
-    key, diameter = species.key, None
-    least, most = height_of_stem(key, 0.0), height_of_stem(key, math.inf)
+    key = species.key
+    diameter = None
+    least = height_of_stem(key, 0.0)
+    most = height_of_stem(key, math.inf)
     if not least <= height <= most:
         nearest_height = min(max(height, least), most)
         notes.append(f'{key} of {height:.3g} m: scaled from one of {nearest_height:.3g} m')

@@ -75,7 +75,8 @@ class LearnedFile:
         if _text_of(self.path) not in (None, self._text):
             what = 'was written by another program meanwhile, and is left as it is'
             raise FormatError(what, where=self.path, cure='name another file to learn into')
-        before, species = self.opened.learned, self.opened.species
+        before = self.opened.learned
+        species = self.opened.species
         species = learned.over(before).of(species, in_leaf=self._in_leaf)
         text = yaml_of_tree(self.opened.tree, species, learned)
         write_text_whole(self.path, text)
@@ -83,7 +84,8 @@ class LearnedFile:
 
     def keep(self, twin: ObservedTree) -> bool:
         """Write what a tree has learned since the last call, if anything; tell whether it was."""
-        fit, learned = twin.observer.fit, twin.learned
+        fit = twin.observer.fit
+        learned = twin.learned
         if fit is None or fit is self._kept or learned is None:
             return False
         self._kept = fit

@@ -23,7 +23,8 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
 
-_ENDS, _DIAMETERS = ('start', 'end'), ('diameter', 'base_diameter', 'tip_diameter')
+_ENDS = ('start', 'end')
+_DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')
 _Shape = TypeVar('_Shape', Tree, Cylinders)
 _RANGES = {
     'length_unit': (1e-6, 1e3), 'diameter_unit': (1e-6, 1e3),
@@ -120,7 +121,8 @@ class TreeOptions:
         notes = list(content.notes)
         origin = np.zeros(3)
         given = content.species if self.species is None else species_named(self.species)
-        species, faults = wood(given), list(content.faults)
+        species = wood(given)
+        faults = list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
         if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)

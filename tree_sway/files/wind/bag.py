@@ -49,9 +49,11 @@ def read_bag_wind(
     source = str(path)
     bag = read_bag(path, WIND_TYPES)
     chosen = _chosen(bag.types, topic, source)
-    kind, messages = bag.types[chosen], bag.messages[chosen]
+    kind = bag.types[chosen]
+    messages = bag.messages[chosen]
     rows = WindRows(source, row_name='message')
-    epoch, n_unstamped = -1, 0
+    epoch = -1
+    n_unstamped = 0
     for number, (recorded, data) in enumerate(messages, start=1):
         try:
             stamp, velocity = _sample(data, has_header=not kind.endswith('/Vector3'))

@@ -51,7 +51,8 @@ class Link(Worker):
     def opened(self) -> None:
         """Note that the connection is made."""
         self._latest = time.monotonic()
-        self.is_up, self.failure = True, ''
+        self.is_up = True
+        self.failure = ''
         self.connections += 1
         self.log(f'listening to {self.transport}')
 
@@ -84,7 +85,8 @@ class Link(Worker):
                 why = failure_text(error)
             if not self._stopping.is_set() and (self.is_up or why != self.failure):
                 self.log(f'{self.transport}: {why}; trying again')
-            self.is_up, self.failure = False, why
+            self.is_up = False
+            self.failure = why
             has_data = self.messages > before
             pause = self.first_pause if has_data else min(2.0 * pause, self.longest_pause)
             self._stopping.wait(pause)

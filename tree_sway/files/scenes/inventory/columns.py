@@ -89,7 +89,8 @@ class InventoryColumns:
         another one are converted to it; where only a few cells have one, they are turned into
         metres. A cell may have several ``stems``, which count as one of their whole section.
         """
-        values, units = np.full(self.n_rows, np.nan), [''] * self.n_rows
+        values = np.full(self.n_rows, np.nan)
+        units = [''] * self.n_rows
         n_ranges = 0
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)

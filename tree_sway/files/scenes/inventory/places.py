@@ -21,7 +21,8 @@ _EARTH_RADIUS = 6.371e6
 _FAR = 1e5
 """Coordinates beyond which a map's origin is moved to the trees [m]."""
 
-_MOST_LONGITUDE, _MOST_LATITUDE = 180.0, 90.0
+_MOST_LONGITUDE = 180.0
+_MOST_LATITUDE = 90.0
 
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
