@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Iterator
 from pathlib import Path
 import re
 
@@ -13,6 +15,7 @@ import yaml
 import tree_sway  # noqa: I100
 
 ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = (ROOT / 'tree_sway', ROOT / 'tree_sway_ros', ROOT / 'lab' / 'tree_sway_lab')
 WORKFLOWS = sorted((ROOT / '.github' / 'workflows').glob('*.yml'))
 
 
@@ -45,3 +48,35 @@ def test_every_source_file_has_the_licence_in_its_header() -> None:
         if 'SPDX-License-Identifier: Apache-2.0' not in path.read_text(encoding='utf-8')[:400]
     ]
     assert not without, 'put the two lines of setup.py at the top of: ' + ', '.join(without)
+
+
+def names_in(tree: ast.AST) -> Iterator[str]:
+    """Names that a module defines or uses, and words of its texts that are no docstrings."""
+    for node in ast.walk(tree):
+        for field in ('name', 'id', 'attr', 'arg'):
+            name = getattr(node, field, None)
+            if isinstance(name, str):
+                yield name
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            if '`' not in node.value:
+                yield from re.findall(r'\w+', node.value)
+
+
+def test_names_in_docstrings_exist() -> None:
+    """One pair of backticks is for names of this package; others have two."""
+    paths = [path for folder in PACKAGES for path in folder.rglob('*.py')]
+    trees = {path: ast.parse(path.read_text(encoding='utf-8')) for path in paths}
+    known = {part for path in paths for part in path.with_suffix('').parts}
+    known |= {path.name for folder in PACKAGES for path in folder.rglob('*') if path.is_file()}
+    for tree in trees.values():
+        known.update(names_in(tree))
+    unknown = []
+    for path, tree in trees.items():
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
+                continue
+            quoted = re.findall(r'(?<!`)`([\w.]+)`(?!`)', str(node.value.value))
+            for name in quoted:
+                if name not in known and not set(name.split('.')) <= known:
+                    unknown.append(f'{path.relative_to(ROOT)}:{node.lineno}: {name}')
+    assert not unknown, 'no such name: ' + ', '.join(unknown)

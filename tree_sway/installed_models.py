@@ -41,10 +41,12 @@ def refuse_missing_model(model: str) -> None:
         from tree_sway.extras import line_in_venv
 
         install = line_in_venv('lab') or 'pip install ./lab in the checkout'
-        fault, verb = 'is not installed', 'install it'
+        fault = 'is not installed'
+        verb = 'install it'
         if find_spec(LABORATORY) is not None:
             # Entry points are those of the day of the installation, even of an editable one.
-            fault, verb = 'was installed before it had this model', 'install it again'
+            fault = 'was installed before it had this model'
+            verb = 'install it again'
         raise MissingDependencyError(
             f"model '{model}' belongs to the laboratory, which {fault}",
             where='model',

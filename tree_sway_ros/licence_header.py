@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Licence header of files of this package, for `ament_copyright`.
+Licence header of files of this package, for ``ament_copyright``.
 
 It is found by the entry point ``ament_copyright.license`` of setup.py.
 """

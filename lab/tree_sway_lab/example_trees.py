@@ -43,7 +43,7 @@ def forked_tree(
     Parameters
     ----------
     length_ratio, diameter_ratio
-        Of a child to its parent.
+        Length and diameter of a child over those of its parent.
     segments
         Segments per branch, a multiple of 6.
     generations
@@ -178,7 +178,7 @@ def leafy_sapling(wander: float = 0.0, seed: int = 0) -> Tree:
     wander
         Step [m] by which the stem leaves the vertical from one segment to the next.
     seed
-        Of its random numbers.
+        Seed of its random numbers.
 
     """
     rng = np.random.default_rng(seed)

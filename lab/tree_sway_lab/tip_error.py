@@ -39,7 +39,7 @@ def record_tips(
     Parameters
     ----------
     model
-        What steps and places.
+        Simulator that steps and places the tree.
     tree
         The tree it is a model of.
     wind

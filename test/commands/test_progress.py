@@ -41,6 +41,7 @@ def test_a_long_wait_on_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) 
     pytest.importorskip('tqdm')
     terminal = Terminal()
     monkeypatch.setattr(sys, 'stderr', terminal)
+    monkeypatch.setattr(sys, '__stderr__', terminal)
     monkeypatch.setattr(progress, 'PATIENCE', 0.0)
     assert list(progress.bar(range(3), 'working')) == [0, 1, 2]
     assert 'working:' in terminal.getvalue()

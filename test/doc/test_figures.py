@@ -71,7 +71,7 @@ FIGURES = {
         r'frames per second that it takes, ([\d.]+) to (\d+)': [
             page_client.SLOWEST, page_client.FASTEST,
         ],
-        r'let (\d+) kB be on their way, (\d+) to (\d+) frames': [
+        r'allow (\d+) kB under way, (\d+) to (\d+) frames': [
             client._ON_THE_WAY / 1e3, client._LEAST_CREDIT, client._MOST_CREDIT,
         ],
         r'every (\d+) s up to (\d+) coordinates': [

@@ -25,9 +25,10 @@ from tree_sway.core.scene.simulate import PlacedMotion, simulate  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.core.wind.intake import WindIntake  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
-from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
+from tree_sway_ros.nodes.recorded_imu import RecordedImu  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
@@ -53,6 +54,21 @@ def test_another_text_is_refused_with_an_example(text):
     with pytest.raises(ParameterError, match='no topic with a place') as caught:
         places_of(text)
     assert 'tree/imu@3.2' in caught.value.cure
+
+
+@pytest.mark.parametrize('name', ['tree bad/imu', '2tree/imu', 'tree//imu', 'tree/imu/'])
+def test_what_is_no_name_of_a_topic_is_refused(name, tmp_path):
+    with pytest.raises(ParameterError, match='is no name of a topic'):
+        places_of(f'{name}@3.2')
+    with pytest.raises(ParameterError, match='is no name of a topic'):
+        RecordedImu(str(tmp_path), name, None)
+
+
+def test_motion_is_played_from_bags_alone(tmp_path):
+    wind = tmp_path / 'wind.csv'
+    wind.write_text('time,u,v\n0,1,2\n')
+    with pytest.raises(FormatError, match='leave imu out, or give a bag'):
+        RecordedImu(str(wind), 'tree/imu', None)
 
 
 def test_covariances_say_what_is_measured_and_how_well():

@@ -89,7 +89,7 @@ def error_at(lag: float, at: Floats, found: Floats, known: Floats) -> float:
 @pytest.mark.parametrize(
     ('motion_off', 'wind_off', 'most'),
     [
-        (0, 0, 0.03),
+        pytest.param(0, 0, 0.03, marks=pytest.mark.long),
         # Between two samples the noise of the sensor is another, and half as large.
         (3_000_000, 5_000_000, 0.05),
     ],

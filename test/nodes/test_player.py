@@ -114,7 +114,7 @@ def busy_core():
     busy.wait()
 
 
-@pytest.mark.parametrize('rate', [2, 5])
+@pytest.mark.parametrize('rate', [pytest.param(2, marks=pytest.mark.long), 5])
 @pytest.mark.usefixtures('busy_core')
 def test_fast_replays_of_processes_are_the_same_and_say_what_they_are(
     run, observer, statuses, tmp_path, tree_file, rate

@@ -221,6 +221,13 @@ def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
         PageServer(PageSettings(port=server.port)).start()
 
 
+def test_an_address_of_another_machine_is_told_as_such() -> None:
+    # RFC 5737, block 2: no machine has this address.
+    settings = PageSettings(address='198.51.100.7', token='a long token', port=0)
+    with pytest.raises(TransportError, match="give an address of this machine's own"):
+        PageServer(settings).start()
+
+
 def test_of_two_pages_without_a_port_the_second_takes_a_free_one(
     server: PageServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -97,6 +97,7 @@ REFUSED = [
     ('lines', b'5.0,999', 'direction is 999'),
     ('lines', b'0 006.2 270 01*00', 'wrong checksum'),
     ('lines', b'{"wind_speed": null, "wind_direction": 270}', "speed is 'None'"),
+    ('lines', b'{"wind_speed": {"value": 5, "unit": "bft"}}', "unknown unit 'bft'"),
     ('lines', b'{"wind_speed": NaN}', "speed is 'nan'"),
     ('lines', b'{"wind_speed": 5.0, "wind_direction": 400}', "direction is '400'"),
     ('upload', b'windspeedmph=-9999&winddir=270', "speed is '-9999'"),
@@ -154,7 +155,10 @@ def test_what_is_no_path_is_refused(text: str) -> None:
 @pytest.mark.parametrize(
     ('address', 'message'),
     [
-        ('', 'does not begin with a kind of source'),
+        ('', 'does not begin with a kind of source; give one such as udp:5006'),
+        ('5006', 'give udp:5006'),
+        ('/dev/ttyUSB0', 'give serial:/dev/ttyUSB0'),
+        ('192.168.1.3:10110', 'give tcp://192.168.1.3:10110'),
         ('anemometer', 'is no source of wind'),
         ('mqqt://host/topic', "did you mean 'mqtt'"),
         ('mqtt://host', 'no host or topic'),
@@ -232,6 +236,20 @@ def test_lines_that_nobody_understands_are_told_within_five_seconds(hear, send, 
 def test_silence_is_told(hear, port) -> None:
     heard = hear(f'udp://127.0.0.1:{port}')
     heard.until(lambda: told(heard, 'nothing has come yet'))
+
+
+def test_a_name_is_one_line() -> None:
+    assert open_source('udp:5006?name=a%0Ab%1B%5B2J').name.startswith('a b\\x1b[2J, ')
+
+
+def test_a_fast_instrument_is_not_told_as_a_mean(hear, send, port) -> None:
+    heard = hear(f'udp://127.0.0.1:{port}')
+    heard.until(
+        lambda: heard.wind.accepted > 2,
+        lambda: send(port, b'{"wind_speed": 6.0, "wind_dir": 270}'),
+    )
+    assert not any('a mean over' in text for text in heard.said), heard.said
+    assert any(text.endswith('the wind of instants') for text in heard.said), heard.said
 
 
 def test_refused_winds_are_told_with_their_reasons(hear, send, port) -> None:

@@ -83,6 +83,13 @@ LINES = [
     ('name=value', b'wind_speed=19.08 km/h; wind_direction=270\n', 5.3),
     ('compass', b'windSpeed: 5.3 m/s, windDir: W\n', 5.3),
     ('JSON', b'{"wind": {"wind_speed": 5.3, "wind_direction": 270}}\n', 5.3),
+    ('OpenWeather', b'{"boat": {"speed": 9}, "wind": {"speed": 5.3, "deg": 270}}\n', 5.3),
+    (
+        'api.weather.gov',
+        b'{"windSpeed": {"unitCode": "wmoUnit:km_h-1", "value": 19.08}, '
+        b'"windDirection": {"unitCode": "wmoUnit:degree_(angle)", "value": 270}}\n',
+        5.3,
+    ),
     ('SDI-12 of Gill', b'0+270+005.30+00\r\n', 5.3),
 ]
 

@@ -30,6 +30,7 @@ from tree_sway.studies.runner import (
     batches,
     compute_batch,
     estimated_time,
+    missing_cases,
     result_path,
     run_study,
     store_row,
@@ -59,6 +60,16 @@ def alone(tmp_path_factory):
     for case in cases():
         compute_to_file(case, folder)
     return run_study(cases(), folder)
+
+
+def test_a_case_whose_file_is_cut_off_is_computed_again(tmp_path):
+    first, second, *_ = cases()
+    for case in (first, second):
+        compute_to_file(case, tmp_path)
+    result_path(tmp_path, first).write_text('{"tip_rms [m]": 0.0')
+    assert missing_cases([first, second], tmp_path) == [first]
+    result_path(tmp_path, first).write_text('')
+    assert missing_cases([first, second], tmp_path) == [first]
 
 
 def watched(after, do):

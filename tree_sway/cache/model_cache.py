@@ -77,7 +77,8 @@ class ModelFiles:
         size = sum(each.nbytes for each in arrays.values())
         if (folder := self.folder or kernel_folder()) is None or size > LARGEST:
             return
-        key, content = _key(digest), io.BytesIO()
+        key = _key(digest)
+        content = io.BytesIO()
         np.savez(content, key=np.array(key), **arrays)
         with suppress(OSError):
             write_own(folder / f'{key}{_SUFFIX}', content.getvalue())

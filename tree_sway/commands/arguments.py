@@ -18,7 +18,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import LEAVES
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError, SpeciesError
+from tree_sway.errors import ParameterError, shown, SpeciesError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -98,7 +98,8 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
 def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
     """Return the species of the arguments for that of a file."""
-    given, changed = _species(arguments), _wood(arguments)
+    given = _species(arguments)
+    changed = _wood(arguments)
     if given is None and not changed:
         return same
     return lambda found: dataclasses.replace(given or found, **changed)
@@ -225,4 +226,4 @@ def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
 def what_was_written(path: str, tree: Tree) -> str:
     """Return a line about a tree in a file."""
     size = f'{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
-    return f'{path}: {tree.name}, {size}'
+    return f'{path}: {shown(tree.name)}, {size}'

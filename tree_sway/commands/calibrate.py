@@ -84,10 +84,13 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments)
     output = output_path(arguments)
     tree_file = opened_tree(arguments)
-    frequency, damping, error = arguments.frequency, arguments.damping, 0.0
+    frequency = arguments.frequency
+    damping = arguments.damping
+    error = 0.0
     if arguments.record is not None:
         found = _measured(arguments)
-        frequency, error = found.frequency, found.frequency_error / found.frequency
+        frequency = found.frequency
+        error = found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
     settings = Settings(in_leaf=chosen_leaves(arguments))
     with waiting('calibrating'):
@@ -156,7 +159,8 @@ def _recorded(source: str, seconds: float) -> SwayRecord:
     with waiting('listening to the phone'):
         while True:
             record = read_phone_sway(source)
-            before, measured = measured, float(record.time[-1] - record.time[0])
+            before = measured
+            measured = float(record.time[-1] - record.time[0])
             if measured >= seconds:
                 return record
             if measured == before:
@@ -167,7 +171,8 @@ def _recorded(source: str, seconds: float) -> SwayRecord:
 
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
     """Print the changes; `error` is the relative standard error of the frequency."""
-    after, table = fitted.species, species_named(before.key)
+    after = fitted.species
+    table = species_named(before.key)
     was_stable = fitted.frequency_before is not None
     was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'
     spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''

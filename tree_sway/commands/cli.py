@@ -23,6 +23,7 @@ from typing import Any, NoReturn
 import warnings
 
 from tree_sway.commands.command import Command, commands_beside
+from tree_sway.commands.escaped_text import escaped_output
 from tree_sway.errors import nearest, shown, TreeSwayError
 from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 
@@ -64,13 +65,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     The exit code is 0, or 2 for an error that the user can correct, with one line on how.
     """
-    with warnings.catch_warnings():
+    with escaped_output(), warnings.catch_warnings():
         warnings.showwarning = _show_warning  # type: ignore[assignment]
         return _main(list(sys.argv[1:] if argv is None else argv))
 
 
 def _main(given: list[str]) -> int:
-    _write_any_name()
     table, group = _table(given[0] if given else '')
     command = given[bool(group)] if len(given) > bool(group) else ''
     if not group and command not in table and command in (*_OF_ROS, 'lab'):
@@ -108,13 +108,6 @@ def _show_warning(message: Warning | str, *_where: Any) -> None:
     """Print warnings of libraries on one line, without the line of code."""
     if sys.stderr is not None:
         print(f'note: {" ".join(str(message).split())}', file=sys.stderr)
-
-
-def _write_any_name() -> None:
-    """Print characters that a terminal lacks with escapes, instead of a crash."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors='backslashreplace')
 
 
 def _fail(command: str, text: str) -> int:

@@ -34,6 +34,6 @@ def commands_beside(module: str) -> dict[str, Command]:
     """Read the commands of a package by name, from ``commands.csv`` beside a module's file."""
     found = {}
     for row in table_beside(module, 'commands.csv'):
-        name, needs = row.pop('name'), row.pop('needs') or ''  # an empty cell is a list of none
+        name, needs = row.pop('name'), row.pop('needs') or ''  # an empty cell is read as None
         found[name] = Command(**row, needs=needs)
     return found

@@ -18,6 +18,7 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     drawn_leaves,
     opened_scene,
+    opened_tree,
     OUTPUT_HELP,
     output_path,
     refuse_unused,
@@ -39,7 +40,11 @@ from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_writing import write_usd
 from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
 from tree_sway.files.models.model_writer import write_model
+from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_head
+from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files.yaml_document import begins_with_key
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -103,6 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
         suffix == '.glb' and _is_to_sway(scene, arguments)
     ):
         _write_swaying(scene, arguments, suffix)
+    elif suffix != '.glb' and scene.is_one_tree:
+        write_tree(output, _with_what_was_learned(scene, arguments))
     else:
         species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
@@ -126,7 +133,8 @@ def _write_moments(
     scene: Scene, arguments: argparse.Namespace, moments: list[float] | None, paths: list[Path]
 ) -> None:
     """Write the triangles of a scene at rest, or of each moment in wind to its file."""
-    files, name = ObjScene(scene.tree, drawn_leaves(scene, arguments)), scene.name
+    files = ObjScene(scene.tree, drawn_leaves(scene, arguments))
+    name = scene.name
     axes = 'metres, x east, y north, z up'
     if moments is None:
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
@@ -172,6 +180,15 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             write_usd(arguments.output, simulator, leaves)
         else:
             write_text_whole(arguments.output, _HINGED[suffix](simulator))
+
+
+def _with_what_was_learned(scene: Scene, arguments: argparse.Namespace) -> TreeFile:
+    """Return the only tree of a scene, with what motion sensors told if its file has it."""
+    path = path_of(arguments.tree)
+    learned = None
+    if path.is_file() and begins_with_key(path, read_head(path), 'learned'):
+        learned = opened_tree(arguments).learned
+    return TreeFile(scene.tree, scene.trees[0].species, scene.source, learned=learned)
 
 
 def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A process that is asked to end ends soon, during any work.
+Ending of a process soon after Ctrl-C, whatever it is doing.
 
 Ctrl-C and SIGTERM set a flag that a loop checks, or interrupt work before the loop. Python handles
 signals between two of its own instructions, and the compiler of the kernels may run for seconds
@@ -73,7 +73,8 @@ class Ending:
         return self.is_asked
 
     def _hear(self, _number: int, _frame: FrameType | None) -> None:
-        is_first, self.is_asked = not self.is_asked, True
+        is_first = not self.is_asked
+        self.is_asked = True
         if is_first:
             self._end_by_all_means()
         if is_first and self._breaks_in:

@@ -40,7 +40,7 @@ from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_dia
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import TreeError
+from tree_sway.errors import shown, TreeError
 from tree_sway.parameters.sway_parameters import SWAY
 
 _GRAVITY = 9.81
@@ -49,6 +49,7 @@ _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
 _LONGEST_NAME = 60
+_LONGEST_LINE = 1000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -100,13 +101,16 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) -> dict[str, Any]:
     """Collect the facts on a kind of trees, in SI units, for JSON; strength is of its tallest."""
-    tree, species, count = kind.tree, kind.species, arguments.count
+    tree = kind.tree
+    species = kind.species
+    count = arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
-    notes, modes = [], list[dict[str, Any]]()
+    notes = []
+    modes = list[dict[str, Any]]()
     try:
         whole = TreeReductions(tree, species, settings)
         modes, mass = mode_table(whole, count)
@@ -205,7 +209,8 @@ def _sums(
     """
     trees = []
     for each, number in zip(scene.trees, scene.kind_numbers.tolist(), strict=True):
-        facts, k = kinds[number], each.scale
+        facts = kinds[number]
+        k = each.scale
         tree = {name: facts[name] for name in ('branches', 'segments', 'species', 'in_leaf')}
         tree |= {name: facts[name] * k**power for name, power in _POWERS.items()}
         place = {'x': each.x, 'y': each.y, 'z': each.z, 'yaw': each.yaw}
@@ -244,7 +249,7 @@ def _text(facts: dict[str, Any]) -> str:
             f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   {mode["branch"]}'
             for mode in modes
         ]
-    return '\n'.join(lines)
+    return '\n'.join(shown(line, _LONGEST_LINE) for line in lines)
 
 
 def _short(name: str) -> str:
@@ -253,7 +258,8 @@ def _short(name: str) -> str:
 
 
 def _tree_lines(facts: dict[str, Any]) -> list[str]:
-    breast, roots = facts['breast_height_diameter'], facts['root_stiffness']
+    breast = facts['breast_height_diameter']
+    roots = facts['root_stiffness']
     high = '' if breast is None else f', {breast * 1e3:.1f} mm at {BREAST_HEIGHT} m'
     return [
         f'  size       {facts["branches"]} branches, {facts["segments"]} segments, '
@@ -277,7 +283,8 @@ def _forest_lines(facts: dict[str, Any]) -> list[str]:
         f'  {"tree":{wide}}   species       east    north     height       mass       sways',
     ]
     for tree in shown:
-        place, slowest = tree['place'], tree['frequencies']
+        place = tree['place']
+        slowest = tree['frequencies']
         sways = f'{slowest[0]:6.3f} Hz' if slowest else '        -'
         lines.append(
             f'  {_short(tree["name"]):{wide}}   {tree["species"]:11} {place["x"]:6.2f}'

@@ -53,7 +53,8 @@ def sensing(
     from tree_sway.sensors.motion.motion_feed import MotionFeed, PlacedSensor
     from tree_sway.sensors.motion.motion_registry import open_motion
 
-    placed, addresses = [], set[str]()
+    placed = []
+    addresses = set[str]()
     for number, (url, at) in enumerate(sensors_and_places(arguments)):
         opened = open_motion(url)
         address = str(opened.source.transport)

@@ -21,7 +21,8 @@ from tree_sway.errors import ParameterError
 from tree_sway.page.wind_source import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
-_LATEST, _MOST = 86400.0, 100_000
+_LATEST = 86400.0
+_MOST = 100_000
 _NUMBER = re.compile(r'%0?\d*d')
 
 
@@ -63,7 +64,8 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
     else:
         found = _NUMBER.search(pattern)
         assert found is not None
-        before, after = pattern[: found.start()], pattern[found.end() :]
+        before = pattern[: found.start()]
+        after = pattern[found.end() :]
         names = [f'{before}{found[0] % k}{after}' for k in range(count)]
     for name in names:
         if not may_overwrite:

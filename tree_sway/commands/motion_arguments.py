@@ -41,7 +41,8 @@ def add_place_argument(parser: argparse.ArgumentParser) -> None:
 
 def sensors_and_places(arguments: argparse.Namespace) -> list[tuple[str, str]]:
     """Pair each ``--motion`` with its ``--at``; a `ParameterError` if one has no other."""
-    n_sensors, n_places = len(arguments.motion), len(arguments.at)
+    n_sensors = len(arguments.motion)
+    n_places = len(arguments.at)
     if n_sensors != n_places:
         what = f'{n_sensors} --motion and {n_places} --at'
         cure = 'give the place of each sensor: --motion SENSOR --at 3.2'

@@ -43,7 +43,8 @@ from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
 from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_tip, STUDY_COLUMNS
 
-_SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
+_SETTLING = 60.0
+_SETTLING_STEP = 1.0 / 15.0
 _RATE = 60.0
 _LONGEST_HEADER = 4096
 _LEAVES = 3000
@@ -133,7 +134,8 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
     tallest = tallest_of_kinds(scene)
     fastest = SWAY['mean_speed'].checked(simulated_speed(arguments, 30.0))
-    speeds, used = np.linspace(0.0, fastest, 7)[1:], {}
+    speeds = np.linspace(0.0, fastest, 7)[1:]
+    used = {}
     for each in bar(tallest.values(), 'loading trees'):
         placed = each.placed()
         exposure = chosen_exposure(arguments, placed, each.species)
@@ -141,7 +143,8 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        rig, rng = strength_rig(each, settings), np.random.default_rng(0)
+        rig = strength_rig(each, settings)
+        rng = np.random.default_rng(0)
         used[each.name] = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
         for speed, use in zip(speeds, used[each.name], strict=True):
             print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
@@ -149,9 +152,11 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 
 def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
-    wind, seconds = opened_wind(arguments), arguments.seconds
+    wind = opened_wind(arguments)
+    seconds = arguments.seconds
     if isinstance(wind, RecordedWind):
-        source, seconds = Path(arguments.wind).name, min(seconds, wind.length)
+        source = Path(arguments.wind).name
+        seconds = min(seconds, wind.length)
     else:
         source = f'simulated westerly, mean {simulated_speed(arguments):g} m/s'
     if seconds < 2.0 / _RATE:

@@ -15,6 +15,8 @@ import sys
 import threading
 from typing import TypeVar
 
+from tree_sway.errors import shown
+
 T = TypeVar('T')
 
 PATIENCE = 2.0
@@ -27,7 +29,9 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
         with suppress(ImportError):
             from tqdm import tqdm
 
-            yield from tqdm(items, desc=what, delay=PATIENCE, leave=False, file=sys.stderr)
+            # The bar moves the cursor, which `sys.stderr` escapes inside a command.
+            terminal = sys.__stderr__
+            yield from tqdm(items, desc=shown(what), delay=PATIENCE, leave=False, file=terminal)
             return
     with waiting(what):
         yield from items

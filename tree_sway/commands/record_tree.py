@@ -68,7 +68,8 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         with inside('--at'):
             place_on(opened.tree, at)
     tables = [MotionTable() for _ in arguments.motion]
-    pause, end = threading.Event(), time.monotonic() + seconds
+    pause = threading.Event()
+    end = time.monotonic() + seconds
     with sensing(arguments, heard=[each.take for each in tables]) as feed:
         folder.mkdir(parents=True, exist_ok=True)
         write_tree(folder / 'tree.yaml', opened)

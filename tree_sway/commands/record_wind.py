@@ -52,7 +52,8 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     if not arguments.force:
         refuse_overwriting(path, '--output')
     refuse_unwritable(path)
-    pause, end = threading.Event(), time.monotonic() + seconds
+    pause = threading.Event()
+    end = time.monotonic() + seconds
     table = WindTable(path)
     with listening(arguments, heard=table.take) as wind:
         table.wind = wind
@@ -87,7 +88,8 @@ class WindTable:
 
     def take(self, reading: WindReading) -> None:
         """Write a reading; called by the source's thread."""
-        before, self._before = self._before, reading
+        before = self._before
+        self._before = reading
         if reading.time is not None and before is not None and reading.time == before.time:
             return  # a report that is requested again
         row = reading.time or self._clock.date(time.monotonic()), reading

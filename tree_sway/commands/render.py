@@ -54,7 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     with waiting('setting up the tree'):
         simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
     began = time.monotonic()
-    rate, pixels = arguments.rate, arguments.pixels
+    rate = arguments.rate
+    pixels = arguments.pixels
     count = max(1, round(arguments.seconds * rate))
     why_plain = _why_not_the_page(arguments)
     what = 'swaying' if why_plain else f'drawing {count} pictures'

@@ -73,7 +73,8 @@ def wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
     A `TransportError` with the reason reports that none came, or sooner that the source was never
     reached.
     """
-    pause, began = threading.Event(), time.monotonic()
+    pause = threading.Event()
+    began = time.monotonic()
     say(f'waiting for {wind.link.transport}; Ctrl-C ends it')
     while wind.newest is None:
         limit = patience if wind.link.connections else min(patience, _UNREACHED)
@@ -88,7 +89,8 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
 
     A `TransportError` reports that no wind came.
     """
-    pause, samples = threading.Event(), list[tuple[float, tuple[float, float, float]]]()
+    pause = threading.Event()
+    samples = list[tuple[float, tuple[float, float, float]]]()
     with listening(arguments) as wind:
         wait_for_wind(wind)
         end = time.monotonic() + seconds

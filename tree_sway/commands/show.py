@@ -201,7 +201,8 @@ def build_scene(
         if not scene.is_one_tree:
             raise ParameterError('a stand of a forest', where='--stand', cure='name one tree')
         scene = stand(scene, count, choices.model)
-    damping, in_leaf = choices.damping_ratio or None, chosen_leaves(arguments)
+    damping = choices.damping_ratio or None
+    in_leaf = chosen_leaves(arguments)
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
@@ -230,8 +231,10 @@ def _grown(choices: Choices) -> Scene:
 
 def stand(scene: Scene, count: int, model: str) -> Scene:
     """Trees of one kind on a grid, with different yaws; on their table if they have one."""
-    tree, one = scene.tree, scene.trees[0]
-    low, high = tree.start.min(axis=0), tree.end.max(axis=0)
+    tree = scene.tree
+    one = scene.trees[0]
+    low = tree.start.min(axis=0)
+    high = tree.end.max(axis=0)
     spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))
     across = math.ceil(math.sqrt(count))
     trees = [

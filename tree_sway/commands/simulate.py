@@ -114,7 +114,8 @@ def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np
     if arguments.sensor is not None:
         return live_record(arguments, arguments.seconds or 60.0)
     if arguments.wind is None:
-        rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
+        rng = np.random.default_rng(0)
+        seconds = arguments.seconds or 60.0
         refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
         return simulate_turbulence(
             simulated_speed(arguments), rate=arguments.rate, duration=seconds, rng=rng,

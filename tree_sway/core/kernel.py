@@ -3,8 +3,8 @@
 """
 How all hot functions are compiled: cached on disk, IEEE division, typed for the checker.
 
-Where numba is missing (`WHY_PLAIN`), functions of numbers run as plain Python, and `motion` uses
-the numpy form of functions over a tree.
+Where numba is missing (`WHY_PLAIN`), functions of numbers run as plain Python; functions over a
+whole tree have a twin in numpy, in the module with ``numpy_`` before its name.
 """
 
 from __future__ import annotations

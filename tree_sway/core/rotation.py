@@ -29,24 +29,36 @@ _S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = (
 @part
 def half_angle_series(t: float) -> tuple[float, float]:
     """Return the same as `half_angle`, by series, for t up to `SERIES_LIMIT`."""
-    cosine, sinc = _C8 * t + _C7, _S8 * t + _S7
-    cosine, sinc = cosine * t + _C6, sinc * t + _S6
-    cosine, sinc = cosine * t + _C5, sinc * t + _S5
-    cosine, sinc = cosine * t + _C4, sinc * t + _S4
-    cosine, sinc = cosine * t + _C3, sinc * t + _S3
-    cosine, sinc = cosine * t + _C2, sinc * t + _S2
-    cosine, sinc = cosine * t + _C1, sinc * t + _S1
-    cosine, sinc = cosine * t + _C0, sinc * t + _S0
+    cosine = _C8 * t + _C7
+    sinc = _S8 * t + _S7
+    cosine = cosine * t + _C6
+    sinc = sinc * t + _S6
+    cosine = cosine * t + _C5
+    sinc = sinc * t + _S5
+    cosine = cosine * t + _C4
+    sinc = sinc * t + _S4
+    cosine = cosine * t + _C3
+    sinc = sinc * t + _S3
+    cosine = cosine * t + _C2
+    sinc = sinc * t + _S2
+    cosine = cosine * t + _C1
+    sinc = sinc * t + _S1
+    cosine = cosine * t + _C0
+    sinc = sinc * t + _S0
     return cosine, sinc
 
 
 @part
 def half_angle_near(t: float) -> tuple[float, float]:
     """Return the same as `half_angle`, for t up to `NEAR_LIMIT` (error below 3e-14)."""
-    cosine, sinc = _C4 * t + _C3, _S4 * t + _S3
-    cosine, sinc = cosine * t + _C2, sinc * t + _S2
-    cosine, sinc = cosine * t + _C1, sinc * t + _S1
-    cosine, sinc = cosine * t + _C0, sinc * t + _S0
+    cosine = _C4 * t + _C3
+    sinc = _S4 * t + _S3
+    cosine = cosine * t + _C2
+    sinc = sinc * t + _S2
+    cosine = cosine * t + _C1
+    sinc = sinc * t + _S1
+    cosine = cosine * t + _C0
+    sinc = sinc * t + _S0
     return cosine, sinc
 
 
@@ -66,7 +78,9 @@ def half_angle(t: float) -> tuple[float, float]:
 @part
 def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, float]:
     """Return the unit quaternion of a rotation vector in [rad]."""
-    hx, hy, hz = 0.5 * rx, 0.5 * ry, 0.5 * rz
+    hx = 0.5 * rx
+    hy = 0.5 * ry
+    hz = 0.5 * rz
     c, s = half_angle(hx * hx + hy * hy + hz * hz)
     return c, s * hx, s * hy, s * hz
 
@@ -112,7 +126,9 @@ def turned(
     """
     t = rx * rx + ry * ry + rz * rz
     half = 0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)))
-    hx, hy, hz = half * rx, half * ry, half * rz
+    hx = half * rx
+    hy = half * ry
+    hz = half * rz
     f = 2.0 / (1.0 + hx * hx + hy * hy + hz * hz)
     cx = hy * vz - hz * vy
     cy = hz * vx - hx * vz

@@ -57,7 +57,8 @@ def bounded_arrays(
         )
         reason = ended.stderr.decode('utf-8', 'replace').strip().split('\n')[-1]
     except subprocess.TimeoutExpired:
-        ended, reason = None, ''
+        ended = None
+        reason = ''
     if reason.startswith('no module '):
         missing = reason.rsplit(' ', 1)[1]
         raise MissingDependencyError(

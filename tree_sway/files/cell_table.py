@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from tree_sway.files.table_file import TextTable
@@ -35,6 +35,18 @@ def table_of_cells(
 
 NumberedRow = tuple[int, Sequence[str]]
 """Number of a line in the file, from 1, and the cells of that line."""
+
+
+def numbered(lines: Sequence[str], begin: int = 0) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a file from an index on, each after its number, from 1."""
+    return enumerate(lines[begin:], start=begin + 1)
+
+
+def cell_at(cells: Sequence[str], place: int | None) -> str:
+    """Return a cell without spaces around it; empty where a row has no such place."""
+    if place is None or place >= len(cells):
+        return ''
+    return cells[place].strip()
 
 
 def table_of_lines(

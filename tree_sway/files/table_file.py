@@ -31,6 +31,8 @@ from tree_sway.files.column_names import (
 from tree_sway.files.text_file import finite, why_no_number
 
 _MAX_COLUMNS = 10_000
+_MOST_LINES = 50
+"""Lines of a row at most."""
 _MEND = 'correct the cell or remove the row'
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
@@ -219,6 +221,46 @@ def split_row(line: str, separator: str) -> Sequence[str]:
         return []
 
 
+def whole_rows(
+    numbers: Sequence[int], texts: Sequence[str], separator: str
+) -> tuple[list[int], list[str]]:
+    """
+    Join lines of which a quoted cell has a line end, as spreadsheets write remarks.
+
+    A row has no more cells than the first. A quote that is not closed so is part of its line.
+    """
+    kept = list[int]()
+    rows = list[str]()
+    at = 0
+    while at < len(texts):
+        row = texts[at]
+        count = 1
+        if row.count('"') % 2:
+            most = len(split_row(rows[0], separator)) if rows else _MAX_COLUMNS
+            row, count = _joined(texts[at : at + _MOST_LINES], separator, most)
+        kept.append(numbers[at])
+        rows.append(row)
+        at += count
+    return kept, rows
+
+
+def _joined(lines: Sequence[str], separator: str, most: int = _MAX_COLUMNS) -> tuple[str, int]:
+    """
+    Return the row that begins in the first line, and how many lines it has.
+
+    It has at most so many cells. Without a separator, which is not known yet, a row of several
+    lines begins with its quote.
+    """
+    begins = rf'(?:^|{re.escape(separator)})\s*"' if separator else r'^\s*"'
+    is_open = lines[0].count('"') % 2 == 1 and re.search(begins, lines[0]) is not None
+    for count in range(2, len(lines) + 1 if is_open else 0):
+        row = ' '.join(lines[:count])
+        if row.count('"') % 2 == 0:
+            is_row = not separator or 0 < len(split_row(row, separator)) <= most
+            return (row, count) if is_row else (lines[0], 1)
+    return lines[0], 1
+
+
 def filled_lines(lines: Sequence[str]) -> tuple[list[int], list[str]]:
     """Numbers and texts of the lines that are neither blank nor a comment."""
     filled = [
@@ -238,7 +280,10 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     numbers, texts = filled_lines(lines)
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
-    separator = max(('\t', ';', ','), key=texts[0].count)
+    header, _ = _joined(texts[:_MOST_LINES], '')
+    separator = max(('\t', ';', ','), key=header.count)
+    if any('"' in text for text in texts):
+        numbers, texts = whole_rows(numbers, texts, separator)
     # A line of one cell is a remark, with numbers of its own.
     first = '\n'.join(text for text in texts[1:50] if separator in text.rstrip(separator))
     if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):

@@ -84,7 +84,8 @@ def decoded(data: bytes, errors: str = 'strict') -> str:
         if data.startswith(mark):
             return data.decode(encoding, errors)
     # ASCII in UTF-16 has a zero byte beside each letter.
-    odd, even = data[1:200:2], data[:200:2]
+    odd = data[1:200:2]
+    even = data[:200:2]
     for zeros, ascii_bytes, encoding in ((odd, even, 'utf-16-le'), (even, odd, 'utf-16-be')):
         if zeros and not any(zeros) and all(ascii_bytes):
             return data.decode(encoding, errors)

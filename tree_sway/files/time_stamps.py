@@ -156,7 +156,8 @@ def _general(match: re.Match[str], is_month_first: bool) -> int:
         day = date(*_year_month_day(match, is_month_first))
     except ValueError:
         return _NONE
-    hour, minute = int(match['hour'] or 0), int(match['minute'] or 0)
+    hour = int(match['hour'] or 0)
+    minute = int(match['minute'] or 0)
     seconds = float((match['seconds'] or '0').replace(',', '.'))
     if match['half']:
         if not 1 <= hour <= 12:
@@ -183,7 +184,8 @@ def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, in
     year = int(match['last'])
     if len(match['last']) == 2:
         year += 2000 if year < 70 else 1900
-    one, two = int(match['first']), int(match['second'])
+    one = int(match['first'])
+    two = int(match['second'])
     return (year, one, two) if is_month_first else (year, two, one)
 
 

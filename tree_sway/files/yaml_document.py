@@ -29,7 +29,8 @@ YAML_SUFFIXES = ('.yaml', '.yml', '.json')
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-_MAX_DEPTH, _MAX_EVENTS = 16, 600_000
+_MAX_DEPTH = 16
+_MAX_EVENTS = 600_000
 _TYPES = {yaml.MappingNode: 'object', yaml.SequenceNode: 'array', yaml.ScalarNode: 'number'}
 _KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
           'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
@@ -108,15 +109,18 @@ def _refuse_unsafe(text: str, source: str) -> None:
     for number, event in enumerate(events):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
-        what, cure = '', 'write the value itself'
+        what = ''
+        cure = 'write the value itself'
         if getattr(event, 'anchor', None) is not None:
             what = 'an anchor or alias'
         elif getattr(event, 'tag', None) is not None:
             what = f'a tag {event.tag!r}'
         elif depth > _MAX_DEPTH:
-            what, cure = f'nested deeper than {_MAX_DEPTH}', 'write it flatter'
+            what = f'nested deeper than {_MAX_DEPTH}'
+            cure = 'write it flatter'
         elif number > _MAX_EVENTS:
-            what, cure = f'more than {_MAX_EVENTS} keys and values', 'give a table of segments'
+            what = f'more than {_MAX_EVENTS} keys and values'
+            cure = 'give a table of segments'
         if what:
             raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
 
@@ -128,7 +132,9 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         if _resolved(choice, root)['type'] == _TYPES[type(node)]:
             schema = _resolved(choice, root)
     if isinstance(node, yaml.MappingNode):
-        known, values, lines = schema.get('properties', {}), dict[str, Any](), dict[str, int]()
+        known = schema.get('properties', {})
+        values = dict[str, Any]()
+        lines = dict[str, int]()
         for key, child in node.value:
             line = key.start_mark.line + 1
             if not isinstance(key, yaml.ScalarNode):
@@ -202,9 +208,11 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
         cure = nearest(key, known) or f'known are {", ".join(known)}'
     elif error.validator == 'required':
         key = next(key for key in error.validator_value if key not in error.instance)
-        what, cure = f"{name} has no '{key}'", f"add '{key}'"
+        what = f"{name} has no '{key}'"
+        cure = f"add '{key}'"
     else:
-        node, cure = _node_at(document.root, path), _wanted(error.schema, document.schema)
+        node = _node_at(document.root, path)
+        cure = _wanted(error.schema, document.schema)
         what = f'{name} is {_KINDS[_TYPES[type(node)]]} of {len(node.value)}'
         if isinstance(node, yaml.ScalarNode):
             what = f"{name} is '{node.value[:40]}'"

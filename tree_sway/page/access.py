@@ -30,8 +30,10 @@ from urllib.parse import urlsplit
 from tree_sway.errors import ParameterError
 
 _OWN_NAMES = ('localhost',)
-_LARGEST_TOKEN, _SHORTEST_TOKEN = 256, 8
-_OF_VIEWERS, _OF_COOKIES = b'tree_sway: may look', b'tree_sway: cookie of who has control'
+_LARGEST_TOKEN = 256
+_SHORTEST_TOKEN = 8
+_OF_VIEWERS = b'tree_sway: may look'
+_OF_COOKIES = b'tree_sway: cookie of who has control'
 _DERIVED_SIZE = 24
 
 WRONG_TOKEN = 'the token is missing or wrong'
@@ -161,7 +163,8 @@ class Guesses:
 
     def note(self, address: str, given: str, now: float) -> None:
         """Count a wrong token."""
-        network, guess = _network(address), hash(given)
+        network = _network(address)
+        guess = hash(given)
         clear_at, last = self._of.pop(network, (0.0, None))
         if guess != last:
             clear_at = max(clear_at, now) + GUESSING_TIME
@@ -192,7 +195,7 @@ def require_token(address: str, token: str) -> None:
     """
     if not is_loopback(address) and len(token) < _SHORTEST_TOKEN:
         what = f'address {address} without a token of at least {_SHORTEST_TOKEN} characters'
-        cure = 'give a token_file, or keep the address 127.0.0.1'
+        cure = 'give a token file (--token-file FILE makes one), or keep the address 127.0.0.1'
         raise ParameterError(what, where='page', cure=cure)
 
 
@@ -250,7 +253,8 @@ def refusal(
         An Origin or a Host that is no address.
 
     """
-    host, origin = headers.get('Host', ''), headers.get('Origin')
+    host = headers.get('Host', '')
+    origin = headers.get('Origin')
     if not f'{host}{origin}'.isascii():
         raise ValueError('an address with characters that addresses do not have')
     if is_loopback(address) and not is_loopback(_name_of(host)):

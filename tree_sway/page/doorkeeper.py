@@ -40,7 +40,8 @@ class Doorkeeper:
     """
 
     def __init__(self, most: int, complain: Callable[[str], None]) -> None:
-        self.most, self._complain = most, complain
+        self.most = most
+        self._complain = complain
         self.n_closed = 0
         """Number of sockets that were closed as too slow or too many."""
         self._strangers: dict[socket.socket, asyncio.TimerHandle] = {}

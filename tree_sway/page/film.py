@@ -73,7 +73,8 @@ def page_pictures(
     """
     scene = SceneState(simulator, n_leaves)
     page = page_of_state(scene, 'film.js')
-    states, pictures = Queue[bytes](), Queue[bytes]()
+    states = Queue[bytes]()
+    pictures = Queue[bytes]()
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
@@ -105,7 +106,8 @@ def page_pictures(
         process = subprocess.Popen(words, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         try:
             for number, _ in enumerate(frames):
-                wind, coordinates = simulator.wind.tolist(), scene.coordinates().tolist()
+                wind = simulator.wind.tolist()
+                coordinates = scene.coordinates().tolist()
                 state = {'time': number / rate, 'wind': wind, 'coordinates': coordinates}
                 states.put(json.dumps(state).encode())
                 yield _next_picture(pictures, process, words[0])

@@ -66,7 +66,9 @@ class Guard:
     """
 
     def __init__(self, settings: PageSettings, doors: Doorkeeper, refusals: Refusals) -> None:
-        self._settings, self._doors, self._refusals = settings, doors, refusals
+        self._settings = settings
+        self._doors = doors
+        self._refusals = refusals
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._guesses = Guesses()
@@ -120,9 +122,11 @@ class Guard:
 
         """
         self._refusals.note(f'a request was refused: {why!a}')
-        text, kind = f'refused: {why}\n', 'text/plain'
+        text = f'refused: {why}\n'
+        kind = 'text/plain'
         if with_page:
-            text, kind = _refusal_page(why), 'text/html'
+            text = _refusal_page(why)
+            kind = 'text/html'
         answer = web.Response(status=status, text=text, content_type=kind)
         if retry_after:
             answer.headers['Retry-After'] = str(math.ceil(retry_after))
@@ -145,7 +149,8 @@ class Guard:
     def _checked_token(self, request: web.Request) -> web.Response | None:
         """Count a wrong token and refuse whoever guesses; tell the doors who has the right one."""
         given = self._given(request)
-        address, now = request.remote or '', time.monotonic()
+        address = request.remote or ''
+        now = time.monotonic()
         if given and self._token:
             wait = self._guesses.waiting_time(address, now)
             if wait > 0.0:

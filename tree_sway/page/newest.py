@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Slow work on the newest request, on a thread that lives while there is any."""
+"""Slow work on the newest request, on a thread that ends when there is none."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class Newest(Generic[T]):
     """
 
     def __init__(self, work: Callable[[T], None], name: str) -> None:
-        self._work, self._name = work, name
+        self._work = work
+        self._name = name
         self._lock = threading.Lock()
         self._wanted: T | None = None
         self._is_working = False
@@ -56,6 +57,7 @@ class Newest(Generic[T]):
             with self._lock:
                 newer = self._wanted
                 if newer is None or newer is request:
-                    self._wanted, self._is_working = None, False
+                    self._wanted = None
+                    self._is_working = False
                     return
             request = newer

@@ -94,7 +94,8 @@ def _packed(data: bytes) -> str:
 def _in_planes(message: bytes) -> bytes:
     """Round the numbers of a message, and group bytes of equal significance."""
     begin = 12 + int.from_bytes(message[8:12], 'little')
-    header, body = json.loads(message[12:begin]), bytearray(message[begin:])
+    header = json.loads(message[12:begin])
+    body = bytearray(message[begin:])
     is_table = header['format'] == 'tree_sway tables'
     for entry in header['arrays'].values():
         size = {'f32': 4, 'i32': 4, 'i16': 2, 'u8': 1}[entry['type']]
@@ -111,7 +112,8 @@ def _in_planes(message: bytes) -> bytes:
 
 def _modules(folder: Path) -> bytes:
     """All modules and the files that they read, by name, as JSON."""
-    modules, files = {}, {}
+    modules = {}
+    files = {}
     for path in sorted(folder.rglob('*.*')):
         name = path.relative_to(folder)
         text = path.read_text(encoding='utf-8')

@@ -145,7 +145,8 @@ class PageClient:
     async def send_due(self, published: Published) -> None:
         """Send texts, a new description, and the newest frame where there is credit for it."""
         if self.hello:
-            hello, self.hello = self.hello, ''
+            hello = self.hello
+            self.hello = ''
             await self.socket.send_str(hello)
         while self._texts:
             await self.socket.send_str(self._texts.popleft())
@@ -195,7 +196,8 @@ class PageClient:
     async def _send_tables(self, published: Published) -> None:
         """Send the tables, or a message that there are none; then every state is sent."""
         tables = await asyncio.to_thread(published.tables)
-        self._is_solving, self._n_states = tables is not None, 0
+        self._is_solving = tables is not None
+        self._n_states = 0
         if tables is None:
             reason = 'this scene cannot be solved by clients: it is sent state by state'
             self.say({'refused': {'name': 'wind', 'reason': reason}})

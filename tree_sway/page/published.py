@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the server has of a scene: its description, what solves it, and the newest frame."""
+"""The messages of a scene that the server keeps: description, tables and the newest frame."""
 
 from __future__ import annotations
 

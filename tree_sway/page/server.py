@@ -44,8 +44,14 @@ _BACKLOG = 256
 _MOST_WAITING = 3
 """Requests for the tree as a file that wait for the one that is written."""
 
+_OTHER_PORT = 'choose a different port, or end the program that uses this one'
+_CURES = {
+    errno.EADDRNOTAVAIL: "give an address of this machine's own, or 0.0.0.0 for all of them",
+    errno.EACCES: 'choose a port above 1023',
+}
 _MAY_LOOK = 'this link is to look only: ask for one with control'
-_LONGEST_NAME, _LONGEST_REASON = 80, 400
+_LONGEST_NAME = 80
+_LONGEST_REASON = 400
 
 
 class PageServer:
@@ -87,11 +93,13 @@ class PageServer:
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
-        self.settings, self._tls = settings, settings.tls()
+        self.settings = settings
+        self._tls = settings.tls()
         self.port = USUAL_PORT if settings.port is None else settings.port
         """Port that the server is bound to."""
         self._panel = panel or ControlPanel()
-        self._status, self._written = status or dict, written
+        self._status = status or dict
+        self._written = written
         self._critical_winds = critical_winds
         self._published = Published()
         self._clients: set[PageClient] = set()
@@ -99,9 +107,11 @@ class PageServer:
         self._doors = Doorkeeper(4 * settings.max_clients, self._refusals.note)
         self._guard = Guard(settings, self._doors, self._refusals)
         # One tree is written to a file at a time; some requests may wait for their turn.
-        self._writing, self._n_waiting = asyncio.Lock(), 0
+        self._writing = asyncio.Lock()
+        self._n_waiting = 0
         self._loop = asyncio.new_event_loop()
-        self._started, self._ending = threading.Event(), asyncio.Event()
+        self._started = threading.Event()
+        self._ending = asyncio.Event()
         self._failure: Exception | None = None
         self._is_woken = False
         self._thread = threading.Thread(target=self._run, name='page', daemon=True)
@@ -126,7 +136,7 @@ class PageServer:
             self._thread.join()
             where = f'{self.settings.address}:{self.port}'
             what = f'the page cannot be served ({self._failure})'
-            cure = 'choose a different port, or end the program that uses this one'
+            cure = _CURES.get(getattr(self._failure, 'errno', 0) or 0, _OTHER_PORT)
             raise TransportError(what, where=where, cure=cure) from self._failure
 
     def close(self) -> None:
@@ -177,7 +187,9 @@ class PageServer:
         the gusts in the scene, as `GustHistory.recent`.
         """
         published = self._published
-        published.description, published.tables, published.gusts = description, tables, gusts
+        published.description = description
+        published.tables = tables
+        published.gusts = gusts
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:

@@ -44,12 +44,13 @@ RATE = 60.0
 """Steps per second in [Hz]."""
 
 _MOST_LATE = 0.25
+"""Delay [s] that steps catch up at most."""
 _NEWEST = 0.05
+"""Weight of the newest step in the means of the status."""
 _BUSY = 0.2
+"""Share of a period of work above which only every second step is sent."""
 _BAND_EVERY = 15
-"""Steps after which it is found anew how sure the motion is."""
-
-"""Share of a period above which only every second step is sent."""
+"""Steps from one estimate of the uncertainty band to the next."""
 
 
 @dataclass(frozen=True)
@@ -146,16 +147,22 @@ class Session:
         motion: MotionFeed | None = None,
     ) -> None:
         self._motion = MotionFeed() if motion is None else motion
-        self._build, self.wind, self._rate, self._period = build, wind, rate, 1.0 / rate
-        self.choices, self._tolerance = choices, tolerance
+        self._build = build
+        self.wind = wind
+        self._rate = rate
+        self._period = 1.0 / rate
+        self.choices = choices
+        self._tolerance = tolerance
         self._scene, self._runtime = self._made(choices)
         self._next: tuple[SceneState, Run] | None = None
         self._server: PageServer | None = None
         self._stop = threading.Event()
         self._is_paused = self._resets = False
-        self._ticks, self._steps = 0, 0
+        self._ticks = 0
+        self._steps = 0
         self._band: list[float] | None = None
-        self._work, self._spacing = 0.0, self._period
+        self._work = 0.0
+        self._spacing = self._period
         self._last = time.perf_counter()
         self._builder = Newest(self._build_wanted, 'builder')
         self._thread = threading.Thread(target=self._run, name='session', daemon=True)
@@ -363,7 +370,8 @@ class Session:
 
     def _step(self, begin: float) -> None:
         assert self._server is not None
-        has_restarted, self._resets = self._resets, False
+        has_restarted = self._resets
+        self._resets = False
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
             self._server.describe(self._scene.description, self._scene.tables, self._scene.gusts)

@@ -25,9 +25,9 @@ class WindSource(Protocol):
     @property
     def source(self) -> Mapping[str, object]:
         """
-        What the wind is, for viewers: its ``kind``, simulated, recorded or live, and a ``name``.
+        Source of the wind for viewers: its ``kind``, simulated, recorded or live, and a ``name``.
 
-        That of a live one has the newest reading and its age too.
+        A live one has its newest reading and the age of that too.
         """
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
@@ -143,7 +143,8 @@ class RecordedWind:
     def __init__(self, time: Floats, velocity: Floats, name: str = '') -> None:
         self.source = {'kind': 'recorded', 'name': name}
         time, velocity = interpolated_means(time, velocity)
-        self._time, self._velocity = time - time[0], velocity
+        self._time = time - time[0]
+        self._velocity = velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)
         self._ahead = 0.0
@@ -158,11 +159,14 @@ class RecordedWind:
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""
-        since, until = since + self._ahead, until + self._ahead
-        lap, n = max(math.floor(since / self.length), 0), len(self._time)
+        since = since + self._ahead
+        until = until + self._ahead
+        lap = max(math.floor(since / self.length), 0)
+        n = len(self._time)
         i = int(self._time.searchsorted(since - lap * self.length + 1e-9, 'right'))
         while True:
-            lap, i = lap + i // n, i % n
+            lap = lap + i // n
+            i = i % n
             time = lap * self.length + float(self._time[i])
             if time > until + 1e-9:
                 return

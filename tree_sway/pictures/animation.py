@@ -50,8 +50,10 @@ def check_film(path: str | Path) -> Path:
             where=str(target),
             cure=f'end the name with one of: {", ".join(_SUFFIXES)}',
         )
-    for module in ('matplotlib', 'PIL', 'imageio_ffmpeg')[: 2 + (suffix == '.mp4')]:
-        import_module(module)
+    import_module('matplotlib')
+    import_module('PIL')
+    if suffix == '.mp4':
+        import_module('imageio_ffmpeg')
     return target
 
 
@@ -95,12 +97,15 @@ def animate_poses(
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
     corners = [_box(tree.start), _box(tree.end)]
     for block in blocks:
-        corners += [_box(points) for points in ends_of_poses(block, tree.length)]
+        start, end = ends_of_poses(block, tree.length)
+        corners += [_box(start), _box(end)]
     limits = limits_around(np.vstack(corners))
     (left, right), (bottom, top) = limits
     # Films need even numbers of points.
-    size = 2 * round(0.5 * pixels * (right - left) / (top - bottom)), 2 * round(0.5 * pixels)
-    figure = new_figure(size[0] / _DOTS_PER_INCH, size[1] / _DOTS_PER_INCH)
+    half_height = 0.5 * pixels
+    width = 2 * round(half_height * (right - left) / (top - bottom))
+    height = 2 * round(half_height)
+    figure = new_figure(width / _DOTS_PER_INCH, height / _DOTS_PER_INCH)
     figure.set_dpi(_DOTS_PER_INCH)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
 
@@ -109,13 +114,15 @@ def animate_poses(
         from PIL import Image
 
         canvas = FigureCanvasAgg(figure)
-        for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True)):
+        for number, (block, wind) in enumerate(zip(blocks, blowing, strict=True)):
             angle: ArrayLike = 0.0
             if leaves is not None:
-                angle = flutter_angle(leaves, float(np.linalg.norm(wind)), i / rate)
+                speed = float(np.linalg.norm(wind))
+                angle = flutter_angle(leaves, speed, number / rate)
             draw_trees(axes, [tree], block, limits, wind=wind, leaves=leaves, flutter=angle)
             canvas.draw()
-            yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+            painted = np.asarray(canvas.buffer_rgba())
+            yield Image.fromarray(painted[..., :3].copy())
 
     return write_pictures(images(), target, rate)
 

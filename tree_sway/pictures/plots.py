@@ -46,7 +46,8 @@ def plot_wind_and_tip(
 
     """
     t, blowing, moved = (np.asarray(each, dtype=np.float64) for each in (time, wind, tip))
-    if t.ndim != 1 or len(t) < 2 or blowing.shape != (len(t), 3) or moved.shape != (len(t), 3):
+    shapes = blowing.shape, moved.shape
+    if t.ndim != 1 or len(t) < 2 or shapes != ((len(t), 3), (len(t), 3)):
         raise ParameterError(
             f'time {t.shape}, wind {blowing.shape} and tip {moved.shape} do not match',
             cure='give (n,), (n, 3) and (n, 3) with n of 2 or more',
@@ -78,11 +79,10 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     figure = new_figure(10.0, 4.6)
     for axes, what in zip(figure.subplots(1, 2, sharey=True), ('wood', 'roots'), strict=True):
         for name, curve in used.items():
-            share, least, most = np.array([getattr(each, what) for each in curve]).T
-            (line,) = axes.plot(speeds, 100.0 * share, label=name)
-            axes.fill_between(
-                speeds, 100.0 * least, 100.0 * most, color=line.get_color(), alpha=0.15, lw=0
-            )
+            percent = 100.0 * np.array([getattr(each, what) for each in curve])
+            share, least, most = percent.T
+            (line,) = axes.plot(speeds, share, label=name)
+            axes.fill_between(speeds, least, most, color=line.get_color(), alpha=0.15, lw=0)
         axes.axhline(100.0, color='black', lw=0.8, ls='--')
         axes.set(title=what, xlabel='mean wind [m/s]', ylim=(0.0, 200.0))
     figure.axes[0].set_ylabel('share of strength in gusts [%]')
@@ -109,13 +109,14 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     """
     trees: dict[str, list[tuple[float, ...]]] = {}
     for row in rows:
-        name = ', '.join(row[key] for key in row if key.startswith('tree_') and row[key])
-        trees.setdefault(name, []).append(tuple(float(row[key]) for key in STUDY_COLUMNS))
+        of_tree = [value for key, value in row.items() if key.startswith('tree_') and value]
+        case = tuple(float(row[key]) for key in STUDY_COLUMNS)
+        trees.setdefault(', '.join(of_tree), []).append(case)
     figure = new_figure(10.0, 4.6)
     for k, axes in enumerate(figure.subplots(1, 2), 1):
         for name, cases in trees.items():
-            wind, *figures = np.array(sorted(cases)).T
-            axes.plot(wind, figures[k - 1], '.-', label=name)
+            columns = np.array(sorted(cases)).T
+            axes.plot(columns[0], columns[k], '.-', label=name)
         axes.set(xlabel=STUDY_COLUMNS[0], ylabel=STUDY_COLUMNS[k], ylim=(0.0, None))
     return _finished(figure, path)
 

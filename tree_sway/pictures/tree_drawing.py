@@ -30,9 +30,12 @@ _MARGIN = 0.06
 _SHADE, _HAZE = 0.68, 0.5
 """Brightness of near bark over that of bark in the sun; share of white in distant bark."""
 _TWIG = np.array([0.36, 0.28, 0.22])
-_SUN = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
+_SUN = np.array([-0.35, -0.5, 0.8])
+_SUN /= np.linalg.norm(_SUN)
 # A leaf with the area of the disc of its cluster, from its stalk on.
-_BLADE = np.array([[-0.8, 0.0, 0.0], [0.0, 0.48, 0.0], [0.8, 0.0, 0.0], [0.0, -0.48, 0.0]])
+_ALONG = np.array([0.8, 0.0, 0.0])
+_ACROSS = np.array([0.0, 0.48, 0.0])
+_BLADE = np.stack([-_ALONG, _ACROSS, _ALONG, -_ACROSS])
 _NEEDLES_WIDTH = 0.4
 """Width of a spray of needles over that of a leaf."""
 _WIND, _GHOST, _SHADOW = '#1f6fb4', '#dedad6', '#e2e2e0'
@@ -43,11 +46,13 @@ Limits = tuple[tuple[float, float], tuple[float, float]]
 
 def seen(points: ArrayLike) -> Floats:
     """Right, up and away of points (..., 3), all in [m]."""
-    sine, cosine = np.sin(ELEVATION), np.cos(ELEVATION)
+    sine = np.sin(ELEVATION)
+    cosine = np.cos(ELEVATION)
     right = [1.0, 0.0, 0.0]
     up = [0.0, sine, cosine]
     away = [0.0, cosine, -sine]
-    return np.asarray(np.asarray(points, dtype=np.float64) @ np.array([right, up, away]).T)
+    view = np.array([right, up, away])
+    return np.asarray(np.asarray(points, dtype=np.float64) @ view.T)
 
 
 def limits_around(points: Floats) -> Limits:
@@ -58,7 +63,9 @@ def limits_around(points: Floats) -> Limits:
     half_width = max(0.5 * width, 0.3 * size) + _MARGIN * size
     middle = 0.5 * float(right.min() + right.max())
     sides = middle - half_width, middle + half_width
-    return sides, (float(up.min()) - 0.1 * size, float(up.max()) + 0.16 * size)
+    bottom = float(up.min()) - 0.1 * size
+    top = float(up.max()) + 0.16 * size
+    return sides, (bottom, top)
 
 
 def draw_trees(
@@ -146,15 +153,18 @@ def _hazed(colors: Floats, away: Floats, limits: Limits) -> Floats:
     """Whiten the colours (m, 3) of shapes by how far away they are [m], (m,)."""
     bottom, top = limits[1]
     span = max(float(np.ptp(away)), 0.3 * (top - bottom))
-    depth = 0.5 + (away - 0.5 * (away.min() + away.max())) / span
+    middle = 0.5 * (away.min() + away.max())
+    depth = 0.5 + (away - middle) / span
     return np.asarray(colors + _HAZE * depth[:, None] * (1.0 - colors))
 
 
 def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
     """Four corners of each segment: right, up and away, (n, 4, 3)."""
-    base, tip = seen(start), seen(end)
+    base = seen(start)
+    tip = seen(end)
     across = np.cross(tip - base, [0.0, 0.0, 1.0])
-    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
+    width = np.linalg.norm(across, axis=1)
+    across /= np.maximum(width, 1e-12)[:, None]
     base_diameter = np.concatenate([tree.base_diameter for tree in trees])[:, None]
     tip_diameter = np.concatenate([tree.tip_diameter for tree in trees])[:, None]
     below = 0.5 * base_diameter * across
@@ -164,7 +174,8 @@ def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
 
 def _bark(tree: Tree) -> Floats:
     """Colour of each segment, (n, 3): twigs are brown, with any bark of old wood."""
-    age = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
+    thickness = tree.base_diameter / (0.2 * tree.base_diameter[0])
+    age = np.clip(thickness, 0.0, 1.0)[:, None]
     old_bark = np.array(look_of(tree.species).bark)
     return np.asarray(_SHADE * (_TWIG + age * (old_bark - _TWIG)))
 
@@ -183,7 +194,8 @@ def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tupl
     corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', rotation, blade)
     # A leaf is translucent: lit from either side.
     light = 0.6 + 0.55 * np.abs(rotation[..., 2] @ _SUN)
-    return seen(corners), np.clip(light[:, None] * green[tree_of_leaf], 0.0, 1.0)
+    lit = light[:, None] * green[tree_of_leaf]
+    return seen(corners), np.clip(lit, 0.0, 1.0)
 
 
 def _draw_wind(axes: Axes, wind: Floats, limits: Limits) -> None:

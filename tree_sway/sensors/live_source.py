@@ -40,7 +40,7 @@ class LiveSource(ABC):
     messages
         Word for its messages.
     expects
-        What its messages should have.
+        Expected content of its messages.
     patience
         Time [s] in each state after which it is told why nothing comes; states without one are
         not told.
@@ -64,7 +64,9 @@ class LiveSource(ABC):
         """Numbers of samples, and of messages that are about something else."""
         self.refused: dict[str, int] = {}
         """Numbers of samples that were refused, by cause."""
-        self._log, self._messages, self._expects = log, messages, expects
+        self._log = log
+        self._messages = messages
+        self._expects = expects
         self._patience = patience
         self._last = ''
         self._ended = threading.Event()
@@ -132,10 +134,13 @@ class LiveSource(ABC):
 
     def _watch(self) -> None:
         """Tell once why nothing comes, as soon as it is known, until it does."""
-        state, since, told = '', 0.0, ''
+        state = ''
+        since = 0.0
+        told = ''
         while not self._ended.wait(_LOOK) and not self.accepted:
             if self.state != state:
-                state, since = self.state, time.monotonic()
+                state = self.state
+                since = time.monotonic()
             waited = time.monotonic() - since
             if state != told and waited >= self._patience.get(state, math.inf):
                 told = state

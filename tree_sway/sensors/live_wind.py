@@ -90,13 +90,17 @@ class LiveWind(LiveSource):
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
         self.lacks_direction = opened.is_without_vane
         """Whether the newest reading has no direction of its own."""
-        self._opened, self._taken, self._heard = opened, taken, heard
+        self._opened = opened
+        self._taken = taken
+        self._heard = heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
         self._arrival = self._gap = -math.inf
         self._expires = -math.inf
         self._blown = -math.inf
+        self._is_guess = False
+        """Whether the next reading will tell if the newest is a mean."""
 
     @property
     def bearing_to(self) -> float:
@@ -208,7 +212,9 @@ class LiveWind(LiveSource):
     def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
         is_first = self.newest is None
-        before, self._gap = self._gap, now - self._arrival
+        is_guess = self._is_guess
+        before = self._gap
+        self._gap = now - self._arrival
         self._arrival = now
         interval = self._interval(reading, before)
         velocity = reading.velocity(self.bearing)
@@ -227,7 +233,10 @@ class LiveWind(LiveSource):
         if self._heard is not None:
             self._heard(reading)
         if is_first:
-            self._log(f'wind comes: {described(reading, self.bearing, interval)}')
+            text = described(reading, self.bearing)
+            self._log(f'wind comes: {text}; {self._gusts_text(reading)}')
+        elif is_guess:
+            self._log(f'{self._opened.name}: {self._gusts_text(reading)}')
         if self.is_mean:
             return
         if self._taken is not None:
@@ -238,15 +247,29 @@ class LiveWind(LiveSource):
     def _interval(self, reading: WindReading, gap_before: float) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
         source = self._opened.source
+        self._is_guess = False
         for known in (self._opened.mean, reading.interval, source.interval):
             if known is not None:
                 return known
-        if math.isinf(self._gap):
+        self._is_guess = math.isinf(self._gap)
+        if self._is_guess:
             return _USUAL_INTERVAL
         # One long gap is a failure of a fast instrument, unless it is the only one.
         is_slow = self._gap >= LEAST_INTERVAL
         was_slow = math.isinf(gap_before) or gap_before >= LEAST_INTERVAL
         return self._gap if is_slow and was_slow else 0.0
+
+    def _gusts_text(self, reading: WindReading) -> str:
+        """Return what is known about the gusts of a reading, as words."""
+        if not self.is_mean:
+            return 'the wind of instants'
+        law = 'IEC 61400-1' if reading.gust is None else 'its gust'
+        gusts = f'gusts about it are simulated by {law}'
+        if self._is_guess:
+            return f'{gusts}, until the next one tells whether it is a mean'
+        interval = self.interval
+        length = f'{interval / 60.0:.3g} min' if interval >= 60.0 else f'{interval:.3g} s'
+        return f'a mean over {length}: {gusts}'
 
 
 def _gust(reading: WindReading) -> float | None:
@@ -254,15 +277,11 @@ def _gust(reading: WindReading) -> float | None:
     return gust if gust is not None and is_wind(gust, 0.0, 0.0) else None
 
 
-def described(reading: WindReading, bearing: float, interval: float) -> str:
+def described(reading: WindReading, bearing: float) -> str:
     """Return a reading as words; the bearing is that of one without a direction [rad]."""
     used = bearing if reading.bearing is None else reading.bearing
     point = _POINTS[round(used / (math.pi / 4.0)) % 8]
     text = f'{reading.speed:.1f} m/s from {point} ({reading.kind})'
     if reading.bearing is None:
         text += ', its direction is assumed'
-    if interval >= LEAST_INTERVAL:
-        length = f'{interval / 60.0:g} min' if interval >= 60.0 else f'{interval:g} s'
-        gusts = 'by its gust' if reading.gust is not None else 'by IEC 61400-1'
-        text += f'; a mean over {length}: gusts about it are simulated {gusts}'
     return text

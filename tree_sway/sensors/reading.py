@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a message says of the wind."""
+"""A wind reading, or the refusal of one, from a message of an instrument."""
 
 from __future__ import annotations
 

@@ -10,8 +10,9 @@ from pathlib import Path
 import re
 from urllib.parse import parse_qsl, SplitResult, unquote, urlsplit
 
-from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.errors import FormatError, nearest, ParameterError, shown
 
+_LONGEST_NAME = 120
 _SCHEME = re.compile(r'([a-z][a-z0-9-]*)(?=[:?#]|$)')
 
 
@@ -43,6 +44,11 @@ class SourceAddress:
     def place(self) -> str:
         """Text after the scheme of an address without ``//``."""
         return unquote(self.parts.path)
+
+    @property
+    def name(self) -> str:
+        """Name for viewers and for columns of tables, on one line; empty without one."""
+        return shown(self.text_of('name'), _LONGEST_NAME)
 
     @property
     def host(self) -> str:
@@ -118,6 +124,17 @@ class SourceAddress:
         return ParameterError(what, where=self.text, cure=cure)
 
 
+def _meant(text: str) -> str:
+    """Return the address that is probably meant by one without a kind."""
+    if text.isascii() and text.isdigit():
+        return f'udp:{text}'
+    if text.startswith('/dev/') or re.fullmatch(r'COM\d+', text):
+        return f'serial:{text}'
+    if re.fullmatch(r'[\w.-]+:\d+', text):
+        return f'tcp://{text}, or http://{text}/'
+    return 'one such as udp:5006, http://host:port/ or serial:/dev/ttyUSB0'
+
+
 def read_source_address(text: str) -> SourceAddress:
     """
     Read an address.
@@ -132,6 +149,7 @@ def read_source_address(text: str) -> SourceAddress:
     except ValueError as error:
         raise ParameterError(f'not an address ({error})', where=text) from None
     if scheme is None:
-        raise ParameterError(f"'{text}' does not begin with a kind of source", where='sensor')
+        what = f"'{text}' does not begin with a kind of source"
+        raise ParameterError(what, where='sensor', cure=f'give {_meant(text)}')
     options = dict(parse_qsl(parts.fragment or parts.query, keep_blank_values=True))
     return SourceAddress(text, scheme[1], parts, options)

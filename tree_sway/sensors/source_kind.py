@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A kind of source in the registry, and a source that is opened."""
+"""A live source of wind, and the kinds of them that the registry makes from addresses."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ class Source:
     transport
         Way in which messages arrive.
     read
-        What they say.
+        Function that reads a message.
     name
         Short name for viewers, such as ``open-meteo``.
     expects
-        What its messages should have, for the report of unknown ones.
+        Expected content of its messages, for the report of unknown ones.
     interval
-        Length of the means that it sends [s]; 0 for the wind of instants, None where the time
-        between two messages decides.
+        Averaging time of its winds [s]; 0 for instantaneous ones, None for the time between two
+        messages.
     lasts
         Time for which a mean is used [s]; three intervals if None.
     messages
-        Word for its messages.
+        Word for its messages in reports.
 
     """
 
@@ -54,11 +54,11 @@ class SourceKind:
     Parameters
     ----------
     schemes
-        First words of its addresses.
+        Schemes of its addresses, such as ``udp``.
     form
-        Its address as an example.
+        Example of an address.
     what
-        Instruments, in a few words.
+        Instruments that it is for, in a few words.
     open
         Function that makes a source of an address; it raises a `TreeSwayError`.
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""From frames of the wind only to whole ones: a receiver that solves the scene itself."""
+"""A receiver that solves the scene itself, from frames with the wind alone."""
 
 from __future__ import annotations
 
@@ -32,9 +32,11 @@ class ByWind:
 
     def __init__(self, description: Description, scene: ReceivedScene) -> None:
         """Wait for the first state."""
-        self._description, self._scene = description, scene
+        self._description = description
+        self._scene = scene
         self._last: Frame | None = None
-        self._spacing, self._heard = STEP, 0
+        self._spacing = STEP
+        self._heard = 0
         self.corrections = 0
         """Number of states that corrected the scene."""
 
@@ -45,7 +47,9 @@ class ByWind:
 
     def take(self, frame: Frame) -> Floats | None:
         """Advance to a frame; return its coordinates, (M,), None before the first state."""
-        scene, last, values = self._scene, self._last, self._description.coordinates(frame)
+        scene = self._scene
+        last = self._last
+        values = self._description.coordinates(frame)
         is_whole = len(values) == len(self._description.scale)
         if last is None:
             if not is_whole:

@@ -155,7 +155,8 @@ def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     turn = arrays['branch_turn'].astype(np.int64)
     parent = arrays['branch_parent'].astype(np.int64)
     n_segments = np.diff(arrays['branch_first'].astype(np.int64))
-    rows, is_stem = size['rows'], np.arange(size['branches']) == 0
+    rows = size['rows']
+    is_stem = np.arange(size['branches']) == 0
 
     require('branch_keys', _is_within(keys, 2, MAX_COORDINATES + 1))
     require('branch_coordinate', _is_within(coordinate, 0, size['keys'] - keys + 1))

@@ -75,7 +75,8 @@ def check_tables(
     require('tree_speed', speeds.dtype == '<f4' and speeds.shape == (n_trees,))
     # Comparisons with not-a-number are false.
     require('tree_speed', (speeds >= 0.0) & (speeds < FASTEST))
-    anemometer, ratio = header['anemometer'], header['convection_ratio']
+    anemometer = header['anemometer']
+    ratio = header['convection_ratio']
     is_place = isinstance(anemometer, list) and len(anemometer) == 3
     require('anemometer', anemometer is None or (is_place and all(map(is_finite, anemometer))))
     require('convection_ratio', ratio is None or (is_finite(ratio) and ratio >= LEAST_RATIO))

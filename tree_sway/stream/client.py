@@ -150,11 +150,12 @@ class StreamClient:
         """The newest status of the server."""
         self.solver: ByWind | None = None
         """Solver of the scene by its wind; None where states are received."""
-        self._rate, self._on_frame = rate, on_frame
+        self._rate = rate
+        self._on_frame = on_frame
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
-        """Of placer, playout and counts; its lock may be taken again by the thread that has it."""
+        """Guards placer, playout and counts; a thread that has its lock may take it again."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._refusal: TransportError | None = None
@@ -248,7 +249,8 @@ class StreamClient:
         None before the first state.
         """
         with self._more:  # a state is placed by its own description
-            moment, placer = self.sample(now), self._placer
+            moment = self.sample(now)
+            placer = self._placer
         if moment is None or placer is None:
             return None
         return placer.place(moment.coordinates)
@@ -264,12 +266,15 @@ class StreamClient:
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession(headers=self._headers) as session:
             while True:
-                self.state, received = 'connecting', self.received
+                self.state = 'connecting'
+                received = self.received
                 try:
                     async with session.ws_connect(
                         self.url, max_msg_size=LARGEST_DESCRIPTION, heartbeat=_SILENCE
                     ) as socket:
-                        self._socket, self._awaited, self.state = socket, 0, 'open'
+                        self._socket = socket
+                        self._awaited = 0
+                        self.state = 'open'
                         self._refusal = None
                         await self._follow(socket)
                 except Exception as error:
@@ -277,7 +282,8 @@ class StreamClient:
                     with self._more:
                         self._refusal = _refusal_of(error, self.url)
                         self._more.notify_all()
-                self._socket, self.state = None, 'lost'
+                self._socket = None
+                self.state = 'lost'
                 if self.received > received:
                     wait = _SHORTEST_WAIT
                 # Clients that lose the same server do not reconnect at the same time.
@@ -349,7 +355,8 @@ class StreamClient:
         self.status = dict(message.get('status', self.status))
 
     def _describe(self, description: Description) -> None:
-        placer, self.solver = Placer(description), None
+        placer = Placer(description)
+        self.solver = None
         with self._more:
             self._placer = placer
             self.playout.clear()
@@ -389,7 +396,8 @@ def _refusal_of(error: Exception, url: str) -> TransportError | None:
             cure = "set SSL_CERT_FILE to the server's certificate (PEM) if you trust it"
         return TransportError(f'its certificate is refused ({why})', where=url, cure=cure)
     if isinstance(error, aiohttp.ClientConnectorSSLError):
-        what, cure = f'it does not speak TLS ({error.strerror or error})', 'give http://'
+        what = f'it does not speak TLS ({error.strerror or error})'
+        cure = 'give http://'
         return TransportError(what, where=url, cure=cure)
     if isinstance(error, aiohttp.WSServerHandshakeError) and error.status in _DENIED:
         what = f'it refuses the connection (HTTP {error.status})'

@@ -119,7 +119,8 @@ class ControlPanel:
         pull: Pull | None = None,
     ) -> None:
         self._controls = {control.name: control for control in controls}
-        self._apply, self._pull = apply, pull
+        self._apply = apply
+        self._pull = pull
         self.can_pull = pull is not None
         """Whether a branch can be pulled."""
 

@@ -63,8 +63,10 @@ def describe_scene(
     entries = []
     arrays: dict[str, Array] = {'tree_place': places}
     for number, kind in enumerate(kinds):
-        places[kind.numbers], kind_of[kind.numbers] = kind.places, number
-        own, tree = _branches(kind.simulator), kind.simulator.tree
+        places[kind.numbers] = kind.places
+        kind_of[kind.numbers] = number
+        own = _branches(kind.simulator)
+        tree = kind.simulator.tree
         wood = kind.simulator.models[0].species
         own['basis_matrix'] = _float32(kind.basis.matrix)
         own['basis_scale'] = _float32(kind.basis.scale)
@@ -103,8 +105,11 @@ def describe_scene(
 
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind for placing its branches by key rotations."""
-    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.banks[0].segments
-    keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
+    tree = simulator.tree
+    branches = _in_order(simulator)
+    segments = simulator.banks[0].segments
+    keys = branches['n_coordinates']
+    sizes = branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]
     count = 0
@@ -157,7 +162,8 @@ def _in_order(simulator: SwaySimulator) -> Records:
     """
     branches = simulator.banks[0].branches
     order = np.argsort(branches['first'])
-    ordered, place = branches[order], np.argsort(order)
+    ordered = branches[order]
+    place = np.argsort(order)
     ordered['parent'] = np.where(ordered['parent'] < 0, -1, place[ordered['parent']])
     return ordered
 
@@ -175,7 +181,8 @@ def _float32(values: ArrayLike) -> Array:
 
 def _segment_turns(branch: np.void, segments: Records) -> Floats:
     """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
-    first, count = int(branch['first_record']), int(branch['n_coordinates'])
+    first = int(branch['first_record'])
+    count = int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['load_mode'].shape[0] > 2:
         return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])

@@ -79,7 +79,8 @@ class Placer:
             rotations[pulled_key[is_own].astype(np.int64) - key] += pull[is_own]
             origin = np.array([x, y, z])
             out = poses[row : row + kind.n_segments]
-            cosine, sine = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
+            cosine = math.cos(0.5 * yaw)
+            sine = math.sin(0.5 * yaw)
             kind.placing.place(rotations, origin, out, cosine, sine, scale)
             coordinate += n_coordinates
             key += n_keys

@@ -31,7 +31,8 @@ from tree_sway.stream.check_tables import check_tables
 if TYPE_CHECKING:
     from tree_sway.core.scene.received_scene import ReceivedScene
 
-VERSION, FRAME_VERSION = 2, 1
+VERSION = 2
+FRAME_VERSION = 1
 MAGIC, TABLES = b'TSWD', b'TSWT'
 """First bytes of a description, and of the tables by which a receiver solves it."""
 
@@ -161,7 +162,8 @@ class Description:
             what = f'a frame of description {frame.identity:08x}'
             cure = f'this one has {self.short_identity:08x}: ask for the new one'
             raise FormatError(what, where='tree state', cure=cure)
-        count, most = len(frame.coordinates), len(self.scale)
+        count = len(frame.coordinates)
+        most = len(self.scale)
         part = slice(frame.first, frame.first + count)
         if part.stop > most or (count not in (0, most) and not frame.flags & PART):
             what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
@@ -190,7 +192,8 @@ class Tables:
             if header['description'] != description.identity:
                 raise FormatError('they are of a different description', cure='request both again')
             parts = of_kinds(self.arrays, len(header['kinds']))
-            speeds, n_trees = self.arrays['tree_speed'], len(description.header['trees'])
+            speeds = self.arrays['tree_speed']
+            n_trees = len(description.header['trees'])
             check_tables(header, parts, speeds, description.kinds, n_trees)
         kinds = [
             ReceivedKind(numbers, arrays, numbers['drag_law'])
@@ -234,7 +237,8 @@ def encode_description(
         `MAGIC` or `TABLES`.
 
     """
-    body, table = bytearray(), {}
+    body = bytearray()
+    table = {}
     for name, value in arrays.items():
         array = np.ascontiguousarray(value)
         kind = _NAMES[array.dtype.newbyteorder('<')]
@@ -297,7 +301,8 @@ def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Arra
         raise ValueError(f'a header of {size} bytes; up to {LARGEST_HEADER} are read')
     body = memoryview(data)[begin:]
     header = json.loads(data[_PREFIX.size : begin])
-    identity, table = header.pop('identity'), header['arrays']
+    identity = header.pop('identity')
+    table = header['arrays']
     arrays = {name: _array(body, entry) for name, entry in table.items()}
     digest = hashlib.sha256(_json(header))
     digest.update(body)
@@ -372,7 +377,8 @@ def decode_frame(data: bytes) -> Frame:
 
 def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
     """Return a frame with some of the coordinates of one; with the wind only if the count is 0."""
-    head, size = bytearray(frame[: _FRAME.size]), _FRAME.size
+    head = bytearray(frame[: _FRAME.size])
+    size = _FRAME.size
     count = min(count, int.from_bytes(head[-2:], 'little') - first)
     head[-2:] = count.to_bytes(2, 'little')
     if count == 0:

@@ -65,7 +65,8 @@ class SceneState:
         )
         self._described = decode_description(self.description)
         self.identity = self._described.identity
-        kinds, trees = self._described.kinds, self._described.header['trees']
+        kinds = self._described.kinds
+        trees = self._described.header['trees']
         self._matrices: list[Floats] = [kinds[tree['kind']]['basis_matrix'] for tree in trees]
         self._framed = -1, 0.0  # together, as they are read from another thread
         self._tables: bytes | None = None
@@ -139,9 +140,11 @@ class SceneState:
 
         """
         flags = PAUSED * is_paused + RESTARTED * has_restarted + WIND_LOST * is_wind_lost
-        sequence, gusts = self._framed[0] + 1, self.simulator.gusts
+        sequence = self._framed[0] + 1
+        gusts = self.simulator.gusts
         self._framed = sequence, 0.0 if gusts is None else gusts.time
-        wind, coordinates = self.simulator.wind, self.coordinates()
+        wind = self.simulator.wind
+        coordinates = self.coordinates()
         return encode_state(self._described, sequence, stamp, wind, coordinates, flags)
 
 
@@ -150,6 +153,8 @@ def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
     simulator = kind.simulator
     if not count or not is_in_leaf(simulator.models[0].species, simulator.settings.in_leaf):
         return None
-    rng, species = np.random.default_rng(0), simulator.models[0].species
-    traits, look = species.leaves, species.look
+    rng = np.random.default_rng(0)
+    species = simulator.models[0].species
+    traits = species.leaves
+    look = species.look
     return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)

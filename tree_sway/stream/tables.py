@@ -43,7 +43,8 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     """
     if why_no_tables(kinds) is not None:
         return None
-    entries, arrays = [], dict[str, Array]()
+    entries = []
+    arrays = dict[str, Array]()
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.banks[0].oscillators

@@ -29,7 +29,7 @@ from tree_sway.extras import PACKAGE
 from tree_sway.studies.lost_workers import told_lost_workers
 
 ATTEMPTS = 4
-"""Number of workers that a piece of work may end before the study ends."""
+"""Number of workers that may die of one piece of work before the study ends."""
 ROOMS = 'core', 'files', 'studies'
 """Rooms whose source and tables determine the results."""
 _PATIENCE = 15.0
@@ -63,7 +63,7 @@ def cluster(workers: int, scheduler: str | None = None) -> Iterator[tuple[Any, A
     Raises
     ------
     ParameterError
-        The address of a scheduler that is none.
+        Text that is no address of a scheduler.
     TransportError
         No scheduler or no worker there, or workers of another version.
 
@@ -215,11 +215,11 @@ def run_all(
 @contextmanager
 def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
     """
-    Dask and a client of separate processes, which end at once with the study.
+    Dask and a client of worker processes on this machine, which end at once with the study.
 
-    Only this process handles Ctrl-C, and not before the scheduler is up, half of which it would
-    leave open; workers, which take seconds, start after that. The log is silent until the last
-    thread has ended.
+    Only this process handles Ctrl-C, and only once the scheduler is up: an interrupted start would
+    leave half of it running. Workers, which take seconds, start after that. The log is silent
+    until the last thread has ended.
     """
     within('--workers', workers, 1, 1024)
     settings: dict[str, Any] = {
@@ -228,8 +228,9 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
         'distributed.scheduler.http.routes': [],
         'distributed.worker.http.routes': [],
     }
-    page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
-    dask, distributed = import_module('dask'), import_module('distributed')
+    page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # no page
+    dask = import_module('dask')
+    distributed = import_module('distributed')
     import_module('cryptography')  # keys that exclude other users of this machine
     parents: list[Any] = []
 
@@ -260,7 +261,7 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
 
 
 def _kill_workers(parents: Sequence[Any], is_closed: threading.Event) -> None:
-    """Kill the workers of some parents in Dask, also those that start until it is closed."""
+    """Kill the workers of Dask's nannies, and those that still start, until it is closed."""
     while not is_closed.wait(_KILL_PERIOD):
         own = {parent.pid for parent in parents}
         for process in active_children():

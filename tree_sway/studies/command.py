@@ -54,7 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     cache = output.with_suffix('.cases')
     if not (arguments.force or cache.is_dir()):
         refuse_overwriting(output, '--output')
-    missing, workers = missing_cases(cases, cache), arguments.workers or cores()
+    missing = missing_cases(cases, cache)
+    workers = arguments.workers or cores()
     print(
         f'{len(missing)} of {len(cases)} cases to compute: some '
         f'{estimated_time(missing, workers):.0f} s on {workers} cores, if trees have 900 branches'

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Workers that end in the middle of their work: said at the first one, and counted."""
+"""Workers that die in the middle of their work: reported at the first one, and counted."""
 
 from __future__ import annotations
 

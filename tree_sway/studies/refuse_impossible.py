@@ -81,7 +81,8 @@ def _refuse_grown(document: YamlDocument, number: int, grow: dict[str, Any]) -> 
 def _refuse_wind(entry: dict[str, Any]) -> None:
     if ('file' in entry) == ('speed' in entry):
         raise FormatError('a wind is a file or a speed', cure='give one of them')
-    speeds, intensities = listed(entry.get('speed', [])), listed(entry.get('intensity', 0.2))
+    speeds = listed(entry.get('speed', []))
+    intensities = listed(entry.get('intensity', 0.2))
     for speed, intensity in itertools.product(speeds, intensities):
         Turbulence(speed, intensity=intensity)
 

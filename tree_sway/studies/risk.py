@@ -66,11 +66,11 @@ def risk_work(
     inventory
         The trees.
     seed
-        Of grown trees and gusts.
+        Seed of grown trees and gusts.
     most
         Number of kinds, or two for each species if those are more, for each exposure.
     exposure
-        Of trees whose exposure the inventory does not say, one of `EXPOSURES`.
+        Exposure of trees for which the inventory has none, one of `EXPOSURES`.
     spacing
         Mean distance between the trees of a stand in [m]; 0.18 of their height if None.
 
@@ -78,7 +78,8 @@ def risk_work(
     keys = [inventory.wood[each].key for each in inventory.species]
     exposures = [each or exposure for each in inventory.exposures]
     most = max(most, 2 * len(set(keys))) * len(set(exposures))
-    heights, slendernesses = 1.5, 1.2
+    heights = 1.5
+    slendernesses = 1.2
     while True:
         classes = kind_classes(
             keys,
@@ -96,7 +97,8 @@ def risk_work(
             kinds.setdefault(kind, []).append(row)
         if len(kinds) <= most or heights > 20.0:
             return RiskWork(inventory, kinds)
-        heights, slendernesses = heights * _WIDER, slendernesses * _WIDER**0.5
+        heights = heights * _WIDER
+        slendernesses = slendernesses * _WIDER**0.5
 
 
 def risk_rows(
@@ -120,7 +122,8 @@ def rows_of_kind(work: RiskWork, result: KindResult) -> list[Row]:
 
 
 def _row(inventory: Inventory, row: int, result: KindResult) -> Row:
-    height, diameter = float(inventory.height[row]), float(inventory.diameter[row])
+    height = float(inventory.height[row])
+    diameter = float(inventory.diameter[row])
     found: Row = {
         'name': inventory.names[row],
         'line': inventory.lines[row],

@@ -93,7 +93,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _written(output: Path, work: RiskWork, workers: int, scheduler: str | None) -> list[Row]:
     """Write rows as their kinds are done, so that an interrupted table can be read."""
-    rows, file = list[Row](), RowFile(output)
+    rows = list[Row]()
+    file = RowFile(output)
     results = _each_tree(work, workers, scheduler)
     try:
         for _, row in zip(bar(range(len(work.inventory.names)), 'trees'), results, strict=True):

@@ -29,8 +29,12 @@ from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.imported_tree import TreeFile
 
-_MODEL, _RATE, _SECONDS = 20, 30.0, 120.0
-_FIRST, _SLOWEST, _FASTEST = 15.0, 4.0, 60.0
+_MODEL = 20
+_RATE = 30.0
+_SECONDS = 120.0
+_FIRST = 15.0
+_SLOWEST = 4.0
+_FASTEST = 60.0
 _USUAL_POWER = 1.5
 """Power of the wind speed that the load of a crown grows by, between 1 and 2."""
 
@@ -90,7 +94,9 @@ def compute_kind(kind: RiskKind) -> KindResult:
 
 
 def _computed(kind: RiskKind) -> KindResult:
-    species, note, diameter = species_named(kind.species), '', None
+    species = species_named(kind.species)
+    note = ''
+    diameter = None
     if kind.slenderness:
         low, high = stem_range(species, kind.height)
         wanted = kind.height / kind.slenderness

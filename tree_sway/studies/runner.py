@@ -79,12 +79,13 @@ def run_study(
             store_row(case, row, folder)
     if failed:
         raise failed[0]
-    return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
+    rows = [stored_row(case, folder) for case in cases]
+    return [row for row in rows if row is not None]
 
 
 def missing_cases(cases: list[Case], folder: Path) -> list[Case]:
-    """Missing cases of a study."""
-    return [case for case in cases if not result_path(folder, case).is_file()]
+    """Missing cases of a study, those with a damaged file too."""
+    return [case for case in cases if stored_row(case, folder) is None]
 
 
 def estimated_time(cases: list[Case], workers: int) -> float:
@@ -97,6 +98,15 @@ def estimated_time(cases: list[Case], workers: int) -> float:
 def result_path(folder: Path, case: Case) -> Path:
     """File of a finished case."""
     return folder / f'{case.name}.json'
+
+
+def stored_row(case: Case, folder: Path) -> Plain | None:
+    """Return the row of a case; None if it has no file, or one that a full disk cut off."""
+    try:
+        row = json.loads(result_path(folder, case).read_text(encoding='utf-8'))
+    except (OSError, ValueError):
+        return None
+    return row if isinstance(row, dict) else None
 
 
 def store_row(case: Case, row: Plain, folder: Path) -> None:

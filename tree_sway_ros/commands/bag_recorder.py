@@ -84,5 +84,6 @@ class Recorder(Listener):
             if self._began is None:
                 self._began = time.monotonic()
 
-        message, profile = message_class(topic, kind), qos_profile(topic, is_input=True)
+        message = message_class(topic, kind)
+        profile = qos_profile(topic, is_input=True)
         self.node.create_subscription(message, name, write, profile, raw=True)

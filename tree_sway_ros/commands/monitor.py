@@ -40,7 +40,8 @@ class StreamMonitor(Listener):
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
         super().__init__('monitor', namespace, context)
-        self.totals, self.recent = StreamTotals(), StreamTotals()
+        self.totals = StreamTotals()
+        self.recent = StreamTotals()
         self._tree = tree
         self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
         for topic, callback, raw in (
@@ -63,15 +64,18 @@ class StreamMonitor(Listener):
 
     def restart(self) -> None:
         """Reset all counts."""
-        self.totals, self.recent = StreamTotals(), StreamTotals()
+        self.totals = StreamTotals()
+        self.recent = StreamTotals()
 
     def take_recent(self) -> StreamTotals:
         """Return statistics since the last call."""
-        recent, self.recent = self.recent, StreamTotals()
+        recent = self.recent
+        self.recent = StreamTotals()
         return recent
 
     def _receive_poses(self, data: bytes) -> None:
-        arrival, poses = time.time(), poses_of(data)
+        arrival = time.time()
+        poses = poses_of(data)
         if poses is not None and self._tree is not None and len(poses) != self._tree.n_segments:
             poses = None
         for totals in (self.totals, self.recent):

@@ -118,13 +118,15 @@ class Relay:
         self._diagnostics = node.create_publisher(
             message_class(DIAGNOSTICS), DIAGNOSTICS.name, qos_profile(DIAGNOSTICS)
         )
-        self._flags, self._arrival = 0, time.monotonic()
+        self._flags = 0
+        self._arrival = time.monotonic()
         self._reported = -_REPORT_EVERY
         self._text = ''
 
     def take(self, frame: Frame, _arrival: float) -> None:
         """Publish the wind of a frame if it is a sample; called by the client's thread."""
-        self._flags, self._arrival = frame.flags, time.monotonic()
+        self._flags = frame.flags
+        self._arrival = time.monotonic()
         if not frame.flags & (PAUSED | WIND_LOST):
             self._wind.publish(self._writer.message(frame.stamp, frame.wind))
             self.published += 1
@@ -139,13 +141,17 @@ class Relay:
             'connection': client.state,
             'age of the last frame [s]': silence,
         }
-        level, text = OK, f'the wind of {client.url}'
+        level = OK
+        text = f'the wind of {client.url}'
         if silence > _OVERDUE:
-            level, text = WARN, f'nothing from {client.url} for {silence:.0f} s: {client.problem}'
+            level = WARN
+            text = f'nothing from {client.url} for {silence:.0f} s: {client.problem}'
         elif self._flags & PAUSED:
-            level, text = WARN, 'nothing is published: the remote tree is paused'
+            level = WARN
+            text = 'nothing is published: the remote tree is paused'
         elif self._flags & WIND_LOST:
-            level, text = WARN, 'nothing is published: the remote site has no measured wind'
+            level = WARN
+            text = 'nothing is published: the remote site has no measured wind'
         return Status('wind', level, text, values)
 
     def report(self, client: StreamClient) -> None:

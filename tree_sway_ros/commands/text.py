@@ -18,7 +18,8 @@ def status_line(recent: StreamTotals, elapsed: float) -> str:
     """Return one line on the last messages of a stream."""
     wind = 'no wind'
     if recent.wind.count:
-        origin, rate = _from(recent.wind.mean), recent.wind.rate
+        origin = _from(recent.wind.mean)
+        rate = recent.wind.rate
         wind = f'wind {recent.wind.length:4.1f} m/s {origin:>7} at {rate:4.1f} Hz'
     tip = f' tip {1e3 * recent.poses.length:6.1f} mm |' if recent.poses.largest else ''
     half, most = recent.latency(0.5, 0.95)
@@ -29,7 +30,8 @@ def status_line(recent: StreamTotals, elapsed: float) -> str:
 
 def summary(totals: StreamTotals, rate: float) -> str:
     """Return several lines on a whole stream; `rate` is its expected rate in [Hz]."""
-    poses, wind = totals.poses, totals.wind
+    poses = totals.poses
+    wind = totals.wind
     if not poses.count:
         return 'no poses'
     late = [1e3 * each for each in totals.latency(0.5, 0.95, 1.0)]
@@ -45,7 +47,8 @@ def summary(totals: StreamTotals, rate: float) -> str:
         )
     if poses.largest:
         east, north, up = 1e3 * poses.mean
-        mean, most = 1e3 * poses.length, 1e3 * poses.largest
+        mean = 1e3 * poses.length
+        most = 1e3 * poses.largest
         lines.append(
             f'tip      {mean:.1f} mm from rest on average, {most:.1f} at most; '
             f'mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up'

@@ -22,7 +22,8 @@ class Series:
         self.count = 0
         self.first = self.last = math.nan
         self.largest = 0.0
-        self._vectors, self._lengths = np.zeros(3), 0.0
+        self._vectors = np.zeros(3)
+        self._lengths = 0.0
 
     def add(self, time: float, vector: Floats) -> None:
         """Count a vector, (3,), at a time in [s]."""
@@ -54,7 +55,8 @@ class StreamTotals:
     """Statistics of a stream for `summary`, from its messages one by one."""
 
     def __init__(self) -> None:
-        self.poses, self.wind = Series(), Series()
+        self.poses = Series()
+        self.wind = Series()
         self.foreign = 0
         """Number of pose arrays that are not of this tree, which are not counted as poses."""
         self.latencies: deque[float] = deque(maxlen=_LATEST)

@@ -13,7 +13,8 @@ from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import status_line
 
 _SETTLING = 0.5
-_LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
+_LIVE_PERIOD = 0.5
+_LOG_PERIOD = 2.0
 
 
 def watch(
@@ -42,7 +43,10 @@ def watch(
         while check() and (left := begin + seconds - time.monotonic()) > 0.0:
             monitor.spin(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
             line = status_line(monitor.take_recent(), time.monotonic() - begin)
-            print(f'\r\033[K{line}' if is_live else line, end='' if is_live else '\n', flush=True)
+            if is_live:
+                # `sys.stdout` escapes control sequences inside a command.
+                print('\r\033[K', end='', file=sys.__stdout__, flush=True)
+            print(line, end='' if is_live else '\n', flush=True)
     except KeyboardInterrupt:
         pass
     if is_live:

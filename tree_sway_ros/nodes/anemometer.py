@@ -37,7 +37,8 @@ class AnemometerNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse overlapping faults."""
-        duration, every = values['fault_duration'], values['fault_every']
+        duration = values['fault_duration']
+        every = values['fault_every']
         if values['fault'] != 'none' and every < duration:
             raise ParameterError(
                 f'faults of {duration:g} s every {every:g} s overlap',
@@ -49,7 +50,8 @@ class AnemometerNode(TreeSwayNode):
         """Change the wind from the next sample on; the gusts of a seed keep their pattern."""
         self._model = self._make_model()
         if any(name.startswith('fault') for name in values):
-            self._faults, self._faulty_since = self._make_faults(), self._ticks
+            self._faults = self._make_faults()
+            self._faulty_since = self._ticks
 
     def _make_faults(self) -> SensorFaults:
         values = self.values

@@ -13,7 +13,7 @@ from tree_sway.core.observe.sensor_report import sensor_reports
 from tree_sway.core.scene.run import Run
 from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import IMU
+from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 
@@ -28,7 +28,7 @@ def places_of(text: str) -> dict[str, str]:
     """
     Return the place of each topic of a text ``TOPIC@PLACE, TOPIC@PLACE``.
 
-    A `ParameterError` refuses a text of another form, and a topic given twice.
+    A `ParameterError` refuses a text of another form, a topic given twice, and no name of one.
     """
     found: dict[str, str] = {}
     for part in filter(None, (each.strip() for each in text.split(','))):
@@ -37,6 +37,7 @@ def places_of(text: str) -> dict[str, str]:
             what = f"'{part}' is no topic with a place of its own"
             cure = "give TOPIC@PLACE, several with commas, as 'tree/imu@3.2, limb/imu@b12:0.5'"
             raise ParameterError(what, where='imu', cure=cure)
+        refuse_topic_name(topic, 'imu')
         found[topic] = place
     return found
 
@@ -52,7 +53,7 @@ class ImuIntake:
     node
         The node that subscribes.
     run
-        What steps the tree.
+        Runtime that steps the tree.
     twin
         The tree.
     arrived
@@ -63,7 +64,10 @@ class ImuIntake:
     def __init__(
         self, node: TreeSwayNode, run: Run, twin: ObservedTree, arrived: Callable[[], object]
     ) -> None:
-        self._node, self._run, self._twin, self._arrived = node, run, twin, arrived
+        self._node = node
+        self._run = run
+        self._twin = twin
+        self._arrived = arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}
@@ -148,7 +152,8 @@ class ImuIntake:
         found = []
         self._run.request(self._find_band)
         for each in sensor_reports(self._twin):
-            problem, counts = each.problem, each.counts
+            problem = each.problem
+            counts = each.counts
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
                 'place': self._twin.at[each.name],

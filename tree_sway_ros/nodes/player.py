@@ -65,7 +65,8 @@ class PlayerNode(TreeSwayNode):
         if row < 0:
             self._ticks.publish(clock_message(stamp))
             return
-        source, sample = int(self._rows.source[row]), int(self._rows.sample[row])
+        source = int(self._rows.source[row])
+        sample = int(self._rows.sample[row])
         if source < 0:
             self._wind.publish(self._writer.message(stamp, self._record.velocity[sample]))
         else:

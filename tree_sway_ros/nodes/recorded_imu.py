@@ -11,8 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.errors import FormatError
 from tree_sway.files.motion.imu_bag import read_imu_bag
+from tree_sway_ros.process.topics import refuse_topic_name
 from tree_sway_ros.wire.imu_messages import imu_message
+
+_BAGS = ('.db3', '.mcap')
+"""Suffixes of files of a bag."""
 
 
 class JoinedRows(NamedTuple):
@@ -52,12 +57,19 @@ class RecordedImu:
     ------
     FormatError
         Not a bag, or no such topic.
+    ParameterError
+        No name of a topic.
 
     """
 
     def __init__(self, file: str, topics: str, epoch: float | None) -> None:
         self.topics = [each.strip() for each in topics.split(',') if each.strip()]
         """Names of the topics."""
+        for each in self.topics:
+            refuse_topic_name(each, 'imu')
+        if self.topics and Path(file).is_file() and Path(file).suffix not in _BAGS:
+            cure = 'leave imu out, or give a bag with wind and motion'
+            raise FormatError('no bag, whose topics imu plays', where=file, cure=cure)
         self._records = [read_imu_bag(Path(file), each) for each in self.topics]
         self._epoch = epoch
 

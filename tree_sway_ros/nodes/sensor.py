@@ -39,7 +39,8 @@ class SensorNode(TreeSwayNode):
         self._publisher = self.publisher(WIND, self._writer.message_class)
         self._recent = RecentCounts()
         opened = open_source(self.values['address'])
-        self._lines, self._messages = opened.source.read, opened.source.messages
+        self._lines = opened.source.read
+        self._messages = opened.source.messages
         is_of_lines = isinstance(self._lines, InstrumentLines)
         self._wind = LiveWind(
             opened,
@@ -80,7 +81,8 @@ class SensorNode(TreeSwayNode):
             self._publish(samples[-1][1])
 
     def _report(self) -> list[Status]:
-        wind, link = self._wind, self._wind.link
+        wind = self._wind
+        link = self._wind.link
         newest = wind.newest
         recent = self._recent.growth({**wind.refused, '': wind.accepted})
         refused = {cause: count for cause, count in recent.items() if cause and count}

@@ -247,7 +247,8 @@ class SolverNode(TreeSwayNode):
 
     def _answer(self, message: Any) -> None:
         """Publish the wind at the place of a question, with its stamp."""
-        frame_id, known = message.header.frame_id, self.values['frame_id']
+        frame_id = message.header.frame_id
+        known = self.values['frame_id']
         if frame_id not in ('', known):
             self.refusals.note('wind_at', f"'{frame_id}' is not the frame of the poses, '{known}'")
             return
@@ -373,7 +374,8 @@ class SolverNode(TreeSwayNode):
 
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
-        delay, newest = self.values['wind_delay'], self._run.newest
+        delay = self.values['wind_delay']
+        newest = self._run.newest
         if newest is None:
             yield self._topic, UNHEARD
         elif self._run.lacks_wind(to, delay=delay):
@@ -391,12 +393,14 @@ class SolverNode(TreeSwayNode):
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._run.request(self.simulator.reset)
-        response.success, response.message = True, 'at rest'
+        response.success = True
+        response.message = 'at rest'
         return response
 
     def _pause(self, request: Any, response: Any) -> Any:
         self._run.is_paused = bool(request.data)
-        response.success, response.message = True, 'paused' if request.data else 'running'
+        response.success = True
+        response.message = 'paused' if request.data else 'running'
         return response
 
     def _statuses(self) -> list[Status]:

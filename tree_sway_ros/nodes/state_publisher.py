@@ -25,7 +25,9 @@ class StatePublisher:
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:
-        self._node, self._simulator, self._n_leaves = node, simulator, n_leaves
+        self._node = node
+        self._simulator = simulator
+        self._n_leaves = n_leaves
         self._publisher = node.publisher(TREE_STATE)
         rate = node.values['state_rate']
         self._every = max(1, math.ceil(node.values['rate'] / rate)) if rate > 0.0 else 0

@@ -90,7 +90,8 @@ class ViewerNode(TreeSwayNode):
             self._settings, self._panel, lambda: {'source': 'ROS 2', 'wind': self._wind}
         )
         server.start()
-        self.server, self._described = server, ''
+        self.server = server
+        self._described = ''
         self.on_close(self._end_page)
         self.get_logger().info(f'the page is at {server.url}')
 
@@ -146,7 +147,8 @@ class ViewerNode(TreeSwayNode):
         server.describe(data)
 
     def _receive(self, message: Any) -> None:
-        description, server = self._description, self.server
+        description = self._description
+        server = self.server
         if description is None or server is None:
             return
         stamp, wind, flags, coordinates = read_state(message)

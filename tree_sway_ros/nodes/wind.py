@@ -82,7 +82,8 @@ class WindNode(TreeSwayNode):
             return
         self._report.gaps.note(info)
         sample = wind_from_message(message)
-        frame_id, turn = self.values['frame_id'], None
+        frame_id = self.values['frame_id']
+        turn = None
         if sample.frame_id not in ('', frame_id):
             # It is slow to load, and seldom needed.
             from tree_sway_ros.wire.frames import FrameListener
@@ -118,13 +119,16 @@ class WindNode(TreeSwayNode):
         self._held.clear()
 
     def _statuses(self) -> list[Status]:
-        gate, others = self._intake.gate, self._types_not_read()
+        gate = self._intake.gate
+        others = self._types_not_read()
         publishers = self.publishers_of(self._topic, self.values['input_type'])
         replay = self.clock_rate.rate if self.is_simulated else None
         wind = self._report.status(self.values['timeout'], gate, others, publishers, replay)
-        level, text = OK, f"the wind is in frame '{self.values['frame_id']}'"
+        level = OK
+        text = f"the wind is in frame '{self.values['frame_id']}'"
         if self._frames is not None and self._frames.age < _RECENT:
-            level, text = WARN if self._frames.is_lacking else OK, self._frames.text
+            level = WARN if self._frames.is_lacking else OK
+            text = self._frames.text
         return [wind, Status('frame', level, text)]
 
     def _types_not_read(self) -> list[str]:

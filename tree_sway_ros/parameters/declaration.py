@@ -66,7 +66,8 @@ class ParameterValues:
         check: Callable[[dict[str, Value]], None] = lambda values: None,
     ) -> None:
         self._by_name = {parameter.name: parameter for parameter in table}
-        self._on_change, self._check_all = on_change, check
+        self._on_change = on_change
+        self._check_all = check
         given = {name: item.value for name, item in node.get_parameters_by_prefix('').items()}
         unknown = unknown_names(table, given)
         for name in unknown:
@@ -141,7 +142,9 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         read_only=not parameter.live,
         dynamic_typing=True,
     )
-    kind, low, high = type(parameter.default), parameter.minimum, parameter.maximum
+    kind = type(parameter.default)
+    low = parameter.minimum
+    high = parameter.maximum
     if low is None or high is None:
         return descriptor
     if kind is float:

@@ -11,6 +11,8 @@ from typing import Any
 
 import yaml
 
+from tree_sway.errors import ParameterError
+
 
 @dataclass(frozen=True)
 class Topic:
@@ -72,6 +74,20 @@ def qos_profile(topic: Topic, *, is_input: bool = False, is_replay: bool = False
         reliability=ReliabilityPolicy['RELIABLE' if is_reliable else 'BEST_EFFORT'],
         durability=DurabilityPolicy['TRANSIENT_LOCAL' if topic.latched else 'VOLATILE'],
     )
+
+
+def refuse_topic_name(name: str, where: str) -> None:
+    """Raise a `ParameterError` for a name that is none of a topic, from a parameter."""
+    from rclpy.exceptions import InvalidTopicNameException
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+    from rclpy.validate_topic_name import validate_topic_name
+
+    try:
+        validate_topic_name(name)
+        validate_full_topic_name(f'/{name.lstrip("~/")}')
+    except InvalidTopicNameException as error:
+        reason = str(error).split('\n', 1)[0].removeprefix('Invalid topic name: ').rstrip(':')
+        raise ParameterError(f"'{name}' is no name of a topic: {reason}", where=where) from None
 
 
 def message_class(topic: Topic, type_name: str = '') -> Any:

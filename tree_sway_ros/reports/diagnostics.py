@@ -10,7 +10,10 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-OK, WARN, ERROR, STALE = 0, 1, 2, 3
+OK = 0
+WARN = 1
+ERROR = 2
+STALE = 3
 
 
 @dataclass(frozen=True)

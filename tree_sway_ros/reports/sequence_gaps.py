@@ -33,8 +33,10 @@ class SequenceGaps:
 
     def report(self, publishers: int) -> int:
         """Return the messages lost since the last report, with the present publishers."""
-        pending, self._pending = self._pending, 0
-        was_one, self._publishers = self._publishers == 1, publishers
+        pending = self._pending
+        self._pending = 0
+        was_one = self._publishers == 1
+        self._publishers = publishers
         if publishers != 1 or not was_one:
             self._last = None
             return 0

@@ -75,14 +75,17 @@ class SwayReport:
 
     def _of_replay(self, wind: Status, run: Run, replay: float | None, lost: int) -> Status:
         """Add the rate of a replay, and samples that are missing or late in it."""
-        late, self._late = run.late - self._late, run.late
+        late = run.late - self._late
+        self._late = run.late
         values = {**wind.values, 'lost': self.gaps.lost, 'late': run.late}
-        level, text = wind.level, wind.message
+        level = wind.level
+        text = wind.message
         if replay is not None:
             values['replay rate'] = replay
             text = f'replay at {replay:.2g}x: {text}'
         if lost:
-            level, text = max(level, WARN), f'{text}; {lost} samples lost on the way'
+            level = max(level, WARN)
+            text = f'{text}; {lost} samples lost on the way'
         if replay is not None and late > 0:
             text = f'{text}; {late} samples came after their time: raise wind_delay or play slower'
             level = max(level, WARN)
@@ -92,13 +95,18 @@ class SwayReport:
         now = time.monotonic()
         published = (frames - self._frames) / max(1e-9, now - self._time)
         skipped = timing.skipped - self._skipped
-        self._time, self._frames, self._skipped = now, frames, timing.skipped
-        level, text = OK, f'{timing.rate:.1f} Hz'
+        self._time = now
+        self._frames = frames
+        self._skipped = timing.skipped
+        level = OK
+        text = f'{timing.rate:.1f} Hz'
         if timing.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
-            level, text = WARN, f'no frame for {timing.silence:.1f} s'
+            level = WARN
+            text = f'no frame for {timing.silence:.1f} s'
         elif skipped > 0.01 * rate:
             late = f'{1e3 * timing.late_p95:.1f} ms late (p95)'
-            level, text = WARN, f'{skipped} frames skipped, {late}'
+            level = WARN
+            text = f'{skipped} frames skipped, {late}'
         values = {**timing._asdict(), 'wanted': rate, 'published': published, 'frames': frames}
         return Status('output', level, text, values)
 
@@ -139,7 +147,8 @@ def _model(simulator: Simulator) -> Status:
     if not adaptive:
         return Status('model', OK, simulator.model, values)
     worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
-    error, cost = worst.choice.error, sum(each.frame_cost for each in adaptive)
+    error = worst.choice.error
+    cost = sum(each.frame_cost for each in adaptive)
     budget = sum(each.budget for each in adaptive)
     chosen = ', '.join(dict.fromkeys(each.choice.name for each in adaptive))
     values |= {
@@ -149,10 +158,12 @@ def _model(simulator: Simulator) -> Status:
         'estimated cost [us]': cost,
         'budget [us]': budget,
     }
-    level, text = WARN, f'no model is within the budget; allow {cost:.3g} us for {chosen}'
+    level = WARN
+    text = f'no model is within the budget; allow {cost:.3g} us for {chosen}'
     if not 0.0 < budget < cost:
         text = f'{worst.tree.name}: no model is within the tolerance; allow {error:.2g} m for '
         text += worst.choice.name
         if error <= worst.tolerance:
-            level, text = OK, simulator.model
+            level = OK
+            text = simulator.model
     return Status('model', level, text, values)

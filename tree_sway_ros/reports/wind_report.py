@@ -44,7 +44,8 @@ class WindReport:
     """Good samples by arrival in wall time, which shows whether a sensor is live."""
 
     def __init__(self) -> None:
-        self._timing, self._newest = SensorTiming(0.0), -math.inf
+        self._timing = SensorTiming(0.0)
+        self._newest = -math.inf
         self._counts = RecentCounts()
         self._square_left_out = 0.0
         self.gaps = SequenceGaps()
@@ -101,7 +102,8 @@ class WindReport:
             Seconds of the record per second of the machine; None for a live wind.
 
         """
-        age, timeout = self.age, max(timeout, _PERIODS * (self._timing.period or 0.0))
+        age = self.age
+        timeout = max(timeout, _PERIODS * (self._timing.period or 0.0))
         recent = self._counts.growth(vars(gate.counts))
         lost = self.gaps.report(len(publishers))
         refusals = _shares(recent, _REFUSALS, gate)
@@ -116,23 +118,29 @@ class WindReport:
         }
         if replay is not None:
             values['replay rate'] = replay
-        level, text = OK, f'{self.rate:.1f} Hz'
+        level = OK
+        text = f'{self.rate:.1f} Hz'
         if self.left_out >= _LEAST_LEFT_OUT:
             text += f', {self.left_out:.2g} m/s across the force plane are left out'
         if replay is not None:
             text = f'replay at {replay:.2g}x, {text}'
         if math.isinf(age):
-            level, text = WARN, 'no wind yet'
+            level = WARN
+            text = 'no wind yet'
             if types_not_read:
                 text += f'; set input_type to read {", ".join(types_not_read)}'
         elif age > STALE_AFTER * timeout:
-            level, text = STALE, f'no wind for {age:.0f} s'
+            level = STALE
+            text = f'no wind for {age:.0f} s'
         elif age > timeout:
-            level, text = WARN, f'no wind for {age:.1f} s, its force decays'
+            level = WARN
+            text = f'no wind for {age:.1f} s, its force decays'
         elif gate.is_frozen:
-            level, text = WARN, f'frozen: the sensor repeats the same sample; {text}'
+            level = WARN
+            text = f'frozen: the sensor repeats the same sample; {text}'
         elif gate.is_still:
-            level, text = WARN, f'exactly 0 m/s: calm air at a cup, or a stuck sensor; {text}'
+            level = WARN
+            text = f'exactly 0 m/s: calm air at a cup, or a stuck sensor; {text}'
         faults = []
         if refusals:
             faults.append(f'{sum(refusals.values())} of {_total(recent)} samples refused: ')

@@ -73,7 +73,8 @@ class ClockRate:
         if self._last is None:
             self._last = now, shown
             return
-        passed, step = now - self._last[0], shown - self._last[1]
+        passed = now - self._last[0]
+        step = shown - self._last[1]
         if passed < _RESOLUTION:
             return
         self._last = now, shown

@@ -170,7 +170,8 @@ class Pacer(Worker):
         index = now // self.period
         if self._last is None or now < self._last * self.period - _BACK:
             self._restarts += self._last is not None
-            self._last, self._last_steady = index, time.monotonic_ns()
+            self._last = index
+            self._last_steady = time.monotonic_ns()
             self._late = now % self.period
             return Tick(index * self.period, 1, True)
         periods = index - self._last
@@ -179,7 +180,9 @@ class Pacer(Worker):
         steady = time.monotonic_ns()
         since = steady - self._last_steady
         passed = since + self._late  # since the last tick's time on the grid
-        self._last, self._last_steady, self._late = index, steady, now % self.period
+        self._last = index
+        self._last_steady = steady
+        self._late = now % self.period
         longest = LONGEST_STEP
         if self.is_simulated:  # in a fast replay much of it passes while a thread is late
             longest = round(self.clock_rate.largest_factor * (LONGEST_STEP + since))

@@ -35,7 +35,8 @@ _MARGIN = 86_400.0
 """Pause between two loops of a record [s]."""
 
 _SECOND = 1_000_000_000
-_LATEST, _POLL = 0.5, 0.02
+_LATEST = 0.5
+_POLL = 0.02
 
 _SETTLING = 0.5
 """Time [s] from the last subscriber to the first sample."""
@@ -168,7 +169,8 @@ class Playback(Worker):
         return True
 
     def _play(self) -> None:
-        begin, wall = time.monotonic(), time.time_ns()
+        begin = time.monotonic()
+        wall = time.time_ns()
         for at, row in self.events():
             due = at / self.rate
             wait = begin + due - time.monotonic()

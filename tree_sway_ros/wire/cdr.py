@@ -41,7 +41,7 @@ class CdrTemplate:
     Parameters
     ----------
     message
-        A ROS message. `mark_stamp` and `mark_block` must have been called on its parts.
+        A ROS message, whose stamps `mark_stamp` has set, and whose blocks begin with `block_mark`.
     n_stamps
         Number of marked stamps, with numbers 0 .. n_stamps - 1.
     shapes
@@ -94,10 +94,11 @@ class CdrTemplate:
             block[...] = 0.0
 
     def to_bytes(self, stamp: int = 0) -> bytes:
-        """Return the message as bytes for `Publisher.publish`; its stamps are a time in [ns]."""
+        """Return the message as bytes for a publisher of rclpy; its stamps are a time in [ns]."""
         second, nanosecond = divmod(stamp, 1_000_000_000)
         for view in self._stamps:
-            view[0], view[1] = second, nanosecond
+            view[0] = second
+            view[1] = nanosecond
         return self._buffer.tobytes()
 
     def _view(self, offset: int, kind: type, shape: tuple[int, ...]) -> NDArray[Any]:
@@ -152,7 +153,8 @@ def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
     mark_stamp(message.header.stamp)
     if n_poses:
         # The same object many times: only its numbers are written, once each.
-        first, other = Pose(), Pose()
+        first = Pose()
+        other = Pose()
         first.position.x = block_mark()
         message.poses = [first] + [other] * (n_poses - 1)
     return CdrTemplate(message, 1, [(n_poses, 7)])

@@ -57,9 +57,11 @@ class Frames:
 
     def _way_up(self, frame: str) -> dict[str, Rotation]:
         """Rotation of a frame in each of its ancestors; a cycle of frames is followed once."""
-        way, turn = {frame: Rotation.identity()}, Rotation.identity()
+        way = {frame: Rotation.identity()}
+        turn = Rotation.identity()
         while link := self._links.get(frame):
-            frame, turn = link[0], link[1] * turn
+            frame = link[0]
+            turn = link[1] * turn
             if frame in way:
                 break
             way[frame] = turn
@@ -122,15 +124,19 @@ class FrameListener:
     """Listener of /tf that logs the use of each frame once."""
 
     def __init__(self, node: Any, base: str) -> None:
-        self._log, self._base = node.get_logger(), base
+        self._log = node.get_logger()
+        self._base = base
         self._frames = listen(node)
         self._said: set[str] = set()
         self._until = time.monotonic() + _PATIENCE
         self._lack = 'no transform between the two on /tf'
-        self.text, self.is_lacking, self.is_waiting = '', False, False
+        self.text = ''
+        self.is_lacking = False
+        self.is_waiting = False
         self._latest = -math.inf
         if isinstance(self._frames, NoFrames):
-            self._until, self._lack = 0.0, 'tf2_msgs is not installed'
+            self._until = 0.0
+            self._lack = 'tf2_msgs is not installed'
 
     @property
     def age(self) -> float:
@@ -146,9 +152,11 @@ class FrameListener:
             return None
         way = f"taken as '{self._base}': {self._lack}"
         if found is not None:
-            way, self._until = f"turned into '{self._base}' by /tf", 0.0
+            way = f"turned into '{self._base}' by /tf"
+            self._until = 0.0
         shown = frame if len(frame) <= _SHOWN else f'{frame[:_SHOWN]}...'
-        self.text, self._latest = f"wind is in frame '{shown}', {way}", time.monotonic()
+        self.text = f"wind is in frame '{shown}', {way}"
+        self._latest = time.monotonic()
         if self.text not in self._said and len(self._said) < _MOST:
             self._said.add(self.text)
             # Two places, as a place of the log has one severity.

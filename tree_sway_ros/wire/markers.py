@@ -40,7 +40,8 @@ class TreeMarkers:
             share = number / max(1, len(self._members) - 1)
             color = [b + share * (t - b) for b, t in zip(_BARK, _TWIG, strict=True)]
             marker.color.r, marker.color.g, marker.color.b, marker.color.a = map(float, color)
-            first, other = Point(x=block_mark(number)), Point()
+            first = Point(x=block_mark(number))
+            other = Point()
             marker.points = [first] + [other] * (2 * len(members) - 1)
             message.markers.append(marker)
         shapes = [(len(members), 2, 3) for members in self._members]

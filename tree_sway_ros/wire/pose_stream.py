@@ -33,7 +33,8 @@ class PoseStream:
         self._template = pose_array_template(tree.n_segments, frame_id)
         self.poses = self._template.blocks[0]
         self._pose_publisher = node.publisher(SEGMENT_POSES)
-        self._pose_divider, self._marker_divider = Divider(), Divider()
+        self._pose_divider = Divider()
+        self._marker_divider = Divider()
         self._marker_every = max(1, math.ceil(values['rate'] / _MARKER_RATE))
         self._markers = TreeMarkers(tree, frame_id)
         self._marker_publisher = node.publisher(MARKERS)

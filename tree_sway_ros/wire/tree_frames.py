@@ -91,7 +91,8 @@ class TreeFrames:
     def _begin(self, node: Any) -> None:
         """Publish where the tree is; a line of the log where this is impossible."""
         try:
-            self._publisher, static = node.publisher(TF), node.publisher(TF_STATIC)
+            self._publisher = node.publisher(TF)
+            static = node.publisher(TF_STATIC)
         except ImportError:
             node.get_logger().info(
                 f"frame '{self.root}' is not on /tf_static: tf2_msgs, of ROS, is not installed"

@@ -72,7 +72,8 @@ class StateWriter:
 
 def read_state(message: Any) -> ModalState:
     """Read a state; a `FormatError` for a different layout, or numbers that cannot be."""
-    layout, numbers = message.layout, np.array(message.data, dtype=np.float64)
+    layout = message.layout
+    numbers = np.array(message.data, dtype=np.float64)
     labels = [each.label for each in layout.dim]
     if labels != [LABEL] or layout.data_offset != len(HEAD):
         raise FormatError(

@@ -71,7 +71,9 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
     """Write a wind message of any of the four types."""
     message = message_class()
     vector = _VECTORS[message_class](message)
-    vector.x, vector.y, vector.z = float(sample.u), float(sample.v), float(sample.w)
+    vector.x = float(sample.u)
+    vector.y = float(sample.v)
+    vector.z = float(sample.w)
     if hasattr(message, 'header'):
         fill_stamp(message.header.stamp, sample.stamp)
         message.header.frame_id = sample.frame_id

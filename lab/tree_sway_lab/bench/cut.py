@@ -29,8 +29,8 @@ def time_cuts(model: int | str, rounds: int, cuts: Sequence[int] = CUTS) -> dict
     model
         Model.
     rounds
-        Of twenty steps of each; all cuts take turns, so that they meet the same load of the
-        machine.
+        Number of rounds of twenty steps; all cuts take turns, so that they meet the same load of
+        the machine.
     cuts
         Segments per branch.
 

@@ -37,9 +37,9 @@ class ForestTiming:
     n_trees, n_branches, n_segments
         Size of the forest.
     solve, place
-        What one frame in ten stays below: the cost where nothing else runs.
+        Time that one frame in ten stays below: the cost if nothing else runs.
     median
-        Of solving and placing together, whatever else the machine does.
+        Median of solving and placing together, whatever else the machine does.
 
     """
 

@@ -23,7 +23,7 @@ class Measured:
     Parameters
     ----------
     name
-        What was measured.
+        Quantity that was measured.
     value
         The figure; less is better, unless stated otherwise.
     unit
@@ -38,7 +38,7 @@ class Measured:
 
 def read_baseline(path: str | Path) -> dict[str, float]:
     """
-    Read what `write_json` wrote.
+    Read the values of a file that `as_json` made.
 
     Raises
     ------

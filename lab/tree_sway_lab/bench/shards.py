@@ -50,7 +50,7 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
     Returns
     -------
     list of Measured
-        What shards take and send, and times in [s].
+        CPU time and traffic of the shards, and times in [s].
 
     Raises
     ------

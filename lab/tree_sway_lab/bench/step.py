@@ -39,9 +39,9 @@ class StepTiming:
     model
         Model.
     median, minimum
-        Of the compiled step.
+        Times of the compiled step.
     twin_median, twin_minimum
-        Of the step in numpy.
+        Times of the step in numpy.
     difference
         Largest difference of the two pose blocks over the steps that were compared.
 
@@ -71,7 +71,7 @@ def time_steps(tree: Tree, model: int | str, rounds: int) -> StepTiming:
     model
         Model.
     rounds
-        Of 200 steps each.
+        Number of rounds of 200 steps.
 
     Returns
     -------

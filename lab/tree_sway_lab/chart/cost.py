@@ -73,7 +73,7 @@ def chart_cost(
     cuts
         Segments per branch, of a tree of 40 branches.
     generations
-        Of branches, each three times as many as the one before, six segments per branch.
+        Generations of branches, each three times as many as before, six segments per branch.
     frames
         How many are timed.
     models

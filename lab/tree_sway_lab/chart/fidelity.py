@@ -88,7 +88,7 @@ def chart_fidelity(
         Models of ours, and engines; those that are not installed are left out. Newton runs for
         the first two seconds.
     fineness
-        Of the truth.
+        Fineness of the truth.
 
     """
     points = [

@@ -17,7 +17,7 @@ from tree_sway.pictures.animation import animate_poses
 
 TREE = 'benjamina'
 PERIOD, RATE, EVERY = 4.0, 60, 6
-"""Of the gusts in [s], steps per second, and steps per picture."""
+"""Period of the gusts [s], steps per second, and steps per picture."""
 
 _SETTLING = 5
 _LEAVES, _PIXELS = 3000, 420

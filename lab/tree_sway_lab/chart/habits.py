@@ -19,7 +19,7 @@ SPECIES = (
     'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',
 )  # fmt: skip
 HEIGHT = 16.0
-"""Of each tree [m]; captions name it."""
+"""Height of each tree [m]; captions name it."""
 
 _CLUSTERS = 6000
 _LIMITS = (-0.51 * HEIGHT, 0.51 * HEIGHT), (-0.07 * HEIGHT, 1.08 * HEIGHT)

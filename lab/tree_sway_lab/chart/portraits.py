@@ -32,7 +32,7 @@ from tree_sway.pictures.pictures import picture_in_wind
 from tree_sway_lab.chart.film import chart_film, film_figures
 
 SPEED = 10.0
-"""Of the westerly [m/s]; captions name it."""
+"""Speed of the westerly [m/s]; captions name it."""
 
 PORTRAITS = {
     **{name: name for name in ('benjamina', 'goldcrest', 'broadleaf')},

@@ -48,7 +48,7 @@ def run_engines(
     gravity
         In [m/s^2]; DART is left out where there is any.
     match_beam
-        As of `MujocoTree`.
+        As in `MujocoTree`.
     names
         Keys of `MODULES`.
     newton_frames

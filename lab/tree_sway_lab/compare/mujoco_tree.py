@@ -309,8 +309,8 @@ def wind_wrenches(
     wind
         In [m/s], (3,).
     joint, turn, velocity, spin, centre
-        Of each body, the ground's first: place of its joint in [m], rotation, velocity of the
-        joint in [m/s], angular velocity in [rad/s] and centre of mass in [m].
+        For each body, the ground first: place of its joint in [m], rotation, velocity of the joint
+        in [m/s], angular velocity in [rad/s] and centre of mass in [m].
 
     """
     carrier = bodies.carrier + 1

@@ -26,7 +26,7 @@ from tree_sway_lab.compare.mujoco_tree import FRAME, MujocoTree, wind_wrenches
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies
 
 SUBSTEPS, ITERATIONS = 20, 5
-"""Of VBD per frame, and per substep."""
+"""Substeps of VBD per frame, and iterations per substep."""
 
 STRETCH = 1e5
 """Stiffness of the joints in stretch and shear in [N/m]."""

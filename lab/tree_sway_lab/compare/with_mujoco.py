@@ -41,7 +41,7 @@ class Comparison:
     n_branches, n_segments
         Size of the tree.
     model
-        Of ours.
+        Our model.
     first_frequency, static_sway
         MuJoCo's over the beam model's in [-].
     tip_motion
@@ -111,7 +111,7 @@ def compare_with_mujoco(
     wind
         Mean of each frame of 1/60 s in [m/s], (t, 3).
     model
-        Of ours, as of `simulator_called`.
+        Our model, as in `simulator_called`.
     damping_ratio
         In [-].
     steps

@@ -41,8 +41,8 @@ class FrameModel:
     base_node, base_offset
         Node each segment is fixed to, (n,), and its start from there in [m], (n, 3).
     stiffness, mass
-        Of the free coordinates, six per node; of the root none if it is clamped, and its rotation
-        if it is on a spring.
+        Matrices of the free coordinates, six per node; the root has none if it is clamped, and its
+        rotation if it is on a spring.
     load
         Maps forces spread over the segments, 3 n, to the free coordinates.
 
@@ -170,8 +170,8 @@ def frame_model(
         Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic rod of Poisson ratio 0.3,
         about 1/14 for wood along the grain (Wood Handbook FPL-GTR-282, table 5-1).
     root_stiffness
-        Of a spring at the root against tilting in [N m/rad], and 2 G/E times that against
-        twist, as the stem itself; infinite if it is clamped.
+        Stiffness of the root against tilting in [N m/rad], and 2 G/E times that against twist, as
+        the stem itself; infinite if it is clamped.
 
     """
     n, sub = tree.n_segments, subdivisions

@@ -23,7 +23,7 @@ from tree_sway_lab.kinds.shoots import Drawing, Shoot, towards
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 SEED = 1
-"""Of a kind that is called without one."""
+"""Seed of a kind that is called without one."""
 
 _UP = np.array([0.0, 0.0, 1.0])
 _GOLDEN = 137.50776

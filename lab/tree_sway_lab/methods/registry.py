@@ -25,15 +25,31 @@ from tree_sway_lab.methods.multiplier.radau_ggl import RadauGgl
 from tree_sway_lab.methods.multiplier.rattle import Rattle
 from tree_sway_lab.methods.multiplier.rk4 import MultiplierRungeKutta4
 
-METHODS: dict[str, type[Method]] = {
-    kind.name: kind
-    for kind in (
-        MultiplierExplicitEuler, MultiplierRungeKutta4, Baumgarte, Projection, Rattle,
-        LinearlyImplicitEuler, Newmark, GeneralizedAlpha, RadauGgl,
-        SemiImplicitEuler, Verlet, RungeKutta4, ImplicitMidpoint, TrBdf2, Bdf2,
-        ExactZeroOrderHold, ExactFirstOrderHold, ExactAboutEquilibrium,
-    )
-}  # fmt: skip
+KINDS: tuple[type[Method], ...] = (
+    # On the paper's coordinates, with multipliers:
+    MultiplierExplicitEuler,  # its failure at w h = 0.1 is shown (T1)
+    MultiplierRungeKutta4,  # the paper's form without stabilisation: its drift is shown (T3)
+    Baumgarte,  # the usual stabilisation: the limits of its gains are shown (T4)
+    Projection,  # the usual cure of the drift, whose rest is measured (T3); gives reactions
+    Rattle,  # the symplectic method of molecular dynamics, of which Verlet is the free form
+    LinearlyImplicitEuler,  # what games use: the damping that it adds is shown (T2)
+    Newmark,  # what structural dynamics uses: its failure on index 3 is shown (T1)
+    GeneralizedAlpha,  # its cure; its failures at small steps and poor starts are shown (T5, T6)
+    RadauGgl,  # the reference of all others
+    # On angles:
+    SemiImplicitEuler,  # the unit of cost; its failures are shown (T1, T18)
+    Verlet,  # its failures are shown (T15, T18)
+    RungeKutta4,  # the best for small steps; its failures are shown (T1, T15, T18)
+    ImplicitMidpoint,  # implicit, keeps the energy: the frequency that it loses is in models.md
+    TrBdf2,  # implicit, damps what it does not resolve, in one step
+    Bdf2,  # the same with a memory, as the solvers of libraries have
+    ExactZeroOrderHold,  # the cheapest one
+    ExactFirstOrderHold,  # the one in use
+    ExactAboutEquilibrium,  # the one for loads of many times the stiffness
+)
+"""Every method of integration, and beside it the reason why it is here."""
+
+METHODS: dict[str, type[Method]] = {kind.name: kind for kind in KINDS}
 
 
 def method_named(name: str) -> Method:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway lab docs``: what the code knows is put into the pages.
+``tree-sway lab docs``: write the tables and drawings of the pages from the code.
 
 These are the tables of topics, parameters and species, the drawings of the rooms and of measured
 against computed, and the examples as notebooks.

@@ -28,7 +28,7 @@ AIR_DENSITY = 1.2
 """In [kg/m^3]."""
 
 DRAG_COEFFICIENT = 1.2
-"""Of a bare cylinder across the wind [-]."""
+"""Drag coefficient of a bare cylinder across the wind [-]."""
 
 TWIG_TOLERANCE = 0.05
 """How alike twigs are that reuse one solution [-]."""

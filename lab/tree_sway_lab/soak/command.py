@@ -40,7 +40,7 @@ _NODE = 'from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}()
 
 
 class Health(NamedTuple):
-    """Of a process: time since the start [s], memory [MiB], open handles, threads."""
+    """Health of a process: time since the start [s], memory [MiB], open handles, threads."""
 
     time: float
     memory: float

@@ -1,3 +1,3 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far motion sensors bring a model to a tree that it does not know."""
+"""Trials of motion sensors: how well a model follows a tree of unknown wood, damping and gusts."""

@@ -79,6 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add('--model', default='full', help='model of the true tree (%(default)s)')
     add('--without-band', action='store_true', help='us/step is that of the sensors alone')
+    add('--tell-upwind', action='store_true', help='the model knows --upwind')
     add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
     for name, what in (
         ('wood', 'modulus of the true tree over the model'),
@@ -156,6 +157,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 in_leaf=in_leaf,
                 faulty=arguments.faulty,
                 has_band=not arguments.without_band,
+                upwind=each.upwind if arguments.tell_upwind else 0.0,
             )
             scores.setdefault(str(count), []).append(score)
     for sensors, found in scores.items():

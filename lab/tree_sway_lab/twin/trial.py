@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree with sensors against the true one: error, roughness, and what its band holds."""
+"""A tree with sensors against the true one: error, roughness, coverage of its band."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ class Score:
         Median and 99th percentile of the processor's time of a step in [us], sensors and all,
         while scored; not what gains and fits take in a thread beside the steps.
     beside
-        What they take, in [us] per step, over the whole record.
+        CPU time of these in [us] per step, over the whole record.
     notes
-        What the sensors say.
+        Notes of the sensors.
 
     """
 
@@ -134,8 +134,9 @@ def twin_score(
     seed: int = 7,
     faulty: bool = False,
     has_band: bool = True,
+    upwind: float = 0.0,
 ) -> Score:
-    """Score a tree that sensors at some places correct."""
+    """Score a tree that sensors correct, told how far upwind the anemometer is [m]."""
     twin = ObservedTree(
         tree,
         species,
@@ -143,6 +144,7 @@ def twin_score(
         at={each: each for each in places},
         is_smoothed=True,
         has_band=has_band,
+        upwind=upwind,
         submit=submit_beside,
     )
     rng = np.random.default_rng(seed)
@@ -173,6 +175,8 @@ def twin_score(
         late = LATE_STEPS + twin.observer.late
         late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
+    if twin.late_wind.delay:
+        notes.append(f'gusts {twin.late_wind.delay:.1f} s late')
     if (fit := twin.observer.fit) is not None:
         notes.append(
             f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}, drag {fit.drag:.2f}'

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
@@ -67,11 +68,13 @@ def drawn(around: Circumstances, count: int, *, in_leaf: bool) -> list[Circumsta
     """
     Draw wood, damping and drag of a number of true trees from their spreads, each in its own wind.
 
-    Each takes one value from every stratum of each spread.
+    Each takes one value from every stratum of each spread, from anywhere in it: the middles of few
+    strata are all within the band that they are to judge.
     """
     rng = np.random.default_rng(around.seed)
     spreads = np.array(uncertainty_of(in_leaf=in_leaf))
-    drawn_values = uncorrelated_draws(count, len(spreads), rng)
+    strata = uncorrelated_draws(count, len(spreads), rng).argsort(axis=1).argsort(axis=1)
+    drawn_values = ndtri((strata + rng.random(strata.shape)) / count)
     factors = np.exp(spreads[:, None] * drawn_values).T.tolist()
     return [
         replace(around, wood=wood, damping=damping, drag=drag, seed=around.seed + k)

@@ -32,12 +32,12 @@ class _Habit(NamedTuple):
     children
         How many branches each branch of an order bears, (least, most), one pair per order.
     length
-        Of a child over its parent's.
+        Length of a child over its parent's.
     slim
         Length of a child over its diameter, as scanned branches have it (24 to 45); it is never as
         thick as its parent.
     angle
-        Off the parent's direction in [deg].
+        Angle from the parent's direction in [deg].
     low
         Lowest place of a child along its parent, from 0 to 1.
     rise
@@ -80,12 +80,12 @@ def crooked_tree(seed: int) -> Tree:
     Parameters
     ----------
     seed
-        Of the random numbers; also chooses the habit.
+        Seed of the random numbers; also chooses the habit.
 
     Returns
     -------
     Tree
-        Of 40 to 120 branches, 4 to 9 m high, for wood of 8 GPa and 900 kg/m^3.
+        A tree of 40 to 120 branches, 4 to 9 m high, for wood of 8 GPa and 900 kg/m^3.
 
     """
     name = tuple(HABITS)[seed % len(HABITS)]

@@ -57,12 +57,12 @@ def write_validation(
     only
         Names of `SECTIONS`; all if there are none.
     is_full, data
-        As of `Effort`.
+        As in `Effort`.
 
     Returns
     -------
     list of str
-        What misses its limit in these sections.
+        Checks that miss their limit in these sections.
 
     Raises
     ------

@@ -6,12 +6,11 @@ How steeply the response spectrum of a grown tree falls above its first frequenc
 Measured as on real trees: the strain of the stem at its base along the wind and across it, in
 turbulence that lasts, and the power between 1.3 and 3.5 times the first frequency as a straight
 line in logarithms. The same line through one-hour records of the strain of 68 forest trees (data
-of Jackson et al. 2021, Biogeosciences 18, 4059-4072) has a power of -4.0 in the median of
-conifers,
--5.5 to -1.6 in nine tenths of them, and of -3.3, -5.3 to -0.5, in broadleaved trees; one
-oscillator alone falls with -6.4 to -7. The highest tip has another slope: of broadleaves up to 4
-steeper, as a mode of frequency f strains the stem by f^2 times the way of its top, of a pine
-flatter, as the limb that bears it swings too.
+of Jackson et al. 2021, Biogeosciences 18, 4059-4072) has a median slope of -4.0 for conifers (nine
+tenths of them between -5.5 and -1.6) and of -3.3 for broadleaved trees (-5.3 to -0.5); a single
+oscillator has -6.4 to -7. The highest tip has another slope. In broadleaves it is up to 4 steeper,
+as a mode of frequency f strains the stem by f^2 times the displacement of its top; in a pine it is
+flatter, as the limb that carries the tip swings too.
 
 """
 
@@ -34,7 +33,7 @@ SPECIES = (
 )  # fmt: skip
 HEIGHTS = {'conifer': 15.0, 'broadleaf': 12.0}
 BAND = (1.3, 3.5)
-"""Over the first frequency."""
+"""Band of the fit, over the first frequency."""
 
 _RATE = 20.0
 
@@ -46,9 +45,9 @@ class Slopes(NamedTuple):
     Parameters
     ----------
     strain
-        Of the stem at its base.
+        Slopes of the strain of the stem at its base.
     tip
-        Of the highest tip's displacement.
+        Slopes of the displacement of the highest tip.
     first
         First frequency in [Hz].
 
@@ -71,13 +70,13 @@ def response_slopes(
     species
         One of `SPECIES`.
     coherence
-        As of `Settings.crown_coherence`.
+        As in `Settings.crown_coherence`.
     in_leaf
         Whether it bears leaves.
     mean_speed, seconds
-        Of the wind in [m/s], and how long it lasts in [s].
+        Mean speed [m/s] and duration [s] of the wind.
     seed
-        Of the tree and of the wind.
+        Seed of the tree and the wind.
 
     """
     tree = grow(species, HEIGHTS[species_named(species).habit], rng=np.random.default_rng(seed))
@@ -99,6 +98,6 @@ def slope_above(signal: Floats, first: float, rate: float) -> float:
     """Slope in logarithms of the spectrum of a signal (n,) over `BAND` times a frequency [Hz]."""
     frequency, power = welch(signal, rate, nperseg=min(round(30.0 * rate / first), len(signal)))
     band = (frequency > BAND[0] * first) & (frequency < BAND[1] * first)
-    # Even in the logarithm of the frequency: the many lines at its end must not outweigh the rest.
+    # Weights that are even in the logarithm of the frequency, as most lines are at its upper end.
     weight = 1.0 / np.sqrt(frequency[band])
     return float(np.polyfit(np.log(frequency[band]), np.log(power[band]), 1, w=weight)[0])

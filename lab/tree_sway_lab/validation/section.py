@@ -46,11 +46,11 @@ class Check(NamedTuple):
     Parameters
     ----------
     what
-        What is measured.
+        Quantity that is measured.
     measured
         The figure.
     low, high
-        Between which it must be.
+        Limits of the figure.
 
     """
 
@@ -79,16 +79,16 @@ class Check(NamedTuple):
 
 class Section(NamedTuple):
     """
-    What came out.
+    Result of a section.
 
     Parameters
     ----------
     title
-        Of the section.
+        Title of the section.
     text
-        What was measured, on what and how.
+        Description of the measurement.
     checks
-        What must hold.
+        Checks that must hold.
     table
         Further figures, in Markdown.
 

@@ -36,7 +36,7 @@ from tree_sway_lab.validation.truth import (
 from tree_sway_lab.validation.winds import FRAME, STEP_FRAME, wind_called
 
 SECONDS = 6.0
-"""Of turbulence."""
+"""Duration of turbulence [s]."""
 
 MUJOCO = 'MuJoCo'
 """Name of the engine in place of a model: one joint a segment, one step a frame."""
@@ -49,7 +49,7 @@ class Trial(NamedTuple):
     Parameters
     ----------
     kind, wind, model
-        What was run.
+        Tree, wind and model of the run.
     error
         Distance of tips from the truth's over their motion from rest, root mean square, in [-].
     roughness
@@ -90,7 +90,7 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
     model
         A model, as of `simulator_called`, or `MUJOCO`.
     fineness
-        Of the truth.
+        Fineness of the truth.
 
     """
     tree, blowing = kind_called(kind), wind_called(wind, SECONDS)

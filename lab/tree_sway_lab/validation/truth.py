@@ -39,10 +39,10 @@ WOOD = Species(
     damping_bare=DAMPING_RATIO,
     shear_ratio=1.0 / 14.0,
 )
-"""Of all trees to judge by; joints twist as the wood does."""
+"""Wood of all trees of the truth; joints twist as the wood does."""
 
 SETTINGS = Settings(gravity=GRAVITY)
-"""Of the models that are judged."""
+"""Settings of the models that are judged."""
 
 
 class Fineness(NamedTuple):

@@ -63,7 +63,7 @@ def wind_called(name: str, seconds: float, seed: int = 1) -> Floats:
     seconds
         How long all but ``step`` are in [s].
     seed
-        Of the turbulence.
+        Seed of the turbulence.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The model `wind_basis`: a tree out of its table, against the same modes on all branches."""
+"""The default model: a tree on its table, against the same modes on all branches."""
 
 from __future__ import annotations
 

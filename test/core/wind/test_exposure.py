@@ -111,6 +111,16 @@ def test_the_exposure_of_a_tree_is_of_its_size_and_says_its_height():
     assert 'in a stand, trees 1.8 m apart' in str(exposure_of(tree, species_named('oak'), 'stand'))
 
 
+@pytest.mark.parametrize('height', [0.05, 0.5])
+def test_a_seedling_has_an_exposure(height):
+    tree = tree_from_segments([[0, 0, 0]], [[0, 0, height]], [0.002], parent=[-1], branch=[0])
+    for kind in EXPOSURES:
+        found = exposure_of(tree, species_named('oak'), kind)
+        assert np.isfinite(found.intensity)
+        assert 0.0 <= found.profile().over_anemometer(np.array(height)) < 2.0
+    assert exposure_of(tree, species_named('oak')).scaled(0.03).height == 0.03
+
+
 @pytest.mark.parametrize(
     'wrong', [{'kind': 'wood'}, {'spacing': 0.0}, {'height': -1.0}, {'crown_width': 0.0}]
 )

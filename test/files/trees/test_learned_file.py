@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from tree_sway.commands.cli import main
 from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.errors import FormatError
+from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_tree
 
@@ -95,3 +97,29 @@ def test_a_file_that_would_be_lost_is_refused(tmp_path: Path) -> None:
         LearnedFile(str(tmp_path / 'own.glb'), opened)
     with pytest.raises(FormatError, match='no such folder'):
         LearnedFile(str(tmp_path / 'none' / 'own.yaml'), opened)
+
+
+def test_what_another_program_learned_meanwhile_stays(tmp_path: Path) -> None:
+    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    ours, theirs = LearnedFile(str(path), opened), LearnedFile(str(path), opened)
+    theirs.write(replace(ONCE, hours=9.0))
+    kept = path.read_text(encoding='utf-8')
+    with pytest.raises(FormatError, match='was written by another program meanwhile'):
+        ours.write(ONCE)
+    assert path.read_text(encoding='utf-8') == kept
+    theirs.write(replace(ONCE, hours=10.0))
+    path.unlink()
+    ours.write(ONCE)
+    assert path.is_file()
+
+
+def test_what_was_learned_outlives_a_conversion(tmp_path: Path) -> None:
+    path, again = str(tmp_path / 'own.yaml'), str(tmp_path / 'again.yaml')
+    LearnedFile(path, open_tree('goldcrest')).write(ONCE)
+    assert main(['convert', path, '-o', again, '-q']) == 0
+    assert open_tree(again).learned == open_tree(path).learned
+    write_tree(again, open_tree(path))
+    assert open_tree(again).learned == open_tree(path).learned
+    # Of another wood nothing was learned.
+    assert main(['convert', path, '-o', again, '--force', '-q', '--modulus', '5e9']) == 0
+    assert open_tree(again).learned is None

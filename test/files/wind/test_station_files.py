@@ -22,6 +22,7 @@ from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.wind_file import read_wind
 
 N = 6
+HALF = timedelta(minutes=30)
 SPEEDS = 4.0 + 0.5 * np.arange(N)
 MILE, KNOT = 0.44704, 1852.0 / 3600.0
 BEGIN = datetime(2024, 3, 1, 22, 0)
@@ -47,6 +48,14 @@ def seconds(time: datetime) -> int:
 
 
 CSV = {
+    'FLUXNET, gap-filled': 'TIMESTAMP_START,TIMESTAMP_END,TA_F,WS_F,WS_F_QC,WD,USTAR\n'
+    + rows(lambda t, u: f'{t:%Y%m%d%H%M},{t + HALF:%Y%m%d%H%M},3.1,{u:.4f},0,270,0.3'),
+    'AmeriFlux and ICOS, by place': 'TIMESTAMP_START,TIMESTAMP_END,WS_1_1_1,WS_2_1_1,WD_1_1_1\n'
+    + rows(lambda t, u: f'{t:%Y%m%d%H%M},{t + HALF:%Y%m%d%H%M},{u:.4f},{u / 2:.4f},270'),
+    'Ecowitt in German': 'Zeit,Windgeschwindigkeit(km/h),Böe(km/h),Windrichtung(º)\n'
+    + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M},{3.6 * u:.4f},{7.2 * u:.4f},270'),
+    'a French station': 'Date;Vent moyen (km/h);Direction du vent;Rafale max (km/h)\n'
+    + rows(lambda t, u: f'{t:%d/%m/%Y %H:%M};{3.6 * u:.4f};270;{7.2 * u:.4f}'),
     'Davis, WeatherLink.com': '"Garden","Vantage Pro2"\n"Berlin"\n\n\n\n'
     '"Date & Time","Temp - °F","Avg Wind Speed - mph","Prevailing Wind Direction",'
     '"High Wind Speed - mph"\n'

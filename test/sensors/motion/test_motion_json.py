@@ -154,6 +154,15 @@ def test_messages_that_are_not_understood_are_told(sense: Any) -> None:
     assert '"ax": 0.1' in sensed.live.problem
 
 
+def test_axes_are_read_in_any_case() -> None:
+    force, rate = {'X': 0.1, 'Y': 0.2, 'Z': 9.8}, {'X': 0, 'Y': 0, 'Z': 1}
+    document = {'Accelerometer': force, 'Gyroscope': rate}
+    (reading,) = read_motion_json(Message(json.dumps(document).encode()))
+    assert isinstance(reading, MotionReading)
+    assert reading.acceleration == (0.1, 0.2, 9.8)
+    assert reading.rate == (0.0, 0.0, 1.0)
+
+
 def test_too_few_samples_are_told_with_the_cure() -> None:
     live = LiveMotion(open_motion('udp:5006'), print)
     for k in range(60):

@@ -39,14 +39,21 @@ Decimals of places along a segment; bases that are closer to each other, or to a
 _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
 _WEIGHTS = _ROOT_WEIGHTS / 2.0
-_OTHERS = [(node, np.delete(_POINTS, i)) for i, node in enumerate(_POINTS)]
-_LAGRANGE = [Polynomial.fromroots(rest) / np.prod(node - rest) for node, rest in _OTHERS]
-_PRIMITIVES = np.stack([basis.integ().coef for basis in _LAGRANGE])
 
 
-_INTEGRALS: Floats = np.vstack([
-    _POINTS[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T, _WEIGHTS
-])  # fmt: skip
+def _integrals() -> Floats:
+    """Integrate the Lagrange polynomials of the points from 0 to each point, and to 1."""
+    primitives = []
+    for i, node in enumerate(_POINTS):
+        others = np.delete(_POINTS, i)
+        polynomial = Polynomial.fromroots(others) / np.prod(node - others)
+        primitives.append(polynomial.integ().coef)
+    powers = _POINTS[:, None] ** np.arange(N_POINTS + 1)
+    to_points = powers @ np.stack(primitives).T
+    return np.vstack([to_points, _WEIGHTS])
+
+
+_INTEGRALS = _integrals()
 """Weights w of the integral of f from 0 to each point, and to 1, ``w . f(points)``."""
 
 
@@ -108,35 +115,44 @@ class BranchBeam(Batched):
         n_segments = step.shape[-2]
         # Panels, and the points on them, are at the same places along the segments of a batch.
         seats = np.round(children.segment + children.fraction, _DIGITS)
-        cuts = np.unique(np.concatenate([np.arange(n_segments + 1.0), seats]))
-        on = cuts[:-1].astype(np.int64)
+        cuts = np.union1d(np.arange(n_segments + 1.0), seats)
+        begin = cuts[:-1]
+        on = begin.astype(np.int64)
         share = np.diff(cuts)
-        along = (cuts[:-1] - on)[:, None] + share[:, None] * _POINTS
+        along = (begin - on)[:, None] + share[:, None] * _POINTS
         foot = np.searchsorted(cuts, seats)
         self._feet = foot.tolist()
-        self._first_panels = np.searchsorted(on, np.arange(n_segments)).tolist()
+        first_panels = np.searchsorted(on, np.arange(n_segments))
+        self._first_panels = first_panels.tolist()
 
         self.segment: Ints = np.broadcast_to(on, (*many, len(on)))
         """Segment of each panel, (p,)."""
         self.segment_length: Floats = np.linalg.norm(step, axis=-1)
         self.length = share * self.segment_length[..., on]
         """Length of each panel in [m], (p,)."""
-        self.tangent = (step / self.segment_length[..., None])[..., on, :]
+        direction = step / self.segment_length[..., None]
+        self.tangent = direction[..., on, :]
         self.node = np.zeros((*many, len(cuts)))
         np.cumsum(self.length, axis=-1, out=self.node[..., 1:])
-        self.place = self.node[..., :-1, None] + self.length[..., None] * _POINTS
-        self.weight = self.length[..., None] * _WEIGHTS
-        self.point = start[..., on, None, :] + step[..., on, None, :] * along[..., None]
+        panel_start = self.node[..., :-1, None]
+        panel_length = self.length[..., None]
+        self.place = panel_start + panel_length * _POINTS
+        self.weight = panel_length * _WEIGHTS
+        whole_step = step[..., on, None, :]
+        self.point = start[..., on, None, :] + whole_step * along[..., None]
 
         self.child_place = self.node[..., foot]
-        on_segment = step[..., children.segment, :] * children.fraction[:, None]
+        whole_step = step[..., children.segment, :]
+        on_segment = whole_step * children.fraction[:, None]
         self.child_point = start[..., children.segment, :] + on_segment
 
-        chord = end[..., -1, :] - start[..., 0, :]
+        first = start[..., 0, :]
+        chord = end[..., -1, :] - first
         self.chord_length = np.linalg.norm(chord, axis=-1)
         length = self.chord_length[..., None]
         has_chord = length > 1e-9
-        self.chord = np.where(has_chord, chord, self.tangent[..., 0, :])
+        first_tangent = self.tangent[..., 0, :]
+        self.chord = np.where(has_chord, chord, first_tangent)
         self.chord /= np.where(has_chord, length, 1.0)
 
         thinning = (tip_diameter - base_diameter)[..., on, None]
@@ -184,18 +200,24 @@ class BranchBeam(Batched):
         tail = values.shape[self.weight.ndim :]
         flat = values.reshape(*self.weight.shape, math.prod(tail))
         within = (_INTEGRALS @ flat) * self.length[..., None, None]
+        whole = within[..., N_POINTS, :]
         nodes = np.zeros((*self.node.shape, flat.shape[-1]))
-        np.cumsum(within[..., N_POINTS, :], axis=-2, out=nodes[..., 1:, :])
-        points = within[..., :N_POINTS, :] + nodes[..., :-1, None, :]
-        at_nodes = nodes.reshape(*self.node.shape, *tail)
-        feet = nodes[..., self._feet, :].reshape(*self.child_place.shape, *tail)
-        return points.reshape(values.shape), at_nodes, feet
+        np.cumsum(whole, axis=-2, out=nodes[..., 1:, :])
+        to_panel = nodes[..., :-1, None, :]
+        points = to_panel + within[..., :N_POINTS, :]
+        feet = nodes[..., self._feet, :]
+        return (
+            points.reshape(values.shape),
+            nodes.reshape(*self.node.shape, *tail),
+            feet.reshape(*self.child_place.shape, *tail),
+        )
 
     def over_segments(self, values: Floats) -> Floats:
         """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
         tail = values.shape[self.weight.ndim :]
         flat = values.reshape(*self.weight.shape, -1)
-        panels = (self.weight[..., None] * flat).sum(axis=-2)
+        weighted = self.weight[..., None] * flat
+        panels = weighted.sum(axis=-2)
         sums = np.add.reduceat(panels, self._first_panels, axis=-2)
         sums /= self.segment_length[..., None]
         return np.asarray(sums.reshape(*self.segment_length.shape, *tail))
@@ -249,14 +271,19 @@ class BranchBeam(Batched):
         points, nodes, _ = self.from_base(both)
         beyond = nodes[..., -1:, None, :, :] - points
         if len(force) > 0:
-            handed = np.concatenate([force, moment], axis=-1).reshape(len(force), -1)
-            beyond += (self.child_lever[1] @ handed).reshape(beyond.shape)
-        return np.asarray(beyond[..., 3:] - cross(point, beyond[..., :3]))
+            _, is_beyond = self.child_lever
+            handed = np.concatenate([force, moment], axis=-1)
+            carried = is_beyond @ handed.reshape(len(force), -1)
+            beyond += carried.reshape(beyond.shape)
+        force_beyond = beyond[..., :3]
+        moment_beyond = beyond[..., 3:]
+        return np.asarray(moment_beyond - cross(point, force_beyond))
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
         along = self.tangent[..., None, None, :]
-        twist = (moment * along).sum(axis=-1, keepdims=True) * along
+        about_tangent = (moment * along).sum(axis=-1, keepdims=True)
+        twist = about_tangent * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
         return np.asarray(bent / self.second_moment[..., None, None])
 
@@ -279,8 +306,9 @@ class BranchBeam(Batched):
         curvature = bending / self.second_moment
         slope, _, _ = self.from_base(curvature)
         along = (self.tangent @ self.chord[..., None])[..., 0]
-        turned = ((self.weight * slope).sum(axis=-1) * along).sum(axis=-1)
-        chord_rotation = turned / np.maximum(self.chord_length, 1e-9)
+        moved = (self.weight * slope).sum(axis=-1)
+        along_chord = (moved * along).sum(axis=-1)
+        chord_rotation = along_chord / np.maximum(self.chord_length, 1e-9)
         arc_rotation = self.integral(slope) / self.node[..., -1]
         is_chord = chord_rotation > 0.2 * np.abs(arc_rotation)
         scale = np.where(is_chord, chord_rotation, arc_rotation)
@@ -311,7 +339,8 @@ class SlopeShape(Batched):
     def stiffness(self, modulus: float) -> float:
         """Return twice the bending energy, the integral of E I kappa^2, in [N m/rad]."""
         rigidity = modulus * self.beam.second_moment
-        return float(self.beam.integral(rigidity * self.curvature * self.curvature))
+        energy = rigidity * self.curvature * self.curvature
+        return float(self.beam.integral(energy))
 
 
 class RotationField(Batched):
@@ -340,7 +369,8 @@ class RotationField(Batched):
     @classmethod
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:
         """Make the field of rotations about one axis, (3,), by the slope of a shape."""
-        return cls(shape.beam, shape.curvature[..., None] * axis[..., None, None, :])
+        amount = shape.curvature[..., None]
+        return cls(shape.beam, amount * axis[..., None, None, :])
 
 
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
@@ -351,8 +381,10 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
     """
     beam = fields[0].beam
     curvature = np.stack([one.curvature for one in fields], axis=-4)
-    twisting = (curvature * beam.tangent[..., None, :, None, :]).sum(axis=-1)
-    measure = (beam.weight * beam.second_moment)[..., None, :, :]
+    along = curvature * beam.tangent[..., None, :, None, :]
+    twisting = along.sum(axis=-1)
+    weight = beam.weight * beam.second_moment
+    measure = weight[..., None, :, :]
     whole = products(measure[..., None] * curvature, curvature, 3)
     twist = products(measure * twisting, twisting, 2)
     return np.asarray(modulus * (whole - twist) + 2.0 * shear_modulus * twist)
@@ -360,8 +392,15 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
 
 def products(a: Floats, b: Floats, n_axes: int) -> Floats:
     """Sum the products of each of some arrays and each of others, (..., k, last axes)."""
-    flat = [each.reshape(*each.shape[: each.ndim - n_axes], -1) for each in (a, b)]
-    return np.asarray(flat[0] @ flat[1].swapaxes(-1, -2))
+    flat_a = _flat(a, n_axes)
+    flat_b = _flat(b, n_axes)
+    return np.asarray(flat_a @ flat_b.swapaxes(-1, -2))
+
+
+def _flat(arrays: Floats, n_axes: int) -> Floats:
+    """Make the last axes of some arrays one."""
+    n_before = arrays.ndim - n_axes
+    return arrays.reshape(*arrays.shape[:n_before], -1)
 
 
 _Kind = TypeVar('_Kind', bound=Batched)
@@ -383,7 +422,8 @@ def stacked(ones: Sequence[Batched], name: str) -> Any:
     first = ones[0].origin
     if first is not None:
         batch = first[0]
-        numbers = [one.origin[1] for one in ones if one.origin and one.origin[0] is batch]
+        origins = [one.origin for one in ones if one.origin is not None]
+        numbers = [number for of_batch, number in origins if of_batch is batch]
         if len(numbers) == len(ones):
             return getattr(batch, name)[numbers]
     return np.array([getattr(one, name) for one in ones])

@@ -122,5 +122,6 @@ def _moment_of_weight(
         mass_moment += np.tensordot(beam.child_lever[1], sums, axes=1)
     moments = cross(mass_moment - mass_beyond[..., None, None] * places, _DOWN)
     # The last case is the branch at rest, whose moment turns with the section.
-    moved_moments, at_rest = moments[:, :, :-1], moments[:, :, -1:]
+    moved_moments = moments[:, :, :-1]
+    at_rest = moments[:, :, -1:]
     return np.asarray(moved_moments - cross(slope, at_rest))

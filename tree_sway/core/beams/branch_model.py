@@ -88,7 +88,8 @@ class BranchModel:
 
         Found by inverse iteration: each step bends the branch by its own inertia.
         """
-        beam, shape = self.beam, self.shape
+        beam = self.beam
+        shape = self.shape
         static = _square_frequency(beam, shape, self.mass)
         none = np.zeros(0)
         for _ in range(4):
@@ -268,7 +269,8 @@ class TreeBeams:
         return self._curvatures_by_wind[key]
 
     def _bent_by_wind(self, loaded: _LoadedBeam, children: Ints) -> Floats:
-        beam, subtrees = loaded.beam, self._sums.select(children)
+        beam = loaded.beam
+        subtrees = self._sums.select(children)
         moments = beam.moment_in_space(loaded.loads, subtrees.force, subtrees.moment)
         return beam.curvature_in_space(moments, self._shear_ratio)
 
@@ -303,7 +305,8 @@ class TreeBeams:
 
     def _model_twigs(self, twigs: _AlikeTwigs) -> None:
         """Model plain twigs that are alike in one batch."""
-        batch, none = twigs.batch, self._sums.select(_NONE)
+        batch = twigs.batch
+        none = self._sums.select(_NONE)
         bent = bent_by_weight(
             batch.beam, batch.mass, none, twigs.curvatures, self._shear_ratio, self._gravity
         )
@@ -366,7 +369,9 @@ class TreeBeams:
         key = branch, n_subtrees, n_pairs, n_turns
         if key not in self._models:
             loaded = self._loaded[branch]
-            beam, drag_area, mass = loaded.beam, loaded.drag_area, loaded.mass
+            beam = loaded.beam
+            drag_area = loaded.drag_area
+            mass = loaded.mass
             subtrees = self._sums.select(loaded.children[:n_subtrees])
             by_wind = self._curvatures(branch, n_subtrees)
             bent = bent_by_weight(beam, mass, subtrees, by_wind, self._shear_ratio, self._gravity)

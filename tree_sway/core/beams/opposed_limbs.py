@@ -40,7 +40,8 @@ def missed_curvatures(basis: EnergyBasis, subtrees: SubtreeSums, most: int) -> I
         Largest number of curvatures (p, 5, 3).
 
     """
-    beam, shear_ratio = basis.beam, basis.shear_ratio
+    beam = basis.beam
+    shear_ratio = basis.shear_ratio
     curvatures = beam.curvature_in_space(_opposed_moments(beam, subtrees), shear_ratio)
     vectors = energy_vector(beam, np.moveaxis(curvatures, 2, 0), shear_ratio)
     whole_energy = float(np.square(vectors).sum())

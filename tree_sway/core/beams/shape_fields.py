@@ -116,10 +116,12 @@ def inertial_moment(
     base = beam.child_point[: len(subtrees.area)]
     if field is None:
         load = np.zeros((*mass.shape, 3))
-        turn, moved = np.broadcast_to(beam.chord, base.shape), np.zeros(base.shape)
+        turn = np.broadcast_to(beam.chord, base.shape)
+        moved = np.zeros(base.shape)
     else:
         load = mass[..., None] * field.points
-        turn, moved = field.child_slope[: len(base)], field.children[: len(base)]
+        turn = field.child_slope[: len(base)]
+        moved = field.children[: len(base)]
     force, moment = subtrees.inertial_wrench(base, turn[:, None], moved[:, None])
     return beam.moment_in_space(load[:, :, None], force, moment)[:, :, 0]
 
@@ -149,15 +151,18 @@ def shaken_energies(
         the fields.
 
     """
-    force = subtrees.mass[:, None, None] * np.eye(3)
-    moment = cross(subtrees.mass_moment[:, None], np.eye(3))
-    moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
+    axes = np.eye(3)
+    load = mass[..., None, None] * axes
+    force = subtrees.mass[:, None, None] * axes
+    moment = cross(subtrees.mass_moment[:, None], axes)
+    moments = beam.moment_in_space(load, force, moment)
     by_shaking = np.moveaxis(beam.curvature_in_space(moments, shear_ratio), 2, 0)
     of_fields = [field.curvature for field in fields]
     vectors = np.array(
         [energy_vector(beam, each, shear_ratio) for each in (*by_shaking, *of_fields)]
     )
-    shaken, basis = vectors[:3], np.linalg.qr(vectors[3:].T)[0]
+    shaken = vectors[:3]
+    basis = np.linalg.qr(vectors[3:].T)[0]
     missed = shaken - shaken @ basis @ basis.T
     return float(np.square(shaken).sum()), float(np.square(missed).sum())
 

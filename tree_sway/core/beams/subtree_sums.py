@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the subtrees of a branch hand to it: drag, force of the wind and mass, and moments."""
+"""Sums over the subtrees that a branch carries: drag, force of the wind and mass, and moments."""
 
 from __future__ import annotations
 

@@ -25,6 +25,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 import math
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -108,7 +109,9 @@ class AdaptiveSimulator(SwaySimulator):
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
         )
         self._expected_wind = WindClimate.of_samples(breeze, 20.0)
-        self._shares, self._begun = np.zeros((2, self._bank.oscillators.shapes.shape[1]))
+        n_coordinates = self._bank.oscillators.shapes.shape[1]
+        self._shares = np.zeros(n_coordinates)
+        self._begun = np.zeros(n_coordinates)
         self._left = np.zeros(1)
         self._expect()
 
@@ -134,8 +137,9 @@ class AdaptiveSimulator(SwaySimulator):
         """Continue from a state and its shown shares; see `SwaySimulator.set_state`."""
         super().set_state(state)
         estimates = self.estimates(self._tracker.climate)
-        count = int((self._shares == 1.0).sum())
-        self.choice = next(e for e in estimates if e.n_coordinates >= count)
+        is_whole = self._shares == 1.0
+        count = int(is_whole.sum())
+        self.choice = next(each for each in estimates if each.n_coordinates >= count)
         self._show()
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -158,21 +162,24 @@ class AdaptiveSimulator(SwaySimulator):
     ) -> None:
         """Push as `SwaySimulator.push`, on most coordinates until the free swing is over."""
         super().push(segment, force, seconds, along=along)
-        was_free, self._touched_for = self._touched_for <= 0.0, seconds + SWINGS_ON
+        was_free = self._touched_for <= 0.0
+        self._touched_for = seconds + SWINGS_ON
         if was_free:
             self.review()
 
     def review(self, *, at_best: bool = False) -> Estimate:
         """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
-        self._since_review, self._judged = 0.0, self._gust
+        self._since_review = 0.0
+        self._judged = self._gust
         climate = self._tracker.climate
         # The wind to come has the last gust and the last minute's turbulence.
-        mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
+        speed = max(float(np.linalg.norm(self._bearing)), 1e-9)
+        mean = self._bearing * (self._gust / speed)
         gust = replace(climate, mean=mean, speed=math.sqrt(self._gust))
-        both = self.estimates(climate), self.estimates(gust)
-        estimates = [max(each, key=lambda e: e.error) for each in zip(*both, strict=True)]
+        in_both = zip(self.estimates(climate), self.estimates(gust), strict=True)
+        estimates = [max(pair, key=attrgetter('error')) for pair in in_both]
         if self._touched_for > 0.0:  # the effect of a push is not estimated
-            self.choice = max(self._affordable(estimates), key=lambda e: e.n_coordinates)
+            self.choice = max(self._affordable(estimates), key=attrgetter('n_coordinates'))
         else:
             self.choice = self._choose(estimates, self.choice, at_best=at_best)
         self._add()
@@ -188,13 +195,16 @@ class AdaptiveSimulator(SwaySimulator):
         """Choose among the numbers up to a count from now on, until `reset`."""
         dialled(self._bank).keep_only(count)
         self.review()
-        self._shares[count:], self._begun[:] = 0.0, 0.0
+        self._shares[count:] = 0.0
+        self._begun[:] = 0.0
         self._show()
 
     def _expect(self) -> None:
         """Choose for the expected wind."""
         self._tracker = ClimateTracker()
-        self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
+        self._gust = 0.0
+        self._bearing = np.array([1.0, 0.0, 0.0])
+        self._since_review = 0.0
         self._judged = float(np.linalg.norm(self._expected_wind.mean))
         self.choice = self._choose(self.estimates(self._expected_wind))
         self._add()
@@ -203,27 +213,36 @@ class AdaptiveSimulator(SwaySimulator):
     def _add(self) -> None:
         """Show in full what was not, from its present displacement on."""
         count = self.choice.n_coordinates
-        if self._shares[:count].min(initial=1.0) < 1.0:
-            self._begun[:count], self._shares[:count], self._left[:] = self._hidden[:count], 1, 1
+        shares = self._shares[:count]
+        if shares.min(initial=1.0) < 1.0:
+            self._begun[:count] = self._hidden[:count]
+            shares[:] = 1.0
+            self._left[:] = 1.0
             self._show()
 
     def _fade(self, dt: float) -> None:
         """Fade what is left out, and the displacement that added coordinates began with."""
-        left_out, before = self._shares[self.choice.n_coordinates :], _smooth(self._left)
+        left_out = self._shares[self.choice.n_coordinates :]
+        before = _smooth(self._left)
         if before > 0.0 or left_out.max(initial=0.0) > 0.0:
-            self._left[:] = np.maximum(self._left - dt / ADD_IN, 0.0)
-            self._begun *= _smooth(self._left) / np.maximum(before, 1e-300)
-            left_out[:] = np.maximum(left_out - dt / LEAVE_IN, 0.0)
+            self._left -= dt / ADD_IN
+            np.maximum(self._left, 0.0, out=self._left)
+            after = _smooth(self._left)
+            self._begun *= after / np.maximum(before, 1e-300)
+            left_out -= dt / LEAVE_IN
+            np.maximum(left_out, 0.0, out=left_out)
             self._show()
 
     @property
     def _hidden(self) -> Floats:
         """Return the part of each coordinate that is not shown, (m,)."""
         now = dialled(self._bank).swing[0]
-        return np.asarray(now - _smooth(self._shares) * (now - self._begun))
+        faded_in = _smooth(self._shares) * (now - self._begun)
+        return np.asarray(now - faded_in)
 
     def _show(self) -> None:
-        dialled(self._bank).show(self._hidden, int((self._shares > 0.0).sum()))
+        is_shown = self._shares > 0.0
+        dialled(self._bank).show(self._hidden, int(is_shown.sum()))
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Detect a load beyond that of the choice before its step."""
@@ -231,29 +250,38 @@ class AdaptiveSimulator(SwaySimulator):
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):
-            self._gust, self._bearing = load, np.array([x, y, z])
+            self._gust = load
+            self._bearing = np.array([x, y, z])
             if load > SURPRISE * self._judged:
-                self.review(at_best=load > LOAD_JUMP * self._tracker.largest_load)
+                usual = self._tracker.largest_load
+                self.review(at_best=load > LOAD_JUMP * usual)
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""
-        solved = [e for e in estimates if e.n_coordinates <= dialled(self._bank).n_solved]
-        within = [e for e in solved if self.cost_scale * e.cost <= self.budget]
-        return (within or solved[:1]) if self.budget > 0.0 else solved
+        most = dialled(self._bank).n_solved
+        solved = [each for each in estimates if each.n_coordinates <= most]
+        if self.budget <= 0.0:
+            return solved
+        affordable = [each for each in solved if self.cost_scale * each.cost <= self.budget]
+        return affordable or solved[:1]
 
     def _choose(
         self, estimates: list[Estimate], current: Estimate | None = None, *, at_best: bool = False
     ) -> Estimate:
         affordable = self._affordable(estimates)
-        same = next((e for e in affordable if current and e.name == current.name), None)
+        same = None if current is None else _named(affordable, current.name)
         wanted = None if at_best else _least(affordable, self.tolerance)
         if wanted is None:
-            wanted = min(affordable, key=lambda e: (e.error, e.cost))
-            return same if same is not None and _SPARE * same.error < wanted.error else wanted
-        if same is not None and wanted.cost < same.cost:
-            careful = _least(affordable, _SPARE * self.tolerance)
-            return careful if careful is not None and careful.cost < same.cost else same
-        return wanted
+            best = min(affordable, key=attrgetter('error', 'cost'))
+            if same is not None and _SPARE * same.error < best.error:
+                return same
+            return best
+        if same is None or wanted.cost >= same.cost:
+            return wanted
+        careful = _least(affordable, _SPARE * self.tolerance)
+        if careful is None or careful.cost >= same.cost:
+            return same
+        return careful
 
 
 def _smooth(shares: Floats) -> Floats:
@@ -263,4 +291,11 @@ def _smooth(shares: Floats) -> Floats:
 
 def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
     """Find the cheapest number within a tolerance, if there is one."""
-    return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)
+    within = [each for each in estimates if each.error <= tolerance]
+    return min(within, key=attrgetter('cost'), default=None)
+
+
+def _named(estimates: Sequence[Estimate], name: str) -> Estimate | None:
+    """Find the number of a name, if it is among some."""
+    found = [each for each in estimates if each.name == name]
+    return found[0] if found else None

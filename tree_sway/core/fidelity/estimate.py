@@ -65,10 +65,20 @@ _FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 80)])
 """Frequencies in [Hz], beside those near the coordinates."""
 
 _APART = np.pi / 8.0
-_AXES = [
-    np.array([[np.cos(b), np.sin(b), 0.0], [-np.sin(b), np.cos(b), 0.0], [0.0, 0.0, 1.0]])
-    for b in _APART * np.arange(4)
-]
+_N_BEARINGS = 4
+
+
+def _axes_at(bearing: float) -> Floats:
+    """Return axes along a bearing [rad], across it and up, as rows."""
+    cosine = np.cos(bearing)
+    sine = np.sin(bearing)
+    along = [cosine, sine, 0.0]
+    across = [-sine, cosine, 0.0]
+    up = [0.0, 0.0, 1.0]
+    return np.array([along, across, up])
+
+
+_AXES = [_axes_at(bearing) for bearing in _APART * np.arange(_N_BEARINGS)]
 """
 Directions of winds: the load of an oblique wind is not the sum of loads along and across a branch,
 so it is linearised about the nearest of these directions.
@@ -136,18 +146,23 @@ class ErrorEstimator:
 
     def __init__(self, tree: Tree, bank: Bank, drag_law: DragLaw) -> None:
         """Find the motion of the tips by each coordinate."""
-        self._bank, self._law = bank, drag_law
-        branches, shapes = bank.branches, bank.oscillators.shapes
+        self._bank = bank
+        self._law = drag_law
+        branches = bank.branches
+        shapes = bank.oscillators.shapes
         m = shapes.shape[1]
-        self.dial = tuple(sorted({k for k in DIAL if k < m} | {m}))
+        fewer = [count for count in DIAL if count < m]
+        self.dial = (*fewer, m)
         """Numbers of coordinates that are estimated."""
         # A branch may be cut: its tip is that of its last piece.
-        ends = np.isin(branches['end'], tree.branch_first[1:])
-        tips = tip_motion(branches, shapes)[ends].reshape(-1, m)
-        self._inner = tips.T @ tips / ends.sum()
+        is_last = np.isin(branches['end'], tree.branch_first[1:])
+        moved = tip_motion(branches, shapes)
+        tips = moved[is_last].reshape(-1, m)
+        self._inner = tips.T @ tips / is_last.sum()
         self._turns = branch_rotations(branches, shapes)
-        loads = WindMoments(branches).at_rest(np.concatenate(_AXES), shapes)
-        self._loads = np.hsplit(loads.T, len(_AXES))
+        winds = np.concatenate(_AXES)
+        loads = WindMoments(branches).at_rest(winds, shapes)
+        self._loads = np.hsplit(loads.T, _N_BEARINGS)
         self._air_damping = dialled(bank).air_damping
         self._costs = [frame_cost(bank, k) for k in self.dial]
         self.refresh()
@@ -155,33 +170,38 @@ class ErrorEstimator:
     def refresh(self) -> None:
         """Take over the present tuning of the tree."""
         tunable = self._bank.oscillators.tunable
-        self._stiffness, self._own_damping = tunable.stiffness.copy(), tunable.damping.copy()
+        self._stiffness = tunable.stiffness.copy()
+        self._own_damping = tunable.damping.copy()
         natural = np.sqrt(self._stiffness) / (2.0 * np.pi)
-        self._frequencies = np.union1d(_FREQUENCIES, np.outer(natural, _BESIDE))
+        near_natural = np.outer(natural, _BESIDE)
+        self._frequencies = np.union1d(_FREQUENCIES, near_natural)
         self._grams = lru_cache(maxsize=8)(self._find_grams)
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """Estimate every number of coordinates in a wind, the fewest first."""
         per_square = drag_density(climate.speed, *self._law)
         steady, upward = _steady_wind(climate)
-        bearing = int(np.rint(np.arctan2(steady[1], steady[0]) / _APART)) % len(_AXES)
+        azimuth = np.arctan2(steady[1], steady[0])
+        bearing = int(np.rint(azimuth / _APART)) % _N_BEARINGS
         swings, squares = self._tip_squares(climate, bearing)
-        swing, offset = per_square * np.sqrt([swings[0], squares[0]])
+        root_mean_squares = np.sqrt([swings[0], squares[0]])
+        swing, offset = per_square * root_mean_squares
         load = self._loads[bearing] @ _AXES[bearing] @ (per_square * steady)
         turn, soft = self._largest_turns(load)
         gusts = 1.0 + 2.0 * swing / max(offset, 1e-12)
-        turn, soft = gusts * turn, gusts * soft
-        nonlinear = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
-        nonlinear += (LIFT_FLOOR + LIFT * turn) * upward
+        turn = float(gusts * turn)
+        soft = float(gusts * soft)
         # A branch that rotates far yields to the wind, and moves no farther than its length.
         per_square /= math.sqrt(1.0 + turn**2 / 9.0)
-        swing, offset = per_square * np.sqrt([swings[0], squares[0]])
-        beyond = min(nonlinear, _MOST) * offset
+        swing, offset = per_square * root_mean_squares
+        beyond = _nonlinear_share(turn, soft, upward) * offset
         found = []
-        for k, square, cost in zip(self.dial, squares, self._costs, strict=True):
-            missed = MARGIN * per_square * math.sqrt(square) if k < self.dial[-1] else 0.0
+        for count, square, cost in zip(self.dial, squares, self._costs, strict=True):
+            missed = 0.0
+            if count < self.dial[-1]:
+                missed = MARGIN * per_square * math.sqrt(square)
             error = math.hypot(missed, beyond)
-            found.append(Estimate(k, error, float(swing), cost, float(turn)))
+            found.append(Estimate(count, error, float(swing), cost, turn))
         return found
 
     def _tip_squares(self, climate: WindClimate, bearing: int) -> tuple[Floats, Floats]:
@@ -192,34 +212,55 @@ class ErrorEstimator:
         """
         axes = _AXES[bearing]
         # Damped by the air at least as in a wind of the next lower of a few speeds.
-        slow = 2.0 ** math.floor(math.log2(climate.speed)) if climate.speed >= 1.0 else 0.0
+        slow = 0.0
+        if climate.speed >= 1.0:
+            slow = 2.0 ** math.floor(math.log2(climate.speed))
         grams = self._grams(slow, bearing)
         power = axes @ climate.power(self._frequencies) @ axes.T
-        about_mean = np.maximum(grams @ power.ravel(), 0.0)
-        power[0] += np.outer(axes @ climate.mean, axes @ climate.mean)
-        from_rest = np.maximum(grams @ power.ravel(), 0.0)
-        return about_mean, from_rest
+        about_mean = grams @ power.ravel()
+        mean = axes @ climate.mean
+        power[0] += np.outer(mean, mean)
+        from_rest = grams @ power.ravel()
+        return np.maximum(about_mean, 0.0), np.maximum(from_rest, 0.0)
 
     def _largest_turns(self, load: Floats) -> tuple[float, float]:
         """Find the largest turn from rest [rad] under steady modal loads, and that by weight."""
         amounts = load / self._stiffness
-        by_weight = np.maximum(-self._bank.oscillators.tunable.weight / self._stiffness, 0.0)
-        turns = self._turns @ np.stack([amounts, by_weight * amounts], axis=1)
-        turn, soft = np.sqrt(np.square(turns).sum(axis=1).max(axis=0)).tolist()
+        softening = -self._bank.oscillators.tunable.weight
+        by_weight = np.maximum(softening / self._stiffness, 0.0)
+        both = np.stack([amounts, by_weight * amounts], axis=1)
+        turns = self._turns @ both
+        squares = np.square(turns).sum(axis=1)
+        turn, soft = np.sqrt(squares.max(axis=0)).tolist()
         return turn, soft
 
     def _find_grams(self, speed: float, bearing: int) -> Floats:
         """Return inner products of tip motions of the last coordinates, by number, (k, 9 f)."""
-        damping = self._own_damping + drag_density(speed, *self._law) * speed * self._air_damping
+        drag = drag_density(speed, *self._law)
+        damping = self._own_damping + drag * speed * self._air_damping
         circular = 2.0 * np.pi * self._frequencies[:, None]
         impedance = self._stiffness - circular**2 + 1j * damping * circular
         responses = self._loads[bearing] / impedance[:, :, None]
         found = []
-        for k in self.dial:
-            left = responses[:, k:] if k < self.dial[-1] else responses[:, :0]
-            moved = self._inner[k:, k:] @ left if left.size else left
-            found.append(np.einsum('fmi,fmj->fij', left.conj(), moved).real.ravel())
+        for count in self.dial[:-1]:
+            left_out = responses[:, count:]
+            moved = self._inner[count:, count:] @ left_out
+            products = np.einsum('fmi,fmj->fij', left_out.conj(), moved)
+            found.append(products.real.ravel())
+        found.append(np.zeros(len(circular) * 9))  # of all coordinates none is left out
         return np.stack(found)
+
+
+def _nonlinear_share(turn: float, soft: float, upward: float) -> float:
+    """
+    Return the error of all coordinates as a share of the motion.
+
+    The largest turns of a chain, in all and by weight, are in [rad]; ``upward`` is how far the
+    wind is vertical.
+    """
+    by_turn = TURN * turn**2 / (1.0 + MOST_TURN * turn**2)
+    by_lift = (LIFT_FLOOR + LIFT * turn) * upward
+    return min(FLOOR + by_turn + SOFT * soft + by_lift, _MOST)
 
 
 def _steady_wind(climate: WindClimate) -> tuple[Floats, float]:
@@ -231,7 +272,9 @@ def _steady_wind(climate: WindClimate) -> tuple[Floats, float]:
     """
     second_moments = np.outer(climate.mean, climate.mean) + climate.covariance
     squares, axes = np.linalg.eigh(second_moments)
-    return math.sqrt(max(squares[-1], 0.0)) * axes[:, -1], abs(float(axes[2, -1]))
+    strength = math.sqrt(max(squares[-1], 0.0))
+    axis = axes[:, -1]
+    return strength * axis, abs(float(axis[2]))
 
 
 def dialled(bank: Bank) -> Dialled:
@@ -258,13 +301,18 @@ def frame_cost(bank: Bank, n_coordinates: int | None = None) -> float:
 
     Prices are fits to trees of 31 to 1,001 branches, timed on one core of a server of 2020.
     """
-    branches, oscillators = bank.branches, bank.oscillators
+    branches = bank.branches
+    oscillators = bank.oscillators
     n = len(branches)
-    enriched = int((branches['n_coordinates'] > 2).sum())
-    segments = int((branches['end'] - branches['first']).sum())
-    place = _CALL + _PLACE_BRANCH * n + _PLACE_ENRICHED * enriched + _PLACE_SEGMENT * segments
+    n_keys = branches['n_coordinates']
+    n_segments = branches['end'] - branches['first']
+    place = _CALL + _PLACE_BRANCH * n
+    place += _PLACE_ENRICHED * int((n_keys > 2).sum())
+    place += _PLACE_SEGMENT * int(n_segments.sum())
     if oscillators.loads is not None:
         return place + _CALL + _STEP_BRANCH * n
-    m = oscillators.shapes.shape[1] if n_coordinates is None else n_coordinates
+    m = n_coordinates
+    if m is None:
+        m = oscillators.shapes.shape[1]
     step = _CALL + _STEP_SQUARE * m * m
-    return place + step + _PLACE_SHAPE * m * int(branches['n_coordinates'].sum())
+    return place + step + _PLACE_SHAPE * m * int(n_keys.sum())

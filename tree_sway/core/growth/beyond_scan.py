@@ -45,10 +45,12 @@ differ by 0.3 in the wood of their branches (Demol et al. 2022, Methods in Ecolo
 13); the second is an estimate.
 """
 
-_LENGTH, _POWER = 21.0, 0.92
+_LENGTH = 21.0
+_POWER = 0.92
 _CLIPPED = 0.3
 """Share of the ends of one thickness from which a fit has a lower bound [-]."""
-_MOST_TWIGS, _MOST_AT_AN_END = 3000, 40
+_MOST_TWIGS = 3000
+_MOST_AT_AN_END = 40
 _MOST_GROWN = 4.0
 """Largest number of times that the prior multiplies what is grown [-]."""
 _THINNEST = 0.3
@@ -129,7 +131,8 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
     open_ends = np.flatnonzero(diameter > 2.0 * twig)
     if len(open_ends) == 0 or twig <= 0.0:
         return tree, None
-    cut, ends = is_cut(tree), last[open_ends]
+    cut = is_cut(tree)
+    ends = last[open_ends]
     d = diameter[open_ends]
     pipe = np.minimum(d, float(np.percentile(d, 25.0))) if cut else d
     length, volume, area = _beyond(d, pipe, twig)
@@ -169,7 +172,8 @@ def _beyond(d: Floats, pipe: Floats, twig: float) -> tuple[Floats, Floats, Float
 
 def _prior(tree: Tree, seen: float, beyond: float, trusted: float) -> tuple[float, Tree]:
     """Find the factor of what is grown, and the tree, its thin wood thinned if it has too much."""
-    diameter, height = breast_height_diameter(tree), tree.height
+    diameter = breast_height_diameter(tree)
+    height = tree.height
     crown = None if diameter is None else crown_size(tree.species, diameter, height)
     is_broadleaf = species_named(tree.species).habit == 'broadleaf'
     if crown is None or diameter is None or not is_broadleaf:
@@ -182,7 +186,8 @@ def _prior(tree: Tree, seen: float, beyond: float, trusted: float) -> tuple[floa
     wanted = total ** (1.0 - weight) * crown.wood_area**weight
     if wanted >= seen:
         return min((wanted - seen) / beyond, _MOST_GROWN), tree
-    low, high = _THINNEST, 1.0
+    low = _THINNEST
+    high = 1.0
     for _ in range(40):
         middle = 0.5 * (low + high)
         is_less = _crown_area(_thinned(tree, middle, trusted)) < wanted
@@ -210,7 +215,10 @@ def _with_twigs(
 ) -> Tree:
     """Return the tree with equal twigs of a volume and an area at the end of some segments."""
     has = area > 1e-9
-    ends, length, volume, area = ends[has], length[has], volume[has], area[has]
+    ends = ends[has]
+    length = length[has]
+    volume = volume[has]
+    area = area[has]
     if len(ends) == 0:
         return tree
     thick = 4.0 / math.pi * volume / area

@@ -61,7 +61,8 @@ class _Growth:
 
     def add_trunk_and_limbs(self) -> None:
         """Add the trunk and its limbs, from the lowest to the top."""
-        form, rng = self.form, self.rng
+        form = self.form
+        rng = self.rng
         facing = rng.uniform(0.0, 2.0 * np.pi)
         axis = grow_axis(
             np.zeros(3), facing, _STEEP, form.trunk, _N_NODES, rng, wander=0.6 * form.wander
@@ -78,7 +79,8 @@ class _Growth:
 
     def _add_limb(self, trunk: int, at: int, azimuth: float, height: float) -> None:
         """Add a limb at a height of the trunk, from 0 at the lowest limb to 1, with branches."""
-        form, rng = self.form, self.rng
+        form = self.form
+        rng = self.rng
         origin = self.skeleton.shoots[trunk].nodes[at]
         (low, high), (bent_low, bent_high) = form.rise, form.turn
         rise = low + (high - low) * height + rng.uniform(-0.1, 0.1)
@@ -97,7 +99,8 @@ class _Growth:
 
     def _add_branch(self, limb: int, at: int, heading: Floats) -> None:
         """Add a branch of a limb with its twigs in a flat spray."""
-        form, rng = self.form, self.rng
+        form = self.form
+        rng = self.rng
         origin = self.skeleton.shoots[limb].nodes[at]
         azimuth, rise = heading_of(heading)
         longest = 0.55 * form.outline.half_width

@@ -33,7 +33,8 @@ def grow_conifer(
     form: ConiferForm | None = None,
 ) -> Tree:
     """Grow whorls on a straight stem; arguments are those of `grow_broadleaf`."""
-    form, skeleton = form or conifer_form(species), Skeleton()
+    form = form or conifer_form(species)
+    skeleton = Skeleton()
 
     def add_branch(at: int, azimuth: float, here: float) -> None:
         """Add a branch at a height of the crown from 0 to 1, as long as the crown is wide."""
@@ -42,10 +43,12 @@ def grow_conifer(
         first = low + (high - low) * here + rng.uniform(-0.08, 0.08)
         heading = direction_of(azimuth, first + 0.5 * form.turn)
         length = max(form.outline.room(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
-        segments, ends = 6 if here < 0.7 else 4 if here < 0.9 else 2, (first, first + form.turn)
+        segments = 6 if here < 0.7 else 4 if here < 0.9 else 2
+        ends = (first, first + form.turn)
         wander = form.wander
         axis = grow_axis(origin, azimuth, ends, length, segments, rng, wander=wander, floor=0.01)
-        branch, twig = skeleton.add(axis, stem, at), 0.01 + form.twig * length
+        branch = skeleton.add(axis, stem, at)
+        twig = 0.01 + form.twig * length
         if segments > 2:
             more = {'lift': form.lift, 'outer_ratio': 0.65}
             add_twigs(skeleton, branch, twig, 0.85, (0.0, np.pi), first_node=2, **more)
@@ -53,7 +56,8 @@ def grow_conifer(
     bole = form.outline.base
     # Segments below the crown are as long as those of the whorls above it.
     below = max(1, round(form.n_whorls * bole / (1.0 - bole)))
-    n_nodes, straight = below + form.n_whorls, {'wander': 0.006, 'unevenness': 0.1}
+    n_nodes = below + form.n_whorls
+    straight = {'wander': 0.006, 'unevenness': 0.1}
     stem = skeleton.add(grow_axis(np.zeros(3), 0.0, _UPRIGHT, 1.0, n_nodes, rng, **straight))
     for node in range(below, n_nodes):
         here = (node - below) / form.n_whorls

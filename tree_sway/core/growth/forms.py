@@ -51,7 +51,8 @@ class Outline:
     def radius(self, height: Floats) -> Floats:
         """Radius at heights, 0 outside."""
         u = (height - self.base) / (1.0 - self.base)
-        low, high = (self.widest - u) / self.widest, (u - self.widest) / (1.0 - self.widest)
+        low = (self.widest - u) / self.widest
+        high = (u - self.widest) / (1.0 - self.widest)
         away = np.clip(np.maximum(low, high), 0.0, 1.0)
         power = np.where(u < self.widest, self.below, self.above)
         return np.asarray(self.half_width * (1.0 - away**power) ** (1.0 / power))
@@ -175,7 +176,8 @@ _Form = TypeVar('_Form', BroadleafForm, ConiferForm)
 
 
 def _forms(name: str, form: type[_Form]) -> dict[str, _Form]:
-    rows, found = table_beside(__file__, name), {}
+    rows = table_beside(__file__, name)
+    found = {}
     for row in rows:
         outline = Outline(**{each.name: row[each.name] for each in fields(Outline)})
         own = {each.name: row[each.name] for each in fields(form) if each.name in row}

@@ -114,7 +114,8 @@ def calibrate(
     model = _ScaledTree(tree, species, settings, branch)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
     if found is None:
-        weakest, limit = model.weakest, model.sway(model.least)
+        weakest = model.weakest
+        limit = model.sway(model.least)
         raise TreeError(
             f'{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz '
             f'when branch '
@@ -127,13 +128,15 @@ def calibrate(
     def stiffened(scale: float) -> Species:
         return replace(species, modulus=scale * species.modulus, root_stiffness=scale * roots)
 
-    scale, fitted = found.scale, found
+    scale = found.scale
+    fitted = found
     for _ in range(_MODELLINGS):  # a stiffer branch rotates less and may need fewer pieces
         again = _ScaledTree(tree, stiffened(scale), settings, branch)
         step = again.swaying_at((2.0 * math.pi * frequency) ** 2)
         if step is None:
             break
-        fitted, scale = step, scale * step.scale
+        fitted = step
+        scale = scale * step.scale
         if abs(step.scale - 1.0) <= _TOLERANCE:
             break
     changes: dict[str, float] = {}
@@ -170,7 +173,8 @@ class _ScaledTree:
     def __init__(
         self, tree: Tree, species: Species, settings: Settings, branch: str | None
     ) -> None:
-        self.tree, self._branch = tree, branch
+        self.tree = tree
+        self._branch = branch
         self.reduction = TreeReductions(tree, species, settings).with_subtrees.reduction
         factor, coordinate = buckling_factor(self.reduction)
         #: Scale at which the tree just carries its weight, and the branch that buckles first.
@@ -195,7 +199,8 @@ class _ScaledTree:
 
     def swaying_at(self, square: float) -> _Sway | None:
         """Find the scale for a square circular frequency [1/s^2]; None if the tree buckles."""
-        low, high = self.least, math.inf
+        low = self.least
+        high = math.inf
         sway = self.sway(max(1.0, 2.0 * low))
         while abs(sway.square / square - 1.0) > _TOLERANCE:
             low, high = (sway.scale, high) if sway.square < square else (low, sway.scale)

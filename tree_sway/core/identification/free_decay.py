@@ -24,6 +24,8 @@ from scipy import fft, linalg, signal
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 
+Complex = NDArray[np.complex128]
+
 _SAMPLES_PER_CYCLE = 16
 _MAX_CYCLES = 30.0
 _MAX_ORDER = 12
@@ -94,27 +96,39 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     # A window that ends where 5 % are left; its length follows from a first fit.
     cycles = min(8.0, available)
     for _ in range(3):
-        fit = _pencil(slow[first : first + round(cycles * cycle) : stride], stride * dt, rough)
-        left = 3.0 * abs(fit.pole) / (2.0 * np.pi * max(-fit.pole.real, 1e-9))
+        end = first + round(cycles * cycle)
+        fit = _pencil(slow[first:end:stride], stride * dt, rough)
+        decay_rate = max(-fit.pole.real, 1e-9)
+        left = 3.0 * abs(fit.pole) / (2.0 * np.pi * decay_rate)
         cycles = float(np.clip(left, _MIN_CYCLES, min(available, _MAX_CYCLES)))
     last = first + round(cycles * cycle)
     poles = [fit.pole]
     for later in _LATER_STARTS:
         begin = first + round(later * cycle)
         if last - begin >= _MIN_CYCLES * cycle:
-            poles.append(_pencil(slow[begin:last:stride], stride * dt, rough).pole)
-    spread = np.array([[abs(pole), -pole.real / abs(pole)] for pole in poles]).std(axis=0)
+            later_fit = _pencil(slow[begin:last:stride], stride * dt, rough)
+            poles.append(later_fit.pole)
     circular = abs(fit.pole)
+    frequency_spread = np.std([abs(pole) for pole in poles])
+    damping_spread = np.std([-pole.real / abs(pole) for pole in poles])
+    frequency_error = np.hypot(fit.error, frequency_spread) / (2.0 * np.pi)
+    damping_error = np.hypot(fit.error / circular, damping_spread)
     margin = round(2.5 * cycle)
-    outside = np.concatenate([envelope[: max(peak - margin, 0)], envelope[last + margin :]])
-    quiet = float(outside.max(initial=0.0) / envelope[peak])
-    share = slow[first:last].var(axis=0).sum() / motion[first:last].var(axis=0).sum()
+    before = envelope[: max(peak - margin, 0)]
+    after = envelope[last + margin :]
+    loudest = max(before.max(initial=0.0), after.max(initial=0.0))
+    variance = slow[first:last].var(axis=0).sum()
+    share = float(variance / motion[first:last].var(axis=0).sum())
     return FreeDecay(
-        circular / (2.0 * np.pi), -fit.pole.real / circular,
-        float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
-        float(np.hypot(fit.error / circular, spread[1])), cycles,
-        fit.explained * min(float(share), 1.0), quiet, float(envelope[peak]) * rough,
-    )  # fmt: skip
+        frequency=circular / (2.0 * np.pi),
+        damping_ratio=-fit.pole.real / circular,
+        frequency_error=float(frequency_error),
+        damping_error=float(damping_error),
+        cycles=cycles,
+        explained=fit.explained * min(share, 1.0),
+        quiet=float(loudest / envelope[peak]),
+        speed=float(envelope[peak]) * rough,
+    )
 
 
 def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
@@ -124,50 +138,73 @@ def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
     if 3.0 * rough < 0.8 * nyquist:
         low = signal.butter(4, 3.0 * rough / nyquist, output='sos')
         slow = signal.sosfiltfilt(low, motion, axis=0)
-    edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
-    band = signal.sosfiltfilt(signal.butter(2, edges, 'bandpass', output='sos'), motion, axis=0)
+    highest = min(1.7, 0.9 * nyquist / rough)
+    edges = np.array([0.5, highest]) * rough / nyquist
+    around = signal.butter(2, edges, 'bandpass', output='sos')
+    band = signal.sosfiltfilt(around, motion, axis=0)
     # The transform is periodic: zeros after the end separate it from a large start.
-    padded = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
+    n_zeros = round(10.0 / (rough * dt))
+    padded = fft.next_fast_len(len(motion) + n_zeros)
     analytic = signal.hilbert(band, padded, axis=0)[: len(motion)]
-    envelope: Floats = np.sqrt((np.abs(analytic) ** 2).sum(axis=1))
+    squares = np.abs(analytic) ** 2
+    envelope: Floats = np.sqrt(squares.sum(axis=1))
     return slow, envelope
 
 
 def _pencil(motion: Floats, dt: float, rough: float) -> _Fit:
     """Matrix pencil of all channels at once; the pole with the most energy near a frequency."""
-    n = len(motion)
-    span = n // 3
     centred = motion - motion.mean(axis=0)
-    rows = np.vstack([linalg.hankel(x[: n - span], x[n - span - 1 :]) for x in centred.T])
-    _, weights, right = linalg.svd(rows, full_matrices=False)
-    # Singular values of noise lie around their median (Gavish & Donoho, 2014).
-    floor = max(2.858 * float(np.median(weights)), 1e-7 * float(weights[0]))
-    order = int(np.clip((weights > floor).sum(), 3, min(_MAX_ORDER, span - 1)))
-    basis = right[:order].T
-    z = linalg.eigvals(linalg.lstsq(basis[:-1], basis[1:])[0])
-    z = z[(np.abs(z) > 1e-3) & (np.abs(z) < 1.05)]
-    powers: NDArray[np.complex128] = z[None, :] ** np.arange(n)[:, None]
+    factors = _factors_per_step(centred)
+    exponents = np.arange(len(motion))[:, None]
+    powers: Complex = factors[None, :] ** exponents
     amplitudes = linalg.lstsq(powers, centred.astype(np.complex128))[0]
     rest = centred - (powers @ amplitudes).real
-    poles = np.log(z.astype(np.complex128)) / dt
-    energy = (np.abs(powers) ** 2).sum(axis=0) * (np.abs(amplitudes) ** 2).sum(axis=1)
-    near = (poles.imag > 0.0) & (poles.real < 0.0)
-    near &= np.abs(np.log(np.abs(poles) / (2.0 * np.pi * rough) + 1e-300)) < 0.35
-    # Relative to the sway, not to a drift of the rest position, which slow poles fit.
-    swings = poles.imag > np.pi * rough
-    near &= energy > _FAINT * energy[swings].max(initial=0.0)
-    if not near.any():
+    poles = np.asarray(np.log(factors) / dt, dtype=np.complex128)
+    energy = _energy(powers, 0) * _energy(amplitudes, 1)
+    is_near = _are_near(poles, rough, energy)
+    if not is_near.any():
         cure = 'check that it is a pull-and-release record, or name the band the sway is in'
         raise FormatError(f'no motion that decays near {rough:.3g} Hz', cure=cure)
-    best = int(np.argmax(np.where(near, energy, -1.0)))
-    explained = 1.0 - float((rest**2).sum() / (centred**2).sum())
+    best = int(np.argmax(np.where(is_near, energy, -1.0)))
+    left_out = float((rest**2).sum() / (centred**2).sum())
     error = _standard_error(powers[:, best], amplitudes[best], dt, rest)
-    return _Fit(complex(poles[best]), error, explained)
+    return _Fit(complex(poles[best]), error, 1.0 - left_out)
 
 
-def _standard_error(
-    decay: NDArray[np.complex128], amplitude: NDArray[np.complex128], dt: float, rest: Floats
-) -> float:
+def _factors_per_step(motion: Floats) -> Complex:
+    """Factors (k,) by which the exponentials of all channels (n, c) change in a step."""
+    n = len(motion)
+    span = n // 3
+    blocks = [linalg.hankel(x[: n - span], x[n - span - 1 :]) for x in motion.T]
+    _, weights, right = linalg.svd(np.vstack(blocks), full_matrices=False)
+    # Singular values of noise lie around their median (Gavish & Donoho, 2014).
+    floor = max(2.858 * float(np.median(weights)), 1e-7 * float(weights[0]))
+    n_above = (weights > floor).sum()
+    order = int(np.clip(n_above, 3, min(_MAX_ORDER, span - 1)))
+    basis = right[:order].T
+    shift = linalg.lstsq(basis[:-1], basis[1:])[0]
+    factors: Complex = linalg.eigvals(shift)
+    size = np.abs(factors)
+    return factors[(size > 1e-3) & (size < 1.05)]
+
+
+def _are_near(poles: Complex, rough: float, energy: Floats) -> NDArray[np.bool_]:
+    """Whether poles (k,) decay near a frequency [Hz], with more than a faint energy."""
+    decay = (poles.imag > 0.0) & (poles.real < 0.0)
+    ratio = np.abs(poles) / (2.0 * np.pi * rough)
+    are_near = np.abs(np.log(ratio + 1e-300)) < 0.35
+    # Relative to the sway, not to a drift of the rest position, which slow poles fit.
+    swings = poles.imag > np.pi * rough
+    largest = energy[swings].max(initial=0.0)
+    return np.asarray(decay & are_near & (energy > _FAINT * largest))
+
+
+def _energy(motions: Complex, axis: int) -> Floats:
+    """Sum of squares of complex motions over an axis."""
+    return np.asarray((np.abs(motions) ** 2).sum(axis=axis))
+
+
+def _standard_error(decay: Complex, amplitude: Complex, dt: float, rest: Floats) -> float:
     """
     Return the standard error of a pole's real and imaginary part in [1/s].
 
@@ -176,5 +213,5 @@ def _standard_error(
     """
     moved = dt * np.arange(len(decay)) * decay
     moved -= decay * np.vdot(decay, moved) / np.vdot(decay, decay)
-    information = 2.0 * float((np.abs(moved) ** 2).sum()) * float((np.abs(amplitude) ** 2).sum())
+    information = 2.0 * float(_energy(moved, 0)) * float(_energy(amplitude, 0))
     return float(np.sqrt((rest**2).mean() / information))

@@ -24,8 +24,10 @@ _MIN_SAMPLES = 16
 _LARGEST = 1e100
 _UNSURE = (0.03, 0.25)
 _LEAST_CLEAR = 4.0
-_EXPLAINED, _QUIET = 0.6, 0.5
-_STRONG, _FAST = 0.03, 0.15
+_EXPLAINED = 0.6
+_QUIET = 0.5
+_STRONG = 0.03
+_FAST = 0.15
 
 
 def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> FreeDecay:
@@ -79,7 +81,8 @@ def _is_release(decay: FreeDecay) -> bool:
 
 def _refuse_lost(decay: FreeDecay) -> None:
     """Refuse a swing that soon falls below the motion by wind: its damping is uncertain."""
-    f, z = decay.frequency, decay.damping_ratio
+    f = decay.frequency
+    z = decay.damping_ratio
     clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
     if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:
         what = f'{f:.3g} +- {decay.frequency_error:.2g} Hz'

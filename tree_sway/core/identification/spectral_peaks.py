@@ -33,7 +33,8 @@ def spectral_peaks(
     that the record does not reach.
     """
     low, high = band or (0.0, np.inf)
-    low, high = max(low, 0.8 / duration), min(high, 0.9 * float(frequency[-1]))
+    low = max(low, 0.8 / duration)
+    high = min(high, 0.9 * float(frequency[-1]))
     if low >= high:
         what = f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz have no content in the band'
         raise FormatError(what, cure='record longer, sample faster, or name another band')

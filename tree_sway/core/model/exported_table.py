@@ -85,7 +85,8 @@ def table_of(
     m = len(arrays['stiffness'])
     record = np.zeros(1, dtype=table_layout(max(m, room)))
     table = record[0]
-    table['n_modes'], table['stiffness'] = m, 1.0
+    table['n_modes'] = m
+    table['stiffness'] = 1.0
     for name in NUMBERS:
         table[name] = numbers[name]
     for name in PLAIN:
@@ -93,7 +94,8 @@ def table_of(
         table[name][tuple(map(slice, values.shape))] = values
     root = np.sqrt(arrays['stiffness'].astype(np.float64))
     for name in SLOPES:
-        rows, shapes = arrays[f'{name}_rows'], arrays[f'{name}_shapes']
+        rows = arrays[f'{name}_rows']
+        shapes = arrays[f'{name}_shapes']
         slopes = np.zeros((len(rows), m * m))
         # One product after another, as receivers in other languages add them up.
         for row, shape in zip(rows.T.astype(np.float64), shapes, strict=True):

@@ -74,7 +74,7 @@ class Oscillators(Load):
     whole: Annotated[Floats, 8, WIDTH]  # rows of the propagator of a step
     # Rows of the propagator of half a step under a constant load:
     half: Annotated[Floats, 6, WIDTH]
-    guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.guards`
+    guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.fill_guards`
 
 
 Works = RecordsOf[Work]

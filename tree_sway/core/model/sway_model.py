@@ -7,6 +7,8 @@ Set-up makes it once; a simulator needs nothing else. It is what the cache store
 file of a tree has, and where the description for receivers and the table for JavaScript come from,
 under the same names. ``doc/sway_model.md`` documents every array and the law of a step.
 
+Coordinates are dimensionless and of unit inertia: 1 kg m^2 each.
+
 Sizes: n segments, b branches (a branch that rotates far is cut into several), N key rotations of
 all branches, k the largest number of them in one branch, m coordinates, q leading coordinates,
 s streamed coordinates, A azimuths and L levels of the table, h harmonics.
@@ -77,7 +79,7 @@ class SwayModel:
     Parameters
     ----------
     tree, species, settings
-        What it was made of; the settings have the leaves that the tree bears.
+        Inputs of its set-up; the settings include the leaves that the tree bears.
     drag_law
         Drag of the whole tree.
     damping_ratio
@@ -249,7 +251,7 @@ class SwayModel:
     most_pressure: float = 0.0
     most_energy: float = 0.0
     limit: Floats = _optional(
-        TABLE, 'm', 'm^2',
+        TABLE, 'm', 'm^3',
         'largest load of a steady wind on each coordinate, per dynamic pressure',
     )  # fmt: skip
     motion: Floats = _optional(
@@ -257,8 +259,8 @@ class SwayModel:
         'mean square velocity of the loaded pieces per squared rate of each coordinate',
     )  # fmt: skip
     harmonics: Floats = _optional(
-        TABLE, f'{N_HARMONICS}, m', 'm^2',
-        'load at rest, by spherical harmonics of the direction of the wind',
+        TABLE, f'{N_HARMONICS}, m', 'm^3',
+        'load at rest per dynamic pressure, by spherical harmonics of the direction of the wind',
     )  # fmt: skip
     amount: Floats = _optional(
         TABLE, f'{N_AZIMUTHS}, m', '',
@@ -273,30 +275,30 @@ class SwayModel:
         'coordinates in steady winds',
     )  # fmt: skip
     load: Floats = _optional(
-        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^2',
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^3',
         'load at the equilibria less that at rest',
     )  # fmt: skip
     cross_damping: Floats = _optional(
-        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^2',
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m', 'm^4',
         'sum of the absolute damping of each coordinate by the rates of all others',
     )  # fmt: skip
     turning: Singles = _optional(
-        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^2',
-        'derivative of the load, the second m, by the coordinate that moves, the first m',
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^3',
+        'row i, column k: derivative of the load on coordinate k by coordinate i',
     )  # fmt: skip
     damping: Singles = _optional(
-        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^2',
-        'the same by the rate of the coordinate, per speed of the air',
+        TABLE, f'{N_AZIMUTHS}, {N_LEVELS}, m, m', 'm^4',
+        'the same by the rate of coordinate i, over density and speed of the air',
     )  # fmt: skip
     lean: Singles = _optional(
-        TABLE, f'{N_AZIMUTHS}, m, m', 'm^2',
+        TABLE, f'{N_AZIMUTHS}, m, m', 'm^3',
         'change of turning by the vertical part of the direction of the wind',
     )  # fmt: skip
     steep_turning: Singles = _optional(
-        TABLE, '2, m, m', 'm^2',
+        TABLE, '2, m, m', 'm^3',
         'turning in winds straight down and straight up',
     )  # fmt: skip
-    steep_damping: Singles = _optional(TABLE, '2, m, m', 'm^2', 'damping in these winds')
+    steep_damping: Singles = _optional(TABLE, '2, m, m', 'm^4', 'damping in these winds')
 
     inertia: Floats = _optional(
         ISOLATED, 'b', 'kg m^2',
@@ -310,7 +312,7 @@ class SwayModel:
     limb_spread: Floats = _optional(LIMBS, '1', 'm', 'longest delay times the wind speed')
     limb_share: Floats = _optional(LIMBS, 'delays', '', 'share of these limbs in the load')
     limb_harmonics: Floats = _optional(
-        LIMB_LOADS, f'delays, {N_HARMONICS}, m', 'm^2',
+        LIMB_LOADS, f'delays, {N_HARMONICS}, m', 'm^3',
         'their load at rest, by harmonics',
     )  # fmt: skip
 
@@ -422,7 +424,8 @@ class SwayModel:
 
     def _sizes(self) -> dict[int | str, int]:
         """Sizes that the names in shapes stand for."""
-        count, twists = len(self.branch_parent), self.branch_twist.shape
+        count = len(self.branch_parent)
+        twists = self.branch_twist.shape
         sizes: dict[int | str, int] = {'n': self.tree.n_segments, 'b': count, 'b + 1': count + 1}
         sizes |= {'k': twists[1] if len(twists) > 1 else 0, 'N': self.n_keys}
         sizes |= {'m': len(self.stiffness), 's': len(self.stream_scale)}
@@ -430,9 +433,13 @@ class SwayModel:
 
     def _check_indices(self) -> None:
         """Refuse indices by which a kernel would read past the end of an array."""
-        n, count, keys = self.tree.n_segments, len(self.branch_parent), self.branch_keys
-        own, last = np.arange(count), np.clip(self.branch_parent, 0, count - 1)
-        first, end = self.branch_first[:-1], self.branch_first[1:]
+        n = self.tree.n_segments
+        count = len(self.branch_parent)
+        keys = self.branch_keys
+        own = np.arange(count)
+        last = np.clip(self.branch_parent, 0, count - 1)
+        first = self.branch_first[:-1]
+        end = self.branch_first[1:]
         seat = self.branch_base_segment
         room = self.branch_twist.shape[1]
         block = np.sort(self.branch_coordinate)

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Motion sensors on the real tree keep the virtual one true.
+State estimation: motion sensors on the real tree correct the virtual one.
 
 A steady-state Kalman filter corrects the motion that the wind alone would cause by what sensors on
 the tree measure.

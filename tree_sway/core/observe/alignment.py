@@ -60,7 +60,7 @@ class Alignment:
     problem
         Why it cannot be used and what to do; empty if it can.
     notes
-        What was recognised, one sentence each.
+        Properties that were recognised, one sentence each.
 
     """
 

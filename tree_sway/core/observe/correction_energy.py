@@ -22,7 +22,7 @@ def find_energies(
     eta, rate
         Displacement and rate, (n,) or more.
     correction
-        What is added to both, (2, n) or more rows.
+        Correction of both, (2, n) or more rows.
     out
         Energy of the corrected and of the uncorrected motion, (2,), written.
 

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What the wind at one place does not tell about the forces on a tree.
+Model of the forces on a tree that the wind at one place does not explain.
 
 An anemometer measures one place, and limbs apart from each other meet gusts of their own. Two
 places r apart share gusts of a frequency f by the coherence ``exp(-C f r / U)``, C near 8

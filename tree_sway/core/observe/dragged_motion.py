@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagator import held_propagator
 
 if TYPE_CHECKING:
     from tree_sway.core.observe.observer import Observer
@@ -40,7 +40,8 @@ class DraggedMotion:
     """
 
     def __init__(self, observer: Observer, dt: float) -> None:
-        self._observer, self._dt = observer, dt
+        self._observer = observer
+        self._dt = dt
         m = len(observer.damping)
         self._state = np.zeros((3, m))
         self.motion = self._state[:2]
@@ -87,10 +88,12 @@ class DraggedMotion:
     def _find_law(self, drag: Floats) -> None:
         """Find how the coordinates move in the present wind, with drag per rate (m, m)."""
         observer = self._observer
-        damping, stiffness = observer.damping + np.diag(drag), observer.all_stiffness
-        c = propagator(np.ones_like(damping), damping, stiffness, self._dt).T
-        self._law[:] = [[c[0], c[1], c[2] + c[3]], [c[4], c[5], c[6] + c[7]]]
-        self._drag[:] = -(drag - np.diag(np.diag(drag)))[:, : observer.count]
+        damping = observer.damping + np.diag(drag)
+        stiffness = observer.all_stiffness
+        self._law[:] = held_propagator(damping, stiffness, self._dt)
+        by_others = drag.copy()
+        np.fill_diagonal(by_others, 0.0)
+        self._drag[:] = -by_others[:, : observer.count]
 
     def reset(self) -> None:
         """Return to rest."""

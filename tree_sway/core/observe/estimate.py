@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The state of a steady-state filter, moved and corrected in arrays made once.
+State estimate of a steady-state filter: prediction and correction, in preallocated arrays.
 
 What a sensor tells arrives with its noise, at every step anew. The motion that is shown moves by
 the same law, and comes nearer to the estimate by a share of their difference at each step

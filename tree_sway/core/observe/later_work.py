@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Work that is begun at one step and needed at a later one.
+Work in another thread that one step begins and a later one needs.
 
 Gains, mountings and fits take milliseconds and change slowly. Each is due a fixed number of steps
 after its beginning. Until then it is done a part at each step, or by a thread of the caller beside
@@ -18,14 +18,14 @@ _T_co = TypeVar('_T_co', covariant=True)
 
 
 class Awaited(Protocol[_T_co]):
-    """What is waited for, as a `concurrent.futures.Future`."""
+    """What is waited for, as a ``concurrent.futures.Future``."""
 
     def result(self) -> _T_co:
         """Wait for the result."""
 
 
 class Submit(Protocol):
-    """Begin a call beside the caller, as `concurrent.futures.Executor.submit`."""
+    """Begin a call beside the caller, as ``concurrent.futures.Executor.submit``."""
 
     def __call__(self, call: Callable[[], _T], /) -> Awaited[_T]:
         """Begin a call."""

@@ -1,32 +1,33 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How sure the motion is: 64 trees that the real one might be, in winds that its limbs might have.
+Uncertainty of the observed motion: an ensemble of 64 trees that the real one might be.
 
-Each member differs from the model by its wood, its damping, its drag area and the gusts that its
-limbs meet, each drawn from the spread of its source:
+Each member differs from the model in its wood, its damping, its drag area and the gusts that its
+limbs meet, each drawn from a published spread:
 
 - Wood: Young's modulus of clear wood of one species varies by 22 % (Forest Products Laboratory,
   Wood Handbook, 2010, table 5-6).
-- Damping: its logarithm by 0.5; 0.01 to 0.08 among bare stems (Moore & Maguire 2005) is +-2 of it.
+- Damping: standard deviation 0.5 of its logarithm; the 0.01 to 0.08 of bare stems (Moore & Maguire
+  2005) are +-2 of them.
 - Drag and leaf area: `load_spreads`.
 - Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), the rest one limb after
-  the other, as in `crown_wind`. After which delay a gust reaches a limb is not known: each member
-  draws its own. Where an anemometer averages fast gusts away, each meets gusts of its own instead,
-  of the law in `disturbance`.
+  the other, as in `crown_wind`. The delay of a limb is not known, so each member draws its own.
+  Where an anemometer averages fast gusts away, each member meets its own, by the law of
+  `disturbance`.
 
 A member is an oscillator for each of the first coordinates, driven by the forces on the model and
 those of its gusts::
 
     x'' + (z s^1/2 c + a d) x' + s k x = a (F + d q') + g
 
-k, c stiffness and damping of the wood, d damping by the air, F force on the model, q its motion;
-s, z, a the member's stiffness, damping and drag over the model's, g the force of its gusts.
+x is the member's coordinate and q the model's; k, c stiffness and damping of the wood, d damping
+by the air, F the force on the model; s, z, a the member's stiffness, damping and drag over those
+of the model, g the force of its gusts.
 
-Each member is a tree that might stand there. With sensors, its own would tell the filter something
-else: the filter runs on the simulated measurement of each, and the band is what remains between
-the members and what the filter makes of them (the ensemble of Evensen 2003, Ocean Dynamics 53,
-343-367, under fixed gains).
+Where there are sensors, the filter runs once for each member, on a simulated measurement of it.
+The band is what remains between the members and the filter's estimates of them (an ensemble as in
+Evensen 2003, Ocean Dynamics 53, 343-367, with fixed gains). Arrays are (coordinates n, members e).
 """
 
 from __future__ import annotations
@@ -40,14 +41,14 @@ from scipy.special import ndtri
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.observe.disturbance import GUST, TIME_CONSTANT
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagator import held_propagator
 from tree_sway.core.wind.crown_wind import N_DELAYS, USUAL_COHERENCE
 
 if TYPE_CHECKING:
     from tree_sway.core.observe.observer import Observer
 
 N_MEMBERS = 64
-"""Number of trees that the real one might be."""
+"""Number of members."""
 
 WOOD_SPREAD, DAMPING_SPREAD = 0.22, 0.5
 """Log-deviations of Young's modulus within a species, and of damping among trees."""
@@ -62,7 +63,9 @@ _ALONG, _ACROSS = 4.0 / 3.0, 2.0 / 3.0
 """Slopes of the drag along the wind and across it, over the mean that `disturbance` takes."""
 
 _AVERAGED = 30.0
+"""Time over which the variance of fast gusts is averaged [s]."""
 _BIAS_TIME = 60.0
+"""Time over which the mean of a simulated measurement is removed, as of a real one [s]."""
 
 
 class Uncertainty(NamedTuple):
@@ -74,7 +77,7 @@ class Uncertainty(NamedTuple):
 
 
 def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
-    """Return the spreads of a tree of which nothing has been measured."""
+    """Return the spreads for a tree without measurements."""
     leaf = LEAVES if in_leaf else 0.0
     return Uncertainty(drag=math.hypot(DRAG, leaf))
 
@@ -83,31 +86,34 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     """
     Draw values of the normal distribution, (n_values, count), one from each stratum.
 
-    Chance would correlate wood and drag, and the lean varies with their ratio. The ranks are those
-    of draws whose correlation is taken away (Iman & Conover 1982, Communications in Statistics
-    B11, 311-334).
+    Independent draws would be correlated by chance, and the lean of a tree varies with the ratio
+    of its wood and drag. Ranks are taken from draws whose correlation is removed (Iman & Conover
+    1982, Communications in Statistics B11, 311-334).
     """
     strata = ndtri((np.arange(count) + 0.5) / count)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
-    root = np.linalg.cholesky(np.cov(drawn) + 1e-9 * np.eye(n_values))
-    ranks = np.linalg.solve(root, drawn).argsort(axis=1).argsort(axis=1)
+    covariance = np.cov(drawn) + 1e-9 * np.eye(n_values)
+    root = np.linalg.cholesky(covariance)
+    uncorrelated = np.linalg.solve(root, drawn)
+    order = uncorrelated.argsort(axis=1)
+    ranks = order.argsort(axis=1)
     return np.asarray(strata[ranks])
 
 
 def most_of(found: Floats) -> Floats:
-    """Find the bounds of 80 % of the members, (2, ...), by what was found for each, (..., e)."""
+    """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
     ordered = np.sort(found, axis=-1)
     rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
-    low, share = int(rank), rank - int(rank)
-    ends = []
-    for first, second in ((low, low + 1), (-low - 1, -low - 2)):
-        ends.append((1.0 - share) * ordered[..., first] + share * ordered[..., second])
-    return np.stack(ends)
+    low = int(rank)
+    share = rank - int(rank)
+    from_below = (1.0 - share) * ordered[..., low] + share * ordered[..., low + 1]
+    from_above = (1.0 - share) * ordered[..., -low - 1] + share * ordered[..., -low - 2]
+    return np.stack([from_below, from_above])
 
 
 class Members:
     """
-    Trees that the real one might be.
+    The ensemble, stepped beside the model.
 
     Parameters
     ----------
@@ -116,12 +122,13 @@ class Members:
     dt
         Time step in [s].
     spreads
-        How far they differ from the model.
+        How far members differ from the model.
 
     """
 
     def __init__(self, observer: Observer, dt: float, spreads: Uncertainty) -> None:
-        self._observer, self._dt = observer, dt
+        self._observer = observer
+        self._dt = dt
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
@@ -134,7 +141,6 @@ class Members:
         """Displacement and rate of each, (2, n, e)."""
         self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
         self._next = np.zeros((2, n, N_MEMBERS))
-        self._terms = np.zeros((3, n, N_MEMBERS))
         self._felt = np.zeros((3, n, N_MEMBERS))
         self._estimate = np.zeros((3, n, N_MEMBERS))
         self._moved = np.zeros((3, 3, n, N_MEMBERS))
@@ -146,22 +152,24 @@ class Members:
         self.stiffness = np.ones(N_MEMBERS)
         """Stiffness of each over the model's, (e,)."""
         self.errors = np.zeros((n, N_MEMBERS))
-        """Displacement of each beyond what the filter makes of it, (n, e)."""
+        """Displacement of each member less the filter's estimate of it, (n, e)."""
 
     def _fill(self) -> None:
-        """Find the law of each member in the present wind."""
-        observer, n = self._observer, self._count
-        unknown, spreads = observer.unknown, self.spreads
+        """Find propagator, drag and gusts of each member for the present wind and spreads."""
+        observer = self._observer
+        n = self._count
+        unknown = observer.unknown
+        spreads = self.spreads
         factors = np.exp(np.array(spreads)[:, None] * self._drawn)
         self.stiffness, loss, self._drag = factors
         stiffness = np.outer(observer.stiffness, self.stiffness)
         damping = np.outer(observer.damping[:n], loss * np.sqrt(self.stiffness))
         self._air = unknown.air_damping[:, None]
         damping += self._air * self._drag
-        c = propagator(np.ones(stiffness.size), damping.ravel(), stiffness.ravel(), self._dt)
-        parts = [c[:, 0], c[:, 1], c[:, 2] + c[:, 3], c[:, 4], c[:, 5], c[:, 6] + c[:, 7]]
-        self._step = np.stack(parts).reshape(2, 3, n, N_MEMBERS)
-        self._stiff, self._damp = stiffness, damping
+        step = held_propagator(damping.ravel(), stiffness.ravel(), self._dt)
+        self._step = step.reshape(2, 3, n, N_MEMBERS)
+        self._stiff = stiffness
+        self._damp = damping
         values, vectors = np.linalg.eigh(unknown.gusts)
         kept = values > 1e-4 * values[-1]
         self._decay = math.exp(-self._dt / TIME_CONSTANT)
@@ -172,20 +180,22 @@ class Members:
         self._draw_delays(unknown.limb_slopes, unknown.reach)
 
     def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
-        """Find the force on each member per wind of each delay, by those of its limbs."""
+        """Find the force on each member per wind of each delay, summed over its limbs."""
         if len(self._limb_draws) != len(reach):
             self._limb_draws = self._rng.random((len(reach), N_MEMBERS))
-        delays = np.rint(self._limb_draws * reach[:, None] * (N_DELAYS - 1)).astype(np.intp)
+        drawn_reach = self._limb_draws * reach[:, None]
+        delays = np.rint(drawn_reach * (N_DELAYS - 1)).astype(np.intp)
         n = self._count
         by_member = np.zeros((N_MEMBERS, N_DELAYS, 3, n))
         for forces, of_limb in zip(by_member, delays.T, strict=True):
             np.add.at(forces, of_limb, slopes)
         by_member *= self._drag[:, None, None, None]
-        self._per_delay = by_member.transpose(3, 0, 2, 1).reshape(n * N_MEMBERS, -1).copy()
+        by_coordinate = by_member.transpose(3, 0, 2, 1)
+        self._per_delay = by_coordinate.reshape(n * N_MEMBERS, -1).copy()
 
     def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
-        Move every member by a step, and find what the filter makes of it.
+        Step every member, and the filter's estimate of it.
 
         Parameters
         ----------
@@ -194,24 +204,29 @@ class Members:
         wind
             Horizontal wind over the step [m/s].
         apart
-            Wind of each delay less that which moves the model [m/s], (`N_DELAYS`, 3).
+            Wind of each delay less the wind on the model [m/s], (`N_DELAYS`, 3).
 
         """
-        observer, n = self._observer, self._count
+        observer = self._observer
+        n = self._count
         eta, rate, force = (each[:n, None] for each in swing)
         present = (observer.unknown, observer.stiffness, self.spreads)
         if any(now is not then for now, then in zip(present, self._filled_for, strict=True)):
             self._fill()
             self._filled_for = present
         if not self._steps:
-            self.motion[0], self.motion[1] = eta, rate
-            self._slow, self._steps = wind, 1
+            self.motion[0] = eta
+            self.motion[1] = rate
+            self._slow = wind
+            self._steps = 1
             self.errors[:] = 0.0
             return
         self._steps += 1
         self._blow(*wind)
         self._reach_limbs(apart)
-        total, x, v = self._force, self.motion[0], self.motion[1]
+        total = self._force
+        x = self.motion[0]
+        v = self.motion[1]
         np.multiply(force + self._air * rate, self._drag, out=total)
         total += self._gust
         total += self._late
@@ -228,15 +243,18 @@ class Members:
             np.subtract(self.motion[0], eta, out=self.errors)
 
     def _blow(self, x: float, y: float) -> None:
-        """Move the forces of the gusts that are not known, in a wind [m/s]."""
+        """Step the forces of the gusts that an anemometer averages away, in a wind [m/s]."""
         share = 1.0 - self._decay
         slow_x, slow_y = self._slow
-        slow_x, slow_y = slow_x + share * (x - slow_x), slow_y + share * (y - slow_y)
+        slow_x = slow_x + share * (x - slow_x)
+        slow_y = slow_y + share * (y - slow_y)
         self._slow = slow_x, slow_y
         fast = 0.5 * ((x - slow_x) ** 2 + (y - slow_y) ** 2)
-        self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
+        share_of_step = max(self._dt / _AVERAGED, 1.0 / self._steps)
+        self._fast += share_of_step * (fast - self._fast)
         self._gust *= self._decay
-        missing = (_LEAST_FAST * math.hypot(slow_x, slow_y)) ** 2 - self._fast
+        least_fast = _LEAST_FAST * math.hypot(slow_x, slow_y)
+        missing = least_fast**2 - self._fast
         if missing <= 0.0:
             return
         size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
@@ -246,7 +264,7 @@ class Members:
         self._gust += self._away
 
     def _reach_limbs(self, apart: Floats) -> None:
-        """Find the forces of gusts that reach the limbs of each after its own delays."""
+        """Find the forces of gusts that reach the limbs of each member after its own delays."""
         x, y = self._slow
         speed = max(math.hypot(x, y), 1e-9)
         along = (apart[:, 0] * x + apart[:, 1] * y) / speed
@@ -259,16 +277,18 @@ class Members:
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
-        n, gains = self._count, self._observer.gains
+        n = self._count
+        gains = self._observer.gains
         assert gains is not None
-        estimate, felt = self._estimate, self._felt
+        estimate = self._estimate
+        felt = self._felt
         stiffness = self._observer.stiffness[:, None]
         damping = self._observer.damping[:n, None]
         np.multiply(gains.law.step[..., None], estimate, out=self._moved)
         np.add.reduce(self._moved, axis=1, out=estimate)
         np.subtract(self.motion[0], eta, out=felt[0])
         np.subtract(self.motion[1], rate, out=felt[1])
-        # The force by which the rows of a sensor give the difference of both accelerations.
+        # The force that makes a sensor's rows give the difference of the two accelerations.
         np.multiply(self._stiff, self.motion[0], out=self._away)
         np.subtract(self._force, self._away, out=felt[2])
         felt[2] -= np.multiply(self._damp, self.motion[1], out=self._away)
@@ -276,7 +296,8 @@ class Members:
         felt[2] += stiffness * felt[0] + self._observer.damped[:, None] * felt[1]
         told = gains.sensed @ felt.reshape(3 * n, -1)
         if len(self._bias) != len(told):
-            self._bias, self._measured = np.zeros_like(told), 0
+            self._bias = np.zeros_like(told)
+            self._measured = 0
         self._measured += 1
         share = max(self._dt / _BIAS_TIME, 1.0 / self._measured)
         self._bias += share * (told - self._bias)
@@ -289,26 +310,26 @@ class Members:
 
     def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
         """
-        Find where 80 % of the members are.
+        Find the interval of the middle 80 % of the members.
 
         Parameters
         ----------
         readout
-            What is read by each coordinate, (..., m).
+            Value per unit of each coordinate, (..., m).
         scale
             Further differences of the members to add, (..., e).
 
         Returns
         -------
         Floats
-            Lower and upper bound of what is beyond the corrected motion, (2, ...).
+            Lower and upper bound, less the corrected motion, (2, ...).
 
         """
         found = self.differences(readout)
         return most_of(found if scale is None else found + scale)
 
     def differences(self, readout: Floats) -> Floats:
-        """Read each member beyond the corrected motion, (..., e), by each coordinate, (..., m)."""
+        """Find a value of each member less the corrected motion, (..., e); `readout` as above."""
         return np.asarray(readout[..., : self._count] @ self.errors)
 
     def reset(self) -> None:

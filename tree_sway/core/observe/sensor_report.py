@@ -33,7 +33,7 @@ class SensorReport(NamedTuple):
     counts
         Counts of its samples.
     notes
-        What was recognised, such as a unit.
+        Properties that were recognised, such as a unit.
     change
         Whether the tree sways as it did; None before there is a past.
 

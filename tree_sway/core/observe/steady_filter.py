@@ -26,7 +26,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagator import held_propagator
 from tree_sway.core.setup.one_thread import one_thread
 
 _MOST_DOUBLINGS, _ENOUGH = 60, 1e-10
@@ -80,10 +80,10 @@ def sway_law(
         Time step in [s].
 
     """
-    c = propagator(np.ones(len(stiffness)), damping, stiffness, dt).T
     decay = math.exp(-dt / time_constant)
-    still, kept = np.zeros_like(stiffness), np.full_like(stiffness, decay)
-    step = np.array([[c[0], c[1], c[2] + c[3]], [c[4], c[5], c[6] + c[7]], [still, still, kept]])
+    step = np.zeros((3, 3, len(stiffness)))
+    step[:2] = held_propagator(damping, stiffness, dt)
+    step[2, 2] = decay
     return SwayLaw(step, (1.0 - decay * decay) * covariance)
 
 

@@ -41,7 +41,8 @@ _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
 N_CANDIDATES = len(_STIFFNESSES) * len(_DAMPINGS)
 """Number of candidates of a fit: its parts are one for each and each sensor."""
 
-_MOST_DRAG, _LEAST_DRAG = 2.0, 0.2
+_MOST_DRAG = 2.0
+_LEAST_DRAG = 0.2
 
 _GUST_ERROR = 0.15
 """Error of the drag, of its logarithm, for gusts at the anemometer are not those of the crown."""
@@ -192,8 +193,10 @@ class _Misfit:
     """
 
     def __init__(self, measured: Spectrum, unknown: Floats, stiffness: Floats) -> None:
-        self._n_stretches, self._circular = measured.n_stretches, measured.circular
-        self._stiffness, self._n_unknown = stiffness, unknown.shape[1]
+        self._n_stretches = measured.n_stretches
+        self._circular = measured.circular
+        self._stiffness = stiffness
+        self._n_unknown = unknown.shape[1]
         w = self._circular
         weaker = np.exp(-_SLOPES[:, None] * np.log(w / w[0]))
         self._weaker = weaker[:, None]
@@ -224,31 +227,48 @@ class _Misfit:
             Its damping, (m,).
 
         """
-        w = self._circular
-        response = 1.0 / ((stiff * self._stiffness)[:, None] - w * w + 1j * w * damping[:, None])
-        # Real matrices on real and imaginary parts, side by side.
-        parts = response.view(np.float64)
-        moved = ((self._by_eta - (stiff - 1.0) * self._by_stiffer) @ parts).view(np.complex128)
-        motion = moved + 1j * w * (self._by_rate @ parts).view(np.complex128) + self._by_force
-        unknown, known = motion[:, : self._n_unknown], motion[:, self._n_unknown :]
+        motion = self._motion(stiff, damping)
+        unknown = motion[:, : self._n_unknown]
         level = (np.square(unknown.real) + np.square(unknown.imag)).sum(axis=1)
         # The window spreads the power of a frequency to its neighbours.
-        level[:, 1:-1] = (level[:, :-2] + 4.0 * level[:, 1:-1] + level[:, 2:]) / 6.0
+        spread = level[:, :-2] + 4.0 * level[:, 1:-1] + level[:, 2:]
+        level[:, 1:-1] = spread / 6.0
         shaped = np.maximum(level * self._weaker, 1e-300)
-        # Power of the measured and of the expected motion, and what both have in common.
-        by_pattern = known.swapaxes(1, 2)
-        expected = ((by_pattern[:, :, None] @ self._forces)[:, :, 0] * by_pattern.conj()).sum(
-            axis=2
-        )
-        shared = (by_pattern * self._shared).sum(axis=2)
-        powers = (self._power, shared.real, expected.real)
+        powers = self._powers(motion[:, self._n_unknown :])
         told, common, alone = ((each / shaped).mean(axis=2) for each in powers)
         # The factor of the drag, and the level of what it leaves.
-        drag = common.sum(axis=1) / np.maximum(alone.sum(axis=1), 1e-300)
-        drag = np.clip(drag, 0.0, _MOST_DRAG)[:, None]
+        factor = common.sum(axis=1) / np.maximum(alone.sum(axis=1), 1e-300)
+        factor = np.clip(factor, 0.0, _MOST_DRAG)
+        drag = factor[:, None]
         left = told - 2.0 * drag * common + drag * drag * alone
+        left = np.maximum(left, 1e-300)
+        n_frequencies = len(self._circular)
         logs = np.log(shaped).sum(axis=(1, 2))
-        logs += len(w) * np.log(np.maximum(left, 1e-300)).sum(axis=1)
+        logs += n_frequencies * np.log(left).sum(axis=1)
         count = _INDEPENDENT * self._n_stretches
-        known = (alone / np.maximum(left, 1e-300)).sum(axis=1)
-        return count * logs, drag[:, 0], count * len(w) * drag[:, 0] ** 2 * known
+        known = (alone / left).sum(axis=1)
+        return count * logs, factor, count * n_frequencies * factor**2 * known
+
+    def _motion(self, stiff: float, damping: Floats) -> Waves:
+        """East and north motion of a candidate by each pattern, (2, patterns, f)."""
+        w = self._circular
+        stiffness = (stiff * self._stiffness)[:, None]
+        response = 1.0 / (stiffness - w * w + 1j * w * damping[:, None])
+        # Real matrices on real and imaginary parts, side by side.
+        parts = response.view(np.float64)
+        by_eta = self._by_eta - (stiff - 1.0) * self._by_stiffer
+        by_displacement = (by_eta @ parts).view(np.complex128)
+        by_rate = (self._by_rate @ parts).view(np.complex128)
+        return np.asarray(by_displacement + 1j * w * by_rate + self._by_force)
+
+    def _powers(self, known: Waves) -> tuple[Floats, Floats, Floats]:
+        """
+        Return powers of the motion that was measured, of that expected, and what both share.
+
+        The expected motion is by the patterns of the wind that is known, (2, patterns, f).
+        """
+        by_pattern = known.swapaxes(1, 2)
+        forced = (by_pattern[:, :, None] @ self._forces)[:, :, 0]
+        expected = (forced * by_pattern.conj()).sum(axis=2)
+        shared = (by_pattern * self._shared).sum(axis=2)
+        return self._power, shared.real, expected.real

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How the part of the motion that the wind does not tell moves, in the present wind."""
+"""Dynamics of the motion beyond that of the model, in the present wind."""
 
 from __future__ import annotations
 

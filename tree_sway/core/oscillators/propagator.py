@@ -78,6 +78,28 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     return out
 
 
+def held_propagator(damping: Floats, stiffness: Floats, dt: float) -> Floats:
+    """
+    Coefficients of oscillators of unit inertia whose force F is constant over a step.
+
+    Parameters
+    ----------
+    damping, stiffness
+        Damping k2 in [1/s] and stiffness k1 in [1/s^2], (n,).
+    dt
+        Time step in [s].
+
+    Returns
+    -------
+    Floats
+        For the displacement and for the rate, those of the displacement, the rate and the force,
+        (2, 3, n).
+
+    """
+    c = propagator(1.0, damping, stiffness, dt).T
+    return np.array([[c[0], c[1], c[2] + c[3]], [c[4], c[5], c[6] + c[7]]])
+
+
 def fill_propagator(
     inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
 ) -> int:

@@ -103,12 +103,15 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     x, y, t = within_guard(x, y)
     s, c, s1, c1 = _series(t)
-    one, two, three = 1.0, 2.0, 3.0
+    one = 1.0
+    two = 2.0
+    three = 3.0
     inverse = one / (one + t * s)
     b = (s - c) * inverse
     e = (three * s1 - c1 + s * c + s * (s + c + t * s * c)) * inverse
     spin = x * vy - y * vx
-    radial, turn = e * spin * spin, two * b * spin
+    radial = e * spin * spin
+    turn = two * b * spin
     return radial * x - turn * vy, radial * y + turn * vx
 
 
@@ -172,8 +175,10 @@ def step_branch(
     """
     wb, w1, w2, clamped = limit_load(wb, w1, w2, load_limit)
     mx, my = moment(x, y, vx, vy, wb, w1, w2, gyro_inertia, moment_limit)
-    px, py = c0 * x + c1 * vx + c2 * mx, c0 * y + c1 * vy + c2 * my
-    ux, uy = c4 * x + c5 * vx + c6 * mx, c4 * y + c5 * vy + c6 * my
+    px = c0 * x + c1 * vx + c2 * mx
+    py = c0 * y + c1 * vy + c2 * my
+    ux = c4 * x + c5 * vx + c6 * mx
+    uy = c4 * y + c5 * vy + c6 * my
     mx, my = moment(
         px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, wb, w1, w2,
         gyro_inertia, moment_limit,
@@ -202,7 +207,8 @@ def fill_guards(
 
     """
     for row in range(len(inertia)):
-        i, k = inertia[row], stiffness[row]
+        i = inertia[row]
+        k = stiffness[row]
         square = k * dt * dt  # (w h)^2 I
         out[row, 0] = i if square < GYRO_STEP * GYRO_STEP * i else 0.0
         limit = math.inf

@@ -42,7 +42,8 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
     """Lay a model out for stepping and placing; with ``plain`` nothing is compiled."""
     plain = plain or bool(WHY_PLAIN)
     places = _places(model)
-    branches, segments = _branches(model, places), segment_records(places)
+    branches = _branches(model, places)
+    segments = segment_records(places)
     oscillators = _oscillators(model, branches, plain)
     blocks = block_records(branches, segments)
     bank = Bank(oscillators, branches, segments, blocks, model.mass, plain)
@@ -120,7 +121,9 @@ def _places(model: SwayModel) -> Places:
 
 def _branches(model: SwayModel, places: Places) -> Records:
     """Fill the records of the branches for stepping and placing, (b,)."""
-    tree, first, last = model.tree, model.branch_first[:-1], model.branch_first[1:] - 1
+    tree = model.tree
+    first = model.branch_first[:-1]
+    last = model.branch_first[1:] - 1
     records: Records = np.zeros(len(first), dtype=branch_layout(model.branch_twist.shape[1]))
     fill_places(places, records)
     for name in LOADED:
@@ -129,6 +132,7 @@ def _branches(model: SwayModel, places: Places) -> Records:
     base = tree.start[first] - tree.start[0]
     arm = base - base[np.maximum(model.branch_parent, 0)]
     square = np.square(arm).sum(axis=1)
-    records['base'], records['arm'] = base, arm
+    records['base'] = base
+    records['arm'] = arm
     records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
     return records

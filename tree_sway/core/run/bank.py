@@ -112,7 +112,8 @@ class Bank:
 
     def wind_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        coupling, force = self.branches['coupling'], self.oscillators.forces()
+        coupling = self.branches['coupling']
+        force = self.oscillators.forces()
         return np.asarray(np.einsum('bij,bj->i', coupling, force))
 
     @cached_property
@@ -133,7 +134,8 @@ class Bank:
             return NumpyPlacing(self.branches, self.segments).place
         from tree_sway.core.run.placing import GIVEN, room_for
 
-        instance, shapes = (self.oscillators.to_place or GIVEN)[0], GIVEN[1]
+        instance = (self.oscillators.to_place or GIVEN)[0]
+        shapes = GIVEN[1]
         return self._placing(instance, shapes, room_for(int(self.branches['n_coordinates'].sum())))
 
     def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:

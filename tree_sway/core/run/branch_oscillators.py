@@ -145,7 +145,8 @@ class BranchOscillators(Branchwise):
     def take_over(self, x: Floats, v: Floats) -> None:
         """Continue from key rotations and rates, (2 b,)."""
         self.reset()
-        self.x[:], self.v[:] = x, v
+        self.x[:] = x
+        self.v[:] = v
 
     def reset(self) -> None:
         """Return to rest."""
@@ -159,9 +160,11 @@ def _advance(
     branches: Branches, work: Works, banks: Banks, state: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    angles, rates = state[0], state[1]
+    angles = state[0]
+    rates = state[1]
     for branch in range(len(branches)):
-        bank, slot = banks[branch // WIDTH], branch % WIDTH
+        bank = banks[branch // WIDTH]
+        slot = branch % WIDTH
         for axis in range(2):
             bank.now_x[axis, slot] = angles[2 * branch + axis]
             bank.now_v[axis, slot] = rates[2 * branch + axis]
@@ -171,15 +174,18 @@ def _advance(
     set_air(work, banks, wx, wy, wz)
     wind_forces(banks, per_speed_squared)
     own_loads(banks)
-    clamped, is_finite = 0, True
+    clamped = 0
+    is_finite = True
     for block in range(len(banks)):
         clamped += _step(banks[block])
     for branch in range(len(branches)):
-        bank, slot = banks[branch // WIDTH], branch % WIDTH
+        bank = banks[branch // WIDTH]
+        slot = branch % WIDTH
         for axis in range(3):
             work[branch].force[axis] = bank.force[axis, slot]
         for axis in range(2):
-            angle, rate = bank.now_x[axis, slot], bank.now_v[axis, slot]
+            angle = bank.now_x[axis, slot]
+            rate = bank.now_v[axis, slot]
             angles[2 * branch + axis] = angle
             rates[2 * branch + axis] = rate
             if not (math.isfinite(angle) and math.isfinite(rate)):
@@ -190,21 +196,29 @@ def _advance(
 @part
 def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches at the middle of the step, under the last step's load."""
-    load, half, middle_rate = bank.load, bank.half, bank.v
+    load = bank.load
+    half = bank.half
+    middle_rate = bank.v
     for slot in range(WIDTH):
-        angle_x, angle_y = bank.now_x[0, slot], bank.now_x[1, slot]
-        rate_x, rate_y = bank.now_v[0, slot], bank.now_v[1, slot]
+        angle_x = bank.now_x[0, slot]
+        angle_y = bank.now_x[1, slot]
+        rate_x = bank.now_v[0, slot]
+        rate_y = bank.now_v[1, slot]
         moment_x, moment_y = true_force(
             angle_x, angle_y, load[0, slot], load[1, slot], load[2, slot]
         )
-        by_angle, by_rate, by_moment = half[0, slot], half[1, slot], half[2, slot]
+        by_angle = half[0, slot]
+        by_rate = half[1, slot]
+        by_moment = half[2, slot]
         middle_x, middle_y, _square = within_guard(
             by_angle * angle_x + by_rate * rate_x + by_moment * moment_x,
             by_angle * angle_y + by_rate * rate_y + by_moment * moment_y,
         )
         bank.x[0, slot] = middle_x
         bank.x[1, slot] = middle_y
-        by_angle, by_rate, by_moment = half[3, slot], half[4, slot], half[5, slot]
+        by_angle = half[3, slot]
+        by_rate = half[4, slot]
+        by_moment = half[5, slot]
         middle_rate[0, slot] = by_angle * angle_x + by_rate * rate_x + by_moment * moment_x
         middle_rate[1, slot] = by_angle * angle_y + by_rate * rate_y + by_moment * moment_y
 
@@ -212,8 +226,11 @@ def _to_middle(bank: Oscillators) -> None:
 @part
 def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were clamped."""
-    angle, rate, load = bank.now_x, bank.now_v, bank.load
-    whole, guard = bank.whole, bank.guard
+    angle = bank.now_x
+    rate = bank.now_v
+    load = bank.load
+    whole = bank.whole
+    guard = bank.guard
     clamped = 0
     for slot in range(WIDTH):
         angle[0, slot], angle[1, slot], rate[0, slot], rate[1, slot], is_over = step_branch(

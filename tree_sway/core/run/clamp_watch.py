@@ -22,7 +22,8 @@ class ClampWatch:
     """Sums the time for which the steps of a tree were clamped."""
 
     def __init__(self) -> None:
-        self._seconds, self._last = 0.0, 0
+        self._seconds = 0.0
+        self._last = 0
 
     def is_stuck(self, step: int, dt: float) -> bool:
         """

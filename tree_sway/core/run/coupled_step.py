@@ -72,7 +72,7 @@ class CoupledStep(NamedTuple):
     own_damping: Floats
     """D of each coordinate by itself at rest, for a drag of 1, (m,)."""
     matrix: Floats
-    """Of the equation above, (c, c)."""
+    """Matrix of the equation above, (c, c)."""
     rights: Floats
     """Right-hand sides of this equation, then its solutions, (3, c)."""
     products: Floats
@@ -130,7 +130,9 @@ def move(
     """Write coordinates and rates after a step or half of it under a force, all (m,)."""
     c = coefficients
     for i in range(len(eta)):
-        q, v, f = eta[i], rate[i], force[i]
+        q = eta[i]
+        v = rate[i]
+        f = force[i]
         moved[i] = c[0, i] * q + c[1, i] * v + c[2, i] * f
         faster[i] = c[3, i] * q + c[4, i] * v + c[5, i] * f
 
@@ -167,9 +169,12 @@ def find_force(
 
     free, last_pull, turning, along = _sides(law, wanted, eta, rate, last, across, momentum)
     take_block(change, law.coupled, law.matrix)
-    inertial, dragged, rooted = law.products[2], law.products[3], law.products[6]
+    inertial = law.products[2]
+    dragged = law.products[3]
+    rooted = law.products[6]
     multiply(law.matrix, free, inertial)
-    root, right = law.root_damping, law.rights[0]
+    root = law.root_damping
+    right = law.rights[0]
     np.multiply(root, last_pull, rooted)
     multiply(law.matrix, rooted, dragged)
     for k in range(len(right)):
@@ -193,11 +198,17 @@ def _sides(
 
     Returns the accelerations without force, those by the last force, s and r, each (c,).
     """
-    half, whole = 0.5 * law.length, law.whole
-    free, last_pull = law.products[0], law.products[1]
-    turning, along = law.products[4], law.products[5]
-    right, by_turning, by_along = law.rights[0], law.rights[1], law.rights[2]
-    turning_rate, along_rate = 0.0, 0.0
+    half = 0.5 * law.length
+    whole = law.whole
+    free = law.products[0]
+    last_pull = law.products[1]
+    turning = law.products[4]
+    along = law.products[5]
+    right = law.rights[0]
+    by_turning = law.rights[1]
+    by_along = law.rights[2]
+    turning_rate = 0.0
+    along_rate = 0.0
     for k in range(len(right)):
         i = law.coupled[k]
         free[k] = (whole[3, i] * eta[i] + (whole[4, i] - 1.0) * rate[i]) / law.length
@@ -217,13 +228,16 @@ def _sides(
 def _turn_with_motion(law: CoupledStep, turning: Floats, along: Floats) -> None:
     """Add ``h G / 2``, of rank two, to the solved equation by Woodbury's formula."""
     half = 0.5 * law.length
-    solved, by_turning, by_along = law.rights[0], law.rights[1], law.rights[2]
+    solved = law.rights[0]
+    by_turning = law.rights[1]
+    by_along = law.rights[2]
     # The matrix of two that is left, and its right-hand sides.
     one_one = 1.0 - half * dot(along, by_turning)
     one_two = half * dot(along, by_along)
     two_one = -half * dot(turning, by_turning)
     two_two = 1.0 + half * dot(turning, by_along)
-    one, two = dot(along, solved), dot(turning, solved)
+    one = dot(along, solved)
+    two = dot(turning, solved)
     determinant = one_one * two_two - one_two * two_one
     share_along = (two_two * one - one_two * two) / determinant
     share_turning = (one_one * two - two_one * one) / determinant

@@ -3,10 +3,10 @@
 """
 Gusts that reach the limbs of a tree one after another.
 
-Models that step branches give each limb its own wind. `wind_basis` has uniform winds only. It
-uses the mean of the limbs' winds, weighted by their loads, and adds the difference of load between
-the wind of each delay and the mean, on the limbs of this delay of the tree at rest, reduced as the
-load on the bent tree is.
+Models that step branches give each limb its own wind. The table of `table_model` has uniform winds
+only: it is read at the mean of the limbs' winds, weighted by their loads. Then the difference of
+load between the wind of each delay and the mean is added for the limbs of this delay. It is found
+on the tree at rest and reduced as the load on the bent tree is.
 """
 
 from __future__ import annotations

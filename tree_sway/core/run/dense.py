@@ -66,11 +66,21 @@ def solve_positive(matrix: Floats, rights: Floats) -> bool:
 @part
 def _four_by_two(rows: Floats, i: int, others: Floats, j: int, out: Floats) -> None:
     """Write the products of four rows and two others; each number that is read serves several."""
-    one_one, two_one, three_one, four_one = 0.0, 0.0, 0.0, 0.0
-    one_two, two_two, three_two, four_two = 0.0, 0.0, 0.0, 0.0
+    one_one = 0.0
+    two_one = 0.0
+    three_one = 0.0
+    four_one = 0.0
+    one_two = 0.0
+    two_two = 0.0
+    three_two = 0.0
+    four_two = 0.0
     for k in range(rows.shape[1]):
-        other, next_other = others[j, k], others[j + 1, k]
-        one, two, three, four = rows[i, k], rows[i + 1, k], rows[i + 2, k], rows[i + 3, k]
+        other = others[j, k]
+        next_other = others[j + 1, k]
+        one = rows[i, k]
+        two = rows[i + 1, k]
+        three = rows[i + 2, k]
+        four = rows[i + 3, k]
         one_one += one * other
         two_one += two * other
         three_one += three * other
@@ -79,10 +89,14 @@ def _four_by_two(rows: Floats, i: int, others: Floats, j: int, out: Floats) -> N
         two_two += two * next_other
         three_two += three * next_other
         four_two += four * next_other
-    out[i, j], out[i, j + 1] = one_one, one_two
-    out[i + 1, j], out[i + 1, j + 1] = two_one, two_two
-    out[i + 2, j], out[i + 2, j + 1] = three_one, three_two
-    out[i + 3, j], out[i + 3, j + 1] = four_one, four_two
+    out[i, j] = one_one
+    out[i, j + 1] = one_two
+    out[i + 1, j] = two_one
+    out[i + 1, j + 1] = two_two
+    out[i + 2, j] = three_one
+    out[i + 2, j + 1] = three_two
+    out[i + 3, j] = four_one
+    out[i + 3, j + 1] = four_two
 
 
 if not WHY_PLAIN:
@@ -133,7 +147,8 @@ if not WHY_PLAIN:
     @_loop_of(multiply_rows)
     def _multiply_rows(rows, others, out):  # type: ignore[no-untyped-def]
         def loop(rows, others, out):  # type: ignore[no-untyped-def]
-            in_fours, in_twos = len(rows) - len(rows) % 4, len(others) - len(others) % 2
+            in_fours = len(rows) - len(rows) % 4
+            in_twos = len(others) - len(others) % 2
             for j in range(0, in_twos, 2):
                 for i in range(0, in_fours, 4):
                     _four_by_two(rows, i, others, j, out)

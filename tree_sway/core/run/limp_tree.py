@@ -145,7 +145,8 @@ class LimpStep(WindBasisBank):
         self._begin_anew()
 
     def _begin_anew(self) -> None:
-        self._pause, self._next_column = 0.0, 0
+        self._pause = 0.0
+        self._next_column = 0
         self.limp_motion.last_eta[:] = 0.0
         self.limp_motion.last_rate[:] = 0.0
         return_to_rest(self.pose)
@@ -200,28 +201,34 @@ class LimpStep(WindBasisBank):
     def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Step; returns 1 where the table's step was clamped to its limit."""
         speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        share, law = self._share_of_table(speed), self._law
+        share = self._share_of_table(speed)
+        law = self._law
         if share == 1.0 or law is None:
             self._forget()
             return int(self._step(wx, wy, wz, per_speed_squared))
         if not self._step_at_pose(law, (wx, wy, wz), speed, per_speed_squared):
-            self._pause, share = PAUSE, 1.0
+            self._pause = PAUSE
+            share = 1.0
             self._forget()
             return int(self._step(wx, wy, wz, per_speed_squared))
-        instance, outside = self.instance[0], 0
+        instance = self.instance[0]
+        outside = 0
         if share > 0.0:
             self._forget()
             outside = int(self._step(wx, wy, wz, per_speed_squared))
         else:
-            instance['wind'], instance['drag_density'] = (wx, wy, wz), per_speed_squared
-            instance['outside'], instance['diagonal'] = 0, 0.0
+            instance['wind'] = (wx, wy, wz)
+            instance['drag_density'] = per_speed_squared
+            instance['outside'] = 0
+            instance['diagonal'] = 0.0
         self._take(share)
         return outside
 
     def _take(self, share: float) -> None:
         """Take the step at the pose, but for the share of a step by the table."""
         motion = self.limp_motion
-        state, new = (motion.eta, motion.rate, motion.force), (*motion.new, motion.new_force)
+        state = (motion.eta, motion.rate, motion.force)
+        new = (*motion.new, motion.new_force)
         for now, own in zip(state, new, strict=True):
             now[:] = own if share == 0.0 else own + share * (now - own)
         motion.last_eta[:], motion.last_rate[:] = motion.eta, motion.rate
@@ -243,7 +250,9 @@ class LimpStep(WindBasisBank):
         Returns False where the step gives more energy than any wind does, or turns a branch too
         far.
         """
-        pose, motion, first = self.pose, self.limp_motion, self._next_column
+        pose = self.pose
+        motion = self.limp_motion
+        first = self._next_column
         count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
         if is_disturbed:
             self._forget()
@@ -300,7 +309,10 @@ def _turn_to_middle(
         whether something else has changed the state since the last step.
 
     """
-    apart, rotations, is_disturbed, turned = motion.new[0], motion.rotations, False, 0.0
+    apart = motion.new[0]
+    rotations = motion.rotations
+    is_disturbed = False
+    turned = 0.0
     for i in range(len(apart)):
         apart[i] = motion.eta[i] - motion.last_eta[i]
         if apart[i] != 0.0 or motion.rate[i] != motion.last_rate[i]:
@@ -329,14 +341,18 @@ def _step_from_middle(
 
     Returns whether the step gives no more energy than any wind [J], and turns no branch too far.
     """
-    eta, rate, new_eta, new_rate = motion.eta, motion.rate, motion.new[0], motion.new[1]
+    eta = motion.eta
+    rate = motion.rate
+    new_eta = motion.new[0]
+    new_rate = motion.new[1]
     strain = _strain_energy(motion, eta)
     copy(rate, new_rate)
     per_time = 0.5 / ahead if ahead > 0.0 else 0.0
     fill_drag(segments, pose.placed[AHEAD], pose.placed[BEHIND], per_time, wx, wy, wz)
     kinetic = renew_columns(pose, first, count, motion.middle[0], new_rate)
 
-    wanted, by_wind = motion.wanted, motion.by_wind
+    wanted = motion.wanted
+    by_wind = motion.by_wind
     load_of_forces(pose, segments.force, by_wind)
     by_wind *= per_speed_squared
     copy(by_wind, wanted)
@@ -365,7 +381,8 @@ def _bound_energy(pose: PoseInertia, motion: LimpMotion, allowed: float) -> floa
     The tree is placed where the step ends. Returns how much energy it may have before the work of
     the next step: what it has, or has lost before, up to `SLACK`.
     """
-    eta, rate = motion.new[0], motion.new[1]
+    eta = motion.new[0]
+    rate = motion.new[1]
     kinetic = 0.5 * twice_kinetic_energy(pose, rate, pose.momentum)
     moving = kinetic + 0.5 * _strain_energy(motion, eta)
     energy = moving + weight_potential(pose, eta)

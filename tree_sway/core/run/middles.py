@@ -93,7 +93,10 @@ def _fill(
 @part
 def _axis(pose: Floats) -> Vector:
     """Return the direction of the x axis of a pose."""
-    x, y, z, w = pose[3], pose[4], pose[5], pose[6]
+    x = pose[3]
+    y = pose[4]
+    z = pose[5]
+    w = pose[6]
     return 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
 
 

@@ -38,12 +38,12 @@ class NumpyBranchOscillators(BranchOscillators):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `BranchOscillators.advance`."""
-        passes, n = self._passes, len(self.branches)
-        x, v = self.x.reshape(-1, 2), self.v.reshape(-1, 2)
-        load, impulse = (
-            of_slots(self.loads['load'], n),
-            of_slots(self.loads['drag_impulse'], n).copy(),
-        )
+        passes = self._passes
+        n = len(self.branches)
+        x = self.x.reshape(-1, 2)
+        v = self.v.reshape(-1, 2)
+        load = of_slots(self.loads['load'], n)
+        impulse = of_slots(self.loads['drag_impulse'], n).copy()
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
         h = self._half[:, :, None]

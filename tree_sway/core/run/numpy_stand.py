@@ -28,10 +28,12 @@ def step_stand(
     steps = [views_of(time_steps, row) for row in range(len(time_steps))]
     n_clamped = n_restarted = 0
     for number in np.flatnonzero(placements['is_still'] == 0).tolist():
-        here, kind = placements[number], int(placements['kind'][number])
+        here = placements[number]
+        kind = int(placements['kind'][number])
         wind, load, is_clamped = _own_wind(here, winds[number], kinds[kind], drag_laws[kind])
         placements['is_clamped'][number] = is_clamped
-        instance, step = views_of(instances, number), steps[int(here['time_step'])]
+        instance = views_of(instances, number)
+        step = steps[int(here['time_step'])]
         with np.errstate(all='ignore'):
             is_outside = step_instance(kinds[kind], step, instance, is_clamped, wind, load)
         n_clamped += is_clamped or is_outside
@@ -46,11 +48,14 @@ def _own_wind(
     here: np.void, wind: Floats, table: Views, drag_law: Floats
 ) -> tuple[tuple[float, float, float], float, bool]:
     """Find the wind in the frame of a tree, its drag density, if it is clamped."""
-    half_cosine, half_sine = float(here['cosine']), float(here['sine'])
+    half_cosine = float(here['cosine'])
+    half_sine = float(here['sine'])
     cosine = half_cosine * half_cosine - half_sine * half_sine
     sine = 2.0 * half_cosine * half_sine
     east, north, up = (float(here['speed']) * wind).tolist()
-    x, y, z = cosine * east + sine * north, cosine * north - sine * east, up
+    x = cosine * east + sine * north
+    y = cosine * north - sine * east
+    z = up
     speed = math.sqrt(x * x + y * y + z * z)
     load = drag_density(speed, *drag_law.tolist())
     most_pressure = float(table['most_pressure'])

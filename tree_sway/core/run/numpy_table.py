@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A step of a tree on its table of winds in numpy: `wind_basis` without a compiler.
+A step of a tree on its table of winds in numpy: `table_model` without a compiler.
 
 The formulas and the records are those of `table_load.wind_force` and
 `table_model.step_instance`; a step is a few products of (m, m) matrices. Fields that the kernels
@@ -106,7 +106,8 @@ def wind_force(
     levels = slice(level, level + 2)
     steep = max(0.0, (abs(z) - STEEP) / (1.0 - STEEP))
     slant = min(max(z, -STEEP), STEEP)
-    on_first, on_second = (1.0 - steep) * (1.0 - share), (1.0 - steep) * share
+    on_first = (1.0 - steep) * (1.0 - share)
+    on_second = (1.0 - steep) * share
     at_first = np.array([on_first * (1.0 - up), on_first * up])
     at_second = np.array([on_second * (1.0 - up), on_second * up])
 
@@ -114,15 +115,18 @@ def wind_force(
         """Interpolate a field (azimuths, levels, m) between the four corners."""
         return at_first @ values[first, levels] + at_second @ values[second, levels]
 
-    poses, other_poses = table['equilibrium'][first, levels], table['equilibrium'][second, levels]
-    apart, other_apart = poses[1] - poses[0], other_poses[1] - other_poses[0]
+    poses = table['equilibrium'][first, levels]
+    other_poses = table['equilibrium'][second, levels]
+    apart = poses[1] - poses[0]
+    other_apart = other_poses[1] - other_poses[0]
     away = eta - (1.0 - share) * (poses[0] + up * apart)
     away -= share * (other_poses[0] + up * other_apart)
     # Half of the way to each pose, so that loads between levels are cubic.
     half_way = np.array([[0.5 * up], [-0.5 * (1.0 - up)]])
     off = (at_first[:, None] * (away + half_way * apart)).astype(np.float32)
     other_off = (at_second[:, None] * (away + half_way * other_apart)).astype(np.float32)
-    rates, slow = rate.astype(np.float32), eta.astype(np.float32)
+    rates = rate.astype(np.float32)
+    slow = eta.astype(np.float32)
     moving = rates.copy()
     for values in (off.T, other_off.T, moving, slow):
         values[n_coupled:] = 0.0
@@ -131,7 +135,8 @@ def wind_force(
     turned += _product(other_off, table['turning'][second, levels])
     turned += np.float32(on_first * slant) * slow @ table['lean'][first]
     turned += np.float32(on_second * slant) * slow @ table['lean'][second]
-    single_first, single_second = at_first.astype(np.float32), at_second.astype(np.float32)
+    single_first = at_first.astype(np.float32)
+    single_second = at_second.astype(np.float32)
     damped = _product(single_first[:, None] * moving, table['damping'][first, levels])
     damped += _product(single_second[:, None] * moving, table['damping'][second, levels])
 
@@ -139,7 +144,8 @@ def wind_force(
     drag = per_speed_squared * math.sqrt(speed_square + float(table['motion'] @ (rate * rate)))
     diagonal = drag * mean(np.diagonal(table['damping'], axis1=-2, axis2=-1))
     if steep > 0.0:
-        pole, weight = int(z > 0.0), np.float32(steep)
+        pole = int(z > 0.0)
+        weight = np.float32(steep)
         turned += weight * slow @ table['steep_turning'][pole]
         damped += weight * moving @ table['steep_damping'][pole]
         steep_diagonal = np.diagonal(table['steep_damping'][pole])
@@ -159,13 +165,15 @@ def _located(table: Views, x: float, y: float, eta: Floats) -> tuple[int, int, i
     share = turn - whole
     first = whole % N_AZIMUTHS
     second = (first + 1) % N_AZIMUTHS
-    amount, levels = table['amount'], table['levels']
+    amount = table['amount']
+    levels = table['levels']
     lean = (1.0 - share) * float(amount[first] @ eta) + share * float(amount[second] @ eta)
     heights = ((1.0 - share) * levels[first] + share * levels[second]).tolist()
     level = 0
     while level < N_LEVELS - 2 and lean > heights[level + 1]:
         level += 1
-    below, above = heights[level], heights[level + 1]
+    below = heights[level]
+    above = heights[level + 1]
     up = min(max((lean - below) / (above - below), 0.0), 1.0)
     return first, second, level, share, up
 
@@ -202,8 +210,11 @@ def step_instance(
     dynamic_pressure = per_speed_squared * speed * speed
     is_outside = not (is_clamped or dynamic_pressure <= most_pressure)
     dynamic_pressure = min(dynamic_pressure, most_pressure)
-    eta, rate, force = instance['eta'], instance['rate'], instance['force']
-    stiffness, whole = table['stiffness'], time_step['whole']
+    eta = instance['eta']
+    rate = instance['rate']
+    force = instance['force']
+    stiffness = table['stiffness']
+    whole = time_step['whole']
     before = _energy(stiffness, eta, rate)
     wind_now = direction, dynamic_pressure, per_speed_squared
     wanted, own = _load_of_middle(table, time_step, instance, wind_now)
@@ -215,11 +226,13 @@ def step_instance(
         wanted, own = _load_of_middle(table, time_step, instance, wind_now)
         change = STRIDE * (wanted - force) / (1.0 - own) + MOMENTUM * change
         force += change
-    instance['wind'][:], instance['drag_density'][...] = wind, per_speed_squared
+    instance['wind'][:] = wind
+    instance['drag_density'][...] = per_speed_squared
     moved = whole[0] * eta + whole[1] * rate + (whole[2] + whole[3]) * force
     rate[:] = whole[4] * eta + whole[5] * rate + (whole[6] + whole[7]) * force
     eta[:] = moved
-    energy, most = _energy(stiffness, eta, rate), max(before, float(table['most_energy']))
+    energy = _energy(stiffness, eta, rate)
+    most = max(before, float(table['most_energy']))
     if not energy <= most:
         # A pull may bend it more than any wind; no wind adds to that.
         share = math.sqrt(most / energy)
@@ -247,14 +260,18 @@ def _load_of_middle(
     The wind is direction, dynamic pressure and load per squared speed. Returns modal forces, and
     their slopes by the force of the coordinate, (m,).
     """
-    eta, rate, force = instance['eta'], instance['rate'], instance['force']
+    eta = instance['eta']
+    rate = instance['rate']
+    force = instance['force']
     half = time_step['half']
-    middle, middle_rate = instance['middle'], instance['middle_rate']
+    middle = instance['middle']
+    middle_rate = instance['middle_rate']
     middle[:] = half[0] * eta + half[1] * rate + half[2] * force
     middle_rate[:] = half[3] * eta + half[4] * rate + half[5] * force
     n_coupled = int(table['n_modes']) - int(instance['left_out'])
     wanted, diagonal = wind_force(table, *wind, middle, middle_rate, n_coupled)
-    instance['wanted'][:], instance['diagonal'][:] = wanted, diagonal
+    instance['wanted'][:] = wanted
+    instance['diagonal'][:] = diagonal
     return wanted, diagonal * half[5]
 
 

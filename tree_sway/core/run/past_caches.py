@@ -35,7 +35,8 @@ if not WHY_PLAIN:
     @intrinsic
     def _write_line(typing, into, at, of, row):  # type: ignore[no-untyped-def]
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            kinds, line = signature.args, _LINE.as_pointer()
+            kinds = signature.args
+            line = _LINE.as_pointer()
             target = builder.bitcast(element_at(context, builder, kinds[0], *values[:2]), line)
             source = builder.bitcast(element_at(context, builder, kinds[2], *values[2:]), line)
             written = builder.store(builder.load(source, align=8), target, align=64)
@@ -53,7 +54,8 @@ if not WHY_PLAIN:
     @overload(write_past_caches)
     def _write_past_caches(of, into):  # type: ignore[no-untyped-def]
         def write(of, into):  # type: ignore[no-untyped-def]
-            count, address = len(of), into.ctypes.data
+            count = len(of)
+            address = into.ctypes.data
             # Lines of a cache begin at multiples of 64 bytes.
             first = count
             if address % 8 == 0:

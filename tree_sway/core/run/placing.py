@@ -163,7 +163,8 @@ def _stand_on_ground(
     scratch: Block, origin: Floats, cosine: float, sine: float, count: int
 ) -> None:
     """Put the ground, at the root node and rotated about the vertical, in place of a parent."""
-    base, support = scratch.parent_base, scratch.support
+    base = scratch.parent_base
+    support = scratch.support
     for slot in range(count):
         for row in range(7):
             base[row, slot] = 0.0
@@ -183,7 +184,8 @@ def _read_parents(
     block: Block, scratch: Block, bases: Floats, rotations: Floats, out: Floats
 ) -> None:
     """Read the bases and base segments of the parents of sixteen branches."""
-    base, support = scratch.parent_base, scratch.support
+    base = scratch.parent_base
+    support = scratch.support
     for slot in range(0, block.n_slots, 4):  # values of empty slots are unused
         _take(out, block.base_segment, 0, support, 0, slot)
         _take(out, block.base_segment, 3, support, 3, slot)
@@ -228,12 +230,16 @@ def _rotate_on_parents(block: Block, scratch: Block, count: int) -> bool:
 
     Returns whether all these, and the key rotations, are within the range of the short series.
     """
-    mode, parent_key, key = block.base_rotation, scratch.parent_key, scratch.key
-    base, half = scratch.parent_base, scratch.base_half
+    mode = block.base_rotation
+    parent_key = scratch.parent_key
+    key = scratch.key
+    base = scratch.parent_base
+    half = scratch.base_half
     has_further = block.n_parent_rows > 2
     n_beyond = 0
     for slot in range(count):
-        half_x, half_y = base[4, slot], base[5, slot]
+        half_x = base[4, slot]
+        half_y = base[5, slot]
         x = half_x * mode[0, 0, slot] + half_y * mode[1, 0, slot]
         y = half_x * mode[0, 1, slot] + half_y * mode[1, 1, slot]
         z = half_x * mode[0, 2, slot] + half_y * mode[1, 2, slot]
@@ -244,7 +250,9 @@ def _rotate_on_parents(block: Block, scratch: Block, count: int) -> bool:
                 y += amount * mode[row, 1, slot]
                 z += amount * mode[row, 2, slot]
         square = x * x + y * y + z * z
-        half[0, slot], half[1, slot], half[2, slot] = x, y, z
+        half[0, slot] = x
+        half[1, slot] = y
+        half[2, slot] = z
         scratch.square[slot] = square
         scratch.cosine[slot], scratch.sinc[slot] = half_angle_near(square)
         key_square = key[0, slot] * key[0, slot] + key[1, slot] * key[1, slot]
@@ -257,7 +265,9 @@ def _rotate_on_parents(block: Block, scratch: Block, count: int) -> bool:
 @part
 def _half_angles(scratch: Block, largest: float, count: int) -> None:
     """Find cosine and sinc of sixteen half angles from squares up to the largest."""
-    square, cosine, sinc = scratch.square, scratch.cosine, scratch.sinc
+    square = scratch.square
+    cosine = scratch.cosine
+    sinc = scratch.sinc
     if largest <= NEAR_LIMIT:
         for slot in range(count):
             cosine[slot], sinc[slot] = half_angle_near(square[slot])
@@ -278,12 +288,19 @@ def _rotate_bases(
 
     Returns a bound on the squared half angle of any segment.
     """
-    key, half_key, frame = scratch.key, scratch.half_key, block.frame
-    parent, on_parent = scratch.parent_base, scratch.base_half
-    base, half_rotation, times_half = scratch.base, scratch.half_rotation, scratch.sine_part
-    start, offset = scratch.next, block.offset
+    key = scratch.key
+    half_key = scratch.half_key
+    frame = block.frame
+    parent = scratch.parent_base
+    on_parent = scratch.base_half
+    base = scratch.base
+    half_rotation = scratch.half_rotation
+    times_half = scratch.sine_part
+    start = scratch.next
+    offset = block.offset
     for slot in range(count):
-        key_x, key_y = key[0, slot], key[1, slot]
+        key_x = key[0, slot]
+        key_y = key[1, slot]
         square = key_x * key_x + key_y * key_y
         carrying, half, blend = _halves(square, block.skew[slot], block.tip_skew[slot])
         base[4, slot] = carrying * key_x
@@ -306,12 +323,19 @@ def _rotate_bases(
             scratch.cosine[slot],
             sinc * on_parent[0, slot], sinc * on_parent[1, slot], sinc * on_parent[2, slot],
         )  # fmt: skip
-        base[0, slot], base[1, slot], base[2, slot], base[3, slot] = w, x, y, z
+        base[0, slot] = w
+        base[1, slot] = x
+        base[2, slot] = y
+        base[3, slot] = z
         w, x, y, z = _times_vector(w, x, y, z, half_x, half_y, half_z)
-        times_half[0, slot], times_half[1, slot] = w, x
-        times_half[2, slot], times_half[3, slot] = y, z
+        times_half[0, slot] = w
+        times_half[1, slot] = x
+        times_half[2, slot] = y
+        times_half[3, slot] = z
         x, y, z = _along(scratch.support, slot, scale * offset[0, slot])
-        start[0, slot], start[1, slot], start[2, slot] = x, y, z
+        start[0, slot] = x
+        start[1, slot] = y
+        start[2, slot] = z
     if not block.is_at_axes:
         _go_aside(scratch.support, start, scale, offset, count)
     if block.n_rows > 2:
@@ -355,7 +379,9 @@ def _times_vector(
 @part
 def _take_further(block: Block, scratch: Block, rotations: Floats, count: int) -> None:
     """Halve the coordinates after the key rotations, and raise the bounds on angles by them."""
-    half_key, bound, steepest = scratch.half_key, scratch.bound, block.steepest
+    half_key = scratch.half_key
+    bound = scratch.bound
+    steepest = block.steepest
     for slot in range(0, count, 4):
         _read_further(rotations, block.coordinate, half_key, slot)
     for slot in range(count):
@@ -371,7 +397,8 @@ def _take_further(block: Block, scratch: Block, rotations: Floats, count: int) -
 @part
 def _largest(bound: Floats, count: int) -> float:
     """Return the largest bound, or the sum of all where that is near enough to zero."""
-    total, largest = 0.0, 0.0
+    total = 0.0
+    largest = 0.0
     for slot in range(count):
         total += bound[slot]
     if total <= NEAR_LIMIT:
@@ -384,7 +411,8 @@ def _largest(bound: Floats, count: int) -> float:
 @part
 def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
     """Write the rotated bases for the children."""
-    branch, base = block.branch, scratch.base
+    branch = block.branch
+    base = scratch.base
     in_fours = block.n_parents - block.n_parents % 4
     for slot in range(0, in_fours, 4):
         _put(base, 0, slot, bases, branch, 0, 0)
@@ -397,7 +425,8 @@ def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
 @part
 def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each after the one before it on its branch."""
-    pose, first = scratch.pose, block.first
+    pose = scratch.pose
+    first = block.first
     in_fours = n_slots - n_slots % 4
     for slot in range(0, in_fours, 4):
         _put(pose, 0, slot, out, first, rank, 0)
@@ -410,7 +439,10 @@ def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Flo
 @part
 def _along(pose: Floats, slot: int, length: float) -> tuple[float, float, float]:
     """Return the point at a length along the x axis of a pose."""
-    x, y, z, w = pose[3, slot], pose[4, slot], pose[5, slot], pose[6, slot]
+    x = pose[3, slot]
+    y = pose[4, slot]
+    z = pose[5, slot]
+    w = pose[6, slot]
     twice = length + length
     return (
         pose[0, slot] + length - twice * (y * y + z * z),
@@ -435,7 +467,8 @@ def _go_aside(pose: Floats, point: Floats, scale: float, local: Floats, count: i
 @part
 def _bend_and_join(segment: Segment, scratch: Block, scale: float, count: int) -> None:
     """Rotate and join sixteen straight segments of branches that bend a little about one axis."""
-    base, times_half = scratch.base, scratch.sine_part
+    base = scratch.base
+    times_half = scratch.sine_part
     for slot in range(count):
         slope = segment.slope[slot]
         cosine, sinc = half_angle_near(slope * slope * scratch.rotation_square[slot])
@@ -457,7 +490,8 @@ def _bend(
     else:
         _rotate_by_all(segment, scratch, count)
     _half_angles(scratch, largest, count)
-    base, half = scratch.base, scratch.half
+    base = scratch.base
+    half = scratch.half
     for slot in range(count):
         sinc = scratch.sinc[slot]
         w, x, y, z = product(
@@ -475,18 +509,26 @@ def _join(
     w: float, x: float, y: float, z: float,
 ) -> None:  # fmt: skip
     """Rotate a segment from rest, begin it where the one before ended, and find its end."""
-    rest, pose, start = segment.rest, scratch.pose, scratch.next
+    rest = segment.rest
+    pose = scratch.pose
+    start = scratch.next
     w, x, y, z = product(w, x, y, z, rest[0, slot], rest[1, slot], rest[2, slot], rest[3, slot])
     pose[0, slot], pose[1, slot], pose[2, slot] = start[0, slot], start[1, slot], start[2, slot]
-    pose[3, slot], pose[4, slot], pose[5, slot], pose[6, slot] = x, y, z, w
+    pose[3, slot] = x
+    pose[4, slot] = y
+    pose[5, slot] = z
+    pose[6, slot] = w
     x, y, z = _along(pose, slot, scale * segment.own_chord[0, slot])
-    start[0, slot], start[1, slot], start[2, slot] = x, y, z
+    start[0, slot] = x
+    start[1, slot] = y
+    start[2, slot] = z
 
 
 @part
 def _rotate_plain(segment: Segment, scratch: Block, count: int) -> None:
     """Find half the rotation vectors of sixteen segments of branches with key rotations alone."""
-    rotation, blend = scratch.half_rotation, scratch.blend
+    rotation = scratch.half_rotation
+    blend = scratch.blend
     for slot in range(count):
         slope = segment.slope[slot]
         slope += blend[slot] * (segment.tip_slope[slot] - slope)
@@ -503,8 +545,10 @@ def _rotate_by_all(segment: Segment, scratch: Block, count: int) -> None:
 
     All rows of the record are summed: with a count known at compile time the slots are a vector.
     """
-    rotation, blend = scratch.half_rotation, scratch.blend
-    turn, half_key = segment.segment_turn, scratch.half_key
+    rotation = scratch.half_rotation
+    blend = scratch.blend
+    turn = segment.segment_turn
+    half_key = scratch.half_key
     for slot in range(count):
         slope = blend[slot] * (segment.tip_slope[slot] - segment.slope[slot])
         x = slope * rotation[0, slot]
@@ -522,5 +566,7 @@ def _rotate_by_all(segment: Segment, scratch: Block, count: int) -> None:
 def _rotate_by(scratch: Block, slot: int, x: float, y: float, z: float) -> None:
     """Write half the rotation vector of a segment, and its square."""
     half = scratch.half
-    half[0, slot], half[1, slot], half[2, slot] = x, y, z
+    half[0, slot] = x
+    half[1, slot] = y
+    half[2, slot] = z
     scratch.square[slot] = x * x + y * y + z * z

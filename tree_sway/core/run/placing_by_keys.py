@@ -49,7 +49,8 @@ class CompiledPlacing:
 
     def __init__(self, branches: Records, segments: Records, blocks: Records) -> None:
         """Make scratch memory."""
-        self._segments, self._blocks = segments, blocks
+        self._segments = segments
+        self._blocks = blocks
         self._bases = np.zeros((len(branches), 8))
         self._x = room_for(int(branches['n_coordinates'].sum()))
 

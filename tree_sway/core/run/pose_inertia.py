@@ -70,7 +70,7 @@ class PoseInertia(NamedTuple):
     columns_at_rest: Floats
     """The columns at rest, (m, 3 n)."""
     factor: Floats
-    """Of the inertia of the middles at rest by Cholesky's decomposition, (q, q)."""
+    """Cholesky factor of the inertia of the middles at rest, (q, q)."""
     weight_at_rest: Floats
     """Force of the weight at rest on the leading coordinates, (q,)."""
     slopes: Floats
@@ -88,7 +88,7 @@ class PoseInertia(NamedTuple):
     placed: Floats
     """Middles at these, (m + 3, 3 n)."""
     products: Floats
-    """Of the columns with the bend of the motion, then with each new column, (m + 1, q)."""
+    """Products of the columns with the bend of the motion, then with each new one, (m + 1, q)."""
     momentum: Floats
     """Scratch memory, (q,)."""
     sloped: Floats
@@ -119,7 +119,8 @@ def inertia_at_rest(
     # The model's coordinates have unit mass, that of its points to some percent.
     factor = np.asarray(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T), dtype=np.float64)
     unit = np.linalg.inv(factor)
-    directions, columns = shapes.T.copy(), at_rest.copy()
+    directions = shapes.T.copy()
+    columns = at_rest.copy()
     directions[:q] = unit @ directions[:q]
     columns[:q] = unit @ columns[:q]
     return PoseInertia(
@@ -186,7 +187,9 @@ def turn_along(pose: PoseInertia, rotation_rates: Floats, fastest: float) -> flo
     Rates of the key rotations are (N,) in [rad/s], ``fastest`` is the largest.
     """
     step = _MOTION_TURN / fastest if fastest > 0.0 else 0.0
-    here, ahead, behind = pose.turned[HERE], pose.turned[AHEAD], pose.turned[BEHIND]
+    here = pose.turned[HERE]
+    ahead = pose.turned[AHEAD]
+    behind = pose.turned[BEHIND]
     np.multiply(rotation_rates, step, ahead)
     np.subtract(here, ahead, behind)
     ahead += here
@@ -236,7 +239,8 @@ def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: 
 @part
 def _take_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> None:
     """Take columns, inertia and weight of `renew_columns`, and the bend along the motion."""
-    q, here = len(pose.change), pose.placed[HERE]
+    q = len(pose.change)
+    here = pose.placed[HERE]
     bend = pose.placed[BEHIND]
     bend += pose.placed[AHEAD]
     bend -= here
@@ -248,7 +252,8 @@ def _take_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> Non
         column -= here
         column /= pose.steps[row]
         copy(column, pose.columns[row])
-    rows, products = pose.placed[BEHIND : COLUMNS + count], pose.products[: 1 + count]
+    rows = pose.placed[BEHIND : COLUMNS + count]
+    products = pose.products[: 1 + count]
     multiply_rows(rows, pose.columns[:q], products)
     for k in range(count):
         row = (first + k) % len(pose.columns)

@@ -103,7 +103,8 @@ class Touch:
 
     def __init__(self, tree: Tree, bank: Bank) -> None:
         """Begin without a push; a `ParameterError` on a model that cannot be pushed."""
-        self._tree, self._bank = tree, bank
+        self._tree = tree
+        self._bank = bank
         self._oscillators: Any = bank.oscillators
         self.pushes: dict[int, Push] = {}
         """Active pushes by their segments."""
@@ -159,7 +160,8 @@ class Touch:
         settled = 1.0 - math.exp(-dt / SETTLES)
         self.residual *= 1.0 - settled
         self._share += settled * (bool(self.pushes) - self._share)
-        poses, residual = place_all(), self.residual.copy()
+        poses = place_all()
+        residual = self.residual.copy()
         whole, (eta, rate, total) = self._oscillators.whole, self._oscillators.swing
         per_force = whole[:, 2:4].sum(axis=1)
         for push in list(self.pushes.values()):
@@ -195,11 +197,14 @@ class Touch:
         branches = self._bank.branches
         # A branch that is cut has one record per piece.
         has_segment = (branches['first'] <= push.segment) & (push.segment < branches['end'])
-        branch, keys, residual = int(np.flatnonzero(has_segment)[0]), list[int](), push.residual
+        branch = int(np.flatnonzero(has_segment)[0])
+        keys = list[int]()
+        residual = push.residual
         by_branch, modes = self._oscillators.compliance
         while branch >= 0:
             record = branches[branch]
-            first, count = int(record['coordinate']), int(record['n_coordinates'])
+            first = int(record['coordinate'])
+            count = int(record['n_coordinates'])
             for i in (own := range(first, first + count)):
                 x[i] += _TURN
                 self._bank.place(x, origin, self._poses)

@@ -49,10 +49,12 @@ def segment_drag(model: SwayModel, branches: Records, tangent: Floats) -> Segmen
         Directions of the segments, (3 n,), which `Middles` writes.
 
     """
-    tree, first = model.tree, model.branch_first[:-1]
+    tree = model.tree
+    first = model.branch_first[:-1]
     branch = np.repeat(np.arange(len(first)), np.diff(model.branch_first))
     wood = 0.5 * tree.length * (tree.base_diameter + tree.tip_diameter)
-    of_wood, along = np.add.reduceat(wood, first), np.add.reduceat(tree.length, first)
+    of_wood = np.add.reduceat(wood, first)
+    along = np.add.reduceat(tree.length, first)
     clad = np.minimum(branches['area'] / of_wood, 1.0)
     leaves = np.maximum(branches['area'] - of_wood, 0.0) / along
     return SegmentDrag(
@@ -106,9 +108,12 @@ if not WHY_PLAIN:
     @overload(fill_drag, jit_options=LOOP_OPTIONS)
     def _fill_drag(drag, ahead, behind, per_time, wx, wy, wz):  # type: ignore[no-untyped-def]
         def loop(drag, ahead, behind, per_time, wx, wy, wz):  # type: ignore[no-untyped-def]
-            tangent, force = drag.tangent, drag.force
+            tangent = drag.tangent
+            force = drag.force
             for i in range(len(drag.area)):
-                x, y, z = 3 * i, 3 * i + 1, 3 * i + 2
+                x = 3 * i
+                y = 3 * i + 1
+                z = 3 * i + 2
                 per_mass = per_time / drag.root_mass[i]
                 ux = drag.speed[i] * wx - per_mass * (ahead[x] - behind[x])
                 uy = drag.speed[i] * wy - per_mass * (ahead[y] - behind[y])
@@ -119,6 +124,8 @@ if not WHY_PLAIN:
                 uz -= along * tangent[z]
                 across = np.sqrt(ux * ux + uy * uy + uz * uz)
                 factor = drag.area[i] * across / drag.root_mass[i]
-                force[x], force[y], force[z] = factor * ux, factor * uy, factor * uz
+                force[x] = factor * ux
+                force[y] = factor * uy
+                force[z] = factor * uz
 
         return loop

@@ -86,10 +86,14 @@ if not WHY_PLAIN:
             return builder.shuffle_vector(one, other, picked)
 
         # First the squares of two numbers in the corners are transposed, then their places.
-        even, odd = [0, 4, 2, 6], [1, 5, 3, 7]
-        upper_even, lower_even = mixed(rows[0], rows[1], even), mixed(rows[2], rows[3], even)
-        upper_odd, lower_odd = mixed(rows[0], rows[1], odd), mixed(rows[2], rows[3], odd)
-        front, back = [0, 1, 4, 5], [2, 3, 6, 7]
+        even = [0, 4, 2, 6]
+        odd = [1, 5, 3, 7]
+        upper_even = mixed(rows[0], rows[1], even)
+        lower_even = mixed(rows[2], rows[3], even)
+        upper_odd = mixed(rows[0], rows[1], odd)
+        lower_odd = mixed(rows[2], rows[3], odd)
+        front = [0, 1, 4, 5]
+        back = [2, 3, 6, 7]
         return (
             mixed(upper_even, lower_even, front),
             mixed(upper_odd, lower_odd, front),
@@ -128,7 +132,8 @@ if not WHY_PLAIN:
 
         return generate
 
-    _AT, _ROWS = 2 * (types.intp,), 5 * (types.intp,)
+    _AT = 2 * (types.intp,)
+    _ROWS = 5 * (types.intp,)
     generated(
         put_four,
         lambda slots, row, slot, rows, a, b, c, d, first: types.none(slots, *_AT, rows, *_ROWS),

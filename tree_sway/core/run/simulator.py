@@ -443,7 +443,8 @@ class SwaySimulator:
         from tree_sway.core.run.tuning import LiveTuning
 
         if self._tuning is None:
-            tunable, ratio = self._bank.oscillators.tunable, self.models[0].damping_ratio
+            tunable = self._bank.oscillators.tunable
+            ratio = self.models[0].damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
         return self._tuning.changed(**changes)
 

@@ -69,12 +69,14 @@ def step_stand(
         was not finite and that continue from rest.
 
     """
-    n_clamped, n_restarted = 0, 0
+    n_clamped = 0
+    n_restarted = 0
     for number in range(len(placements)):
         here = placements[number]
         if here.is_still:
             continue
-        table, instance = tables[here.kind], instances[number]
+        table = tables[here.kind]
+        instance = instances[number]
         x, y, z = _wind_in_frame(here, winds[number])
         speed = math.sqrt(x * x + y * y + z * z)
         law = drag_laws[here.kind]
@@ -82,7 +84,9 @@ def step_stand(
         here.is_clamped = load * speed * speed > table.most_pressure
         if here.is_clamped:
             fraction = math.sqrt(table.most_pressure / load) / speed
-            x, y, z = fraction * x, fraction * y, fraction * z
+            x = fraction * x
+            y = fraction * y
+            z = fraction * z
         time_step = time_steps[here.time_step]
         is_outside = step_instance(table, time_step, instance, True, x, y, z, load)
         n_clamped += 1 if here.is_clamped else is_outside
@@ -158,9 +162,11 @@ def place_stand(
         Pose block of the stand, (n, 7), rows of these trees written.
 
     """
-    own, whole = poses.reshape(-1), out.reshape(-1)
+    own = poses.reshape(-1)
+    whole = out.reshape(-1)
     for row in range(len(trees)):
-        number, first = trees[row, 0], trees[row, 1]
+        number = trees[row, 0]
+        first = trees[row, 1]
         here = placements[number]
         place(
             instances[number : number + 1], shapes, segments, blocks, bases,

@@ -126,7 +126,8 @@ def _weights_of(corners: Corners, level_winds: float) -> Weights:
     """Find the weights of the corners, which add up to a share of winds that are not steep."""
     before = level_winds * (1.0 - corners.azimuth_share)
     after = level_winds * corners.azimuth_share
-    below, above = 1.0 - corners.level_share, corners.level_share
+    below = 1.0 - corners.level_share
+    above = corners.level_share
     return Weights(before * below, before * above, after * below, after * above)
 
 
@@ -142,7 +143,9 @@ def _slants(corners: Corners, z: float, steepness: float) -> tuple[np.float32, n
 @part
 def _begin(table: Table, instance: Instance, corners: Corners, weights: Weights) -> None:
     """Begin the forces with the interpolated load."""
-    force, turned, damped = instance.wanted, instance.turned, instance.damped
+    force = instance.wanted
+    turned = instance.turned
+    damped = instance.damped
     for mode in range(len(force)):
         force[mode] = _between(table.load, corners, weights, mode)
         turned[mode] = damped[mode] = 0.0
@@ -151,7 +154,10 @@ def _begin(table: Table, instance: Instance, corners: Corners, weights: Weights)
 @part
 def _between(values: Floats, corners: Corners, weights: Weights, mode: int) -> float:
     """Interpolate a value of a coordinate between the corners."""
-    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    before = corners.before
+    after = corners.after
+    below = corners.below
+    above = corners.above
     return float(
         weights.before_below * values[before, below, mode]
         + weights.before_above * values[before, above, mode]
@@ -163,9 +169,14 @@ def _between(values: Floats, corners: Corners, weights: Weights, mode: int) -> f
 @part
 def _find_distances(table: Table, instance: Instance, corners: Corners, weights: Weights) -> None:
     """Find how far the tree is from the poses at the corners, times their weights."""
-    eta, distance = instance.middle, instance.distance
-    before, after, below, above = corners.before, corners.after, corners.below, corners.above
-    share, above_share = corners.azimuth_share, corners.level_share
+    eta = instance.middle
+    distance = instance.distance
+    before = corners.before
+    after = corners.after
+    below = corners.below
+    above = corners.above
+    share = corners.azimuth_share
+    above_share = corners.level_share
     for mode in range(len(eta)):
         low = table.equilibrium[before, below, mode]
         other_low = table.equilibrium[after, below, mode]
@@ -174,7 +185,8 @@ def _find_distances(table: Table, instance: Instance, corners: Corners, weights:
         away = eta[mode] - (1.0 - share) * (low + above_share * step)
         away -= share * (other_low + above_share * other_step)
         # Half of the way to each pose, so that loads between levels are cubic.
-        to_below, to_above = 0.5 * above_share, 0.5 * (1.0 - above_share)
+        to_below = 0.5 * above_share
+        to_above = 0.5 * (1.0 - above_share)
         distance[0, mode] = weights.before_below * (away + to_below * step)
         distance[1, mode] = weights.before_above * (away - to_above * step)
         distance[2, mode] = weights.after_below * (away + to_below * other_step)
@@ -189,7 +201,8 @@ def _drag_per_speed(table: Table, instance: Instance, wind: UniformWind) -> floa
     W is the root mean square of the wind and the velocity of the branches. Rates are kept in
     single precision for `_add_slopes`.
     """
-    rate, single_rate = instance.middle_rate, instance.single_rate
+    rate = instance.middle_rate
+    single_rate = instance.single_rate
     square = 0.0
     if wind.per_speed_squared > 0.0:
         square = wind.dynamic_pressure / wind.per_speed_squared
@@ -217,21 +230,34 @@ def _add_slopes(
 
     The moving coordinate is the outer loop, so that the loop over the loaded ones is a vector.
     """
-    eta, rates, distance = instance.middle, instance.single_rate, instance.distance
-    turned, damped = instance.turned, instance.damped
-    turning, damping, lean = table.turning, table.damping, table.lean
-    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    eta = instance.middle
+    rates = instance.single_rate
+    distance = instance.distance
+    turned = instance.turned
+    damped = instance.damped
+    turning = table.turning
+    damping = table.damping
+    lean = table.lean
+    before = corners.before
+    after = corners.after
+    below = corners.below
+    above = corners.above
     before_below = np.float32(weights.before_below)
     before_above = np.float32(weights.before_above)
     after_below = np.float32(weights.after_below)
     after_above = np.float32(weights.after_above)
     for moving in range(n_coupled):
-        away_0, away_1 = distance[0, moving], distance[1, moving]
-        away_2, away_3 = distance[2, moving], distance[3, moving]
-        rate_0, rate_1 = before_below * rates[moving], before_above * rates[moving]
-        rate_2, rate_3 = after_below * rates[moving], after_above * rates[moving]
+        away_0 = distance[0, moving]
+        away_1 = distance[1, moving]
+        away_2 = distance[2, moving]
+        away_3 = distance[3, moving]
+        rate_0 = before_below * rates[moving]
+        rate_1 = before_above * rates[moving]
+        rate_2 = after_below * rates[moving]
+        rate_3 = after_above * rates[moving]
         moved = np.float32(eta[moving])
-        slant_before, slant_after = slants[0] * moved, slants[1] * moved
+        slant_before = slants[0] * moved
+        slant_after = slants[1] * moved
         for mode in range(len(eta)):
             turned[mode] += (
                 away_0 * turning[before, below, moving, mode]
@@ -254,8 +280,11 @@ def _fill_diagonal(
     table: Table, instance: Instance, corners: Corners, weights: Weights, drag: float
 ) -> None:
     """Fill the slopes of the forces by the rate of the same coordinate."""
-    diagonal, below, above = instance.diagonal, corners.below, corners.above
-    before, after = corners.before, corners.after
+    diagonal = instance.diagonal
+    below = corners.below
+    above = corners.above
+    before = corners.before
+    after = corners.after
     for mode in range(len(diagonal)):
         diagonal[mode] = drag * (
             weights.before_below * table.damping[before, below, mode, mode]
@@ -270,7 +299,8 @@ def _add_steep_slopes(
     table: Table, instance: Instance, upwards: int, steepness: float, drag: float, n_coupled: int
 ) -> None:
     """Add the slopes in winds straight up or down, by the share that the wind has of them."""
-    turned, damped = instance.turned, instance.damped
+    turned = instance.turned
+    damped = instance.damped
     share = np.float32(steepness)
     for moving in range(n_coupled):
         moved = share * np.float32(instance.middle[moving])
@@ -288,8 +318,12 @@ def _sum_up(
     table: Table, instance: Instance, dynamic_pressure: float, drag: float, n_coupled: int
 ) -> None:
     """Sum the forces of load and damping."""
-    force, turned, damped = instance.wanted, instance.turned, instance.damped
-    limit, diagonal, rate = table.limit, instance.diagonal, instance.middle_rate
+    force = instance.wanted
+    turned = instance.turned
+    damped = instance.damped
+    limit = table.limit
+    diagonal = instance.diagonal
+    rate = instance.middle_rate
     for mode in range(len(force)):
         # Slopes are valid near a pose; the load far from it is bounded by that of any wind.
         load = min(max(force[mode] + turned[mode], -limit[mode]), limit[mode])

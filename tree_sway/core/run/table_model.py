@@ -1,12 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Model `wind_basis`: a tree as a few oscillators, driven by a table of all uniform winds.
+The default model: a tree as a few oscillators, driven by a table of all uniform winds.
 
-The cost of a step does not depend on the size of the tree. The coordinates cover most of the
-motion in steady winds and gusts (`setup.modes.leading_modes`); each has its inertia, so that
-none follows a wind at once. The load is that of the state at the middle of the step. It comes from
-a table (`load_table`) and not from the branches. A wind or a lean beyond the table is
+It is the one whose name is a number of coordinates, such as ``60``. The cost of a step does not
+depend on the size of the tree. The coordinates cover most of the motion in steady winds and gusts
+(`setup.modes.leading_modes`); each has its inertia, so that none follows a wind at once. The load
+is that of the state at the middle of the step. It comes from a table (`load_table`) and not from
+the branches. The law is on the page doc/sway_model.md. A wind or a lean beyond the table is
 clamped to its limit, and counted as ``outside``.
 """
 
@@ -74,10 +75,14 @@ class WindBasisBank:
 
     def __init__(self, modal: ModalCoordinates, table: Records) -> None:
         """Begin at rest."""
-        self.modal, self.table = modal, table
-        self.branches, self.shapes = modal.branches, modal.shapes
-        self.compliance, self.limit = modal.compliance, modal.limit
-        self.tunable, self.air_damping = modal.tunable, modal.air_damping
+        self.modal = modal
+        self.table = table
+        self.branches = modal.branches
+        self.shapes = modal.shapes
+        self.compliance = modal.compliance
+        self.limit = modal.limit
+        self.tunable = modal.tunable
+        self.air_damping = modal.air_damping
         # Rounded everywhere, as kernels read them in single precision.
         self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
         self.lay_out(modal.shapes.shape[1])
@@ -169,7 +174,8 @@ class WindBasisBank:
     @property
     def whole(self) -> Floats:
         """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
-        time_step, count = self.time_step[0], self.modal.shapes.shape[1]
+        time_step = self.time_step[0]
+        count = self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
         implicit = 1.0 - self.instance['diagonal'][0, :count] * time_step['half'][5, :count]
         return np.asarray((time_step['whole'][:, :count] / implicit).T)
@@ -287,7 +293,8 @@ def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
     A step moves each coordinate exactly. The load is taken from the state of `middle_of_step`.
     """
     m = len(law.stiffness)
-    time_step['whole'], time_step['half'] = 0.0, 0.0
+    time_step['whole'] = 0.0
+    time_step['half'] = 0.0
     time_step['whole'][:, :m] = law.whole.T
     time_step['half'][:, :m] = middle_of_step(law, dt)
 
@@ -343,9 +350,13 @@ def step_instance(
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-    ahead, aside, upwards = 1.0, 0.0, 0.0
+    ahead = 1.0
+    aside = 0.0
+    upwards = 0.0
     if speed > 0.0:
-        ahead, aside, upwards = wx / speed, wy / speed, wz / speed
+        ahead = wx / speed
+        aside = wy / speed
+        upwards = wz / speed
     dynamic_pressure = per_speed_squared * speed * speed
     instance.outside = 0 if is_clamped or dynamic_pressure <= table.most_pressure else 1
     dynamic_pressure = min(dynamic_pressure, table.most_pressure)
@@ -358,7 +369,9 @@ def step_instance(
             _to_middle(table, time_step, instance)
             wind_force(table, instance, wind, n_coupled)
             _change_force(time_step, instance)
-    instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
+    instance.wind[0] = wx
+    instance.wind[1] = wy
+    instance.wind[2] = wz
     instance.drag_density = per_speed_squared
     energy = _step_coordinates(table, time_step, instance)
     # A pull may bend it more than any wind; no wind adds to that.
@@ -372,10 +385,14 @@ def step_instance(
 @part
 def _to_middle(table: Table, time_step: TimeStep, instance: Instance) -> float:
     """Write the state at the middle of the step; return twice the energy before the step."""
-    half, middle, middle_rate = time_step.half, instance.middle, instance.middle_rate
+    half = time_step.half
+    middle = instance.middle
+    middle_rate = instance.middle_rate
     energy = 0.0
     for mode in range(len(instance.eta)):
-        eta, rate, force = instance.eta[mode], instance.rate[mode], instance.force[mode]
+        eta = instance.eta[mode]
+        rate = instance.rate[mode]
+        force = instance.force[mode]
         energy += table.stiffness[mode] * eta * eta + rate * rate
         middle[mode] = half[0, mode] * eta + half[1, mode] * rate + half[2, mode] * force
         middle_rate[mode] = half[3, mode] * eta + half[4, mode] * rate + half[5, mode] * force
@@ -390,9 +407,11 @@ def _find_force(time_step: TimeStep, instance: Instance) -> int:
     The force is implicit in all damping, with equal rates of the other coordinates: stable for any
     wind and length of the step.
     """
-    half, n_stopped = time_step.half, 0
+    half = time_step.half
+    n_stopped = 0
     for mode in range(len(instance.eta)):
-        before, own = instance.force[mode], instance.diagonal[mode] * half[5, mode]
+        before = instance.force[mode]
+        own = instance.diagonal[mode] * half[5, mode]
         force = (instance.wanted[mode] - own * before) / (1.0 - own)
         instance.force[mode] = force
         instance.change[mode] = force - before
@@ -408,7 +427,8 @@ def _more_passes(time_step: TimeStep, instance: Instance) -> int:
     Bounded by the damping of all coordinates, the force lags behind the wind where drag stops a
     coordinate within half a step: light leaves on thin petioles. Twice the drag takes one more.
     """
-    passes, stiffest = 0, 0.0
+    passes = 0
+    stiffest = 0.0
     for mode in range(len(instance.eta)):
         stiffest = max(stiffest, -instance.diagonal[mode] * time_step.half[5, mode])
     while stiffest > 1.0 and passes < MOST_PASSES - 1:
@@ -420,7 +440,8 @@ def _more_passes(time_step: TimeStep, instance: Instance) -> int:
 @part
 def _change_force(time_step: TimeStep, instance: Instance) -> None:
     """Change the force towards that of the wind in the motion which it makes itself."""
-    half, change = time_step.half, instance.change
+    half = time_step.half
+    change = instance.change
     for mode in range(len(instance.eta)):
         bound = 1.0 - instance.diagonal[mode] * half[5, mode]
         lacking = (instance.wanted[mode] - instance.force[mode]) / bound
@@ -431,13 +452,18 @@ def _change_force(time_step: TimeStep, instance: Instance) -> None:
 @part
 def _step_coordinates(table: Table, time_step: TimeStep, instance: Instance) -> float:
     """Step the coordinates under their forces; return twice the energy after the step."""
-    whole, energy = time_step.whole, 0.0
+    whole = time_step.whole
+    energy = 0.0
     for mode in range(len(instance.eta)):
-        force, eta, rate = instance.force[mode], instance.eta[mode], instance.rate[mode]
-        by_force, rate_by_force = whole[2, mode] + whole[3, mode], whole[6, mode] + whole[7, mode]
+        force = instance.force[mode]
+        eta = instance.eta[mode]
+        rate = instance.rate[mode]
+        by_force = whole[2, mode] + whole[3, mode]
+        rate_by_force = whole[6, mode] + whole[7, mode]
         new_eta = whole[0, mode] * eta + whole[1, mode] * rate + by_force * force
         new_rate = whole[4, mode] * eta + whole[5, mode] * rate + rate_by_force * force
-        instance.eta[mode], instance.rate[mode] = new_eta, new_rate
+        instance.eta[mode] = new_eta
+        instance.rate[mode] = new_rate
         energy += table.stiffness[mode] * new_eta * new_eta + new_rate * new_rate
     return energy
 
@@ -486,8 +512,12 @@ def step_in_wind(
     """
     is_refused = not math.sqrt(x * x + y * y + z * z) <= limits[0]
     if not is_refused:
-        stored[0], stored[1], stored[2] = x, y, z
-    used_x, used_y, used_z = stored[0], stored[1], stored[2]
+        stored[0] = x
+        stored[1] = y
+        stored[2] = z
+    used_x = stored[0]
+    used_y = stored[1]
+    used_z = stored[2]
     speed = math.sqrt(used_x * used_x + used_y * used_y + used_z * used_z)
     load = drag_density(speed, limits[1], limits[2], limits[3])
     is_outside = step_instance(

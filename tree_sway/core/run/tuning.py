@@ -60,7 +60,8 @@ class LiveTuning:
 
     def __init__(self, tunable: Tunable, settings: Settings, damping_ratio: float) -> None:
         """Split the stiffness into that of the wood and that of the weight."""
-        self._tunable, gravity = tunable, settings.gravity
+        self._tunable = tunable
+        gravity = settings.gravity
         self._has_volume_rule = settings.volume_stiffness > 0.0
         self._made = self._now = self.goal = Tuning(damping_ratio, 1.0, gravity)
         self._left = 0.0
@@ -118,7 +119,8 @@ class LiveTuning:
 
     def go_to(self, goal: Tuning, within: float = GLIDE) -> None:
         """Start the transition to a checked tuning, of a time in [s], with the next step."""
-        self.goal, self._left = goal, within
+        self.goal = goal
+        self._left = within
 
     def step(self, dt: float) -> bool:
         """Continue the transition by a step [s]; return whether the coefficients have changed."""
@@ -138,7 +140,8 @@ class LiveTuning:
         return np.asarray(tuning.stiffness_factor * self._elastic + weight)
 
     def _apply(self, tuning: Tuning) -> None:
-        stiffness, tunable = self._stiffness(tuning), self._tunable
+        stiffness = self._stiffness(tuning)
+        tunable = self._tunable
         critical = 2.0 * np.sqrt(stiffness * tunable.inertia)
         tunable.damping[:] = tuning.damping_ratio * tunable.loss * critical
         tunable.stiffness[:] = stiffness

@@ -33,19 +33,22 @@ class KindFrame:
     @property
     def rotation_kind_world(self) -> Floats:
         """Return the rotation from the world to the kind, (3, 3)."""
-        cosine, sine = math.cos(self.tree.yaw), math.sin(self.tree.yaw)
+        cosine = math.cos(self.tree.yaw)
+        sine = math.sin(self.tree.yaw)
         return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
     def to_tree(self, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
         """Return a force [N] and a moment [N m] on the kind, (3,), as they are on the tree."""
-        rotation, scale = self.rotation_kind_world, self.tree.scale
+        rotation = self.rotation_kind_world
+        scale = self.tree.scale
         return scale**2 * (force @ rotation), scale**3 * (moment @ rotation)
 
     def to_kind(self, force: ArrayLike | Spring) -> ArrayLike | Spring:
         """Return a force [N], (3,), or a spring on the tree as it is on its kind."""
         from tree_sway.core.run.pushes import Spring
 
-        rotation, scale = self.rotation_kind_world, self.tree.scale
+        rotation = self.rotation_kind_world
+        scale = self.tree.scale
         if not isinstance(force, Spring):
             return rotation @ array_to_read('push', force, (3,)) / scale**2
         root = np.array([self.tree.x, self.tree.y, self.tree.z])

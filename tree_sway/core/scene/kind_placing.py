@@ -64,6 +64,7 @@ class KindPlacing:
 
     def place_by_keys(self, placement: np.void, rotations: Floats, out: Floats) -> None:
         """Place a tree by its key rotations (N,) in [rad], in its own part of a pose block."""
-        cosine, sine = float(placement['cosine']), float(placement['sine'])
+        cosine = float(placement['cosine'])
+        sine = float(placement['sine'])
         scale = float(placement['scale'])
         self._by_keys.place(rotations, placement['at'], out, cosine, sine, scale)

@@ -102,8 +102,11 @@ class PlacedTree:
 
     def placed(self) -> Tree:
         """Return the tree in the scene's frame, under its name there."""
-        tree, c, s = self.tree, math.cos(self.yaw), math.sin(self.yaw)
-        root, here = tree.start[0], np.array([self.x, self.y, self.z])
+        tree = self.tree
+        c = math.cos(self.yaw)
+        s = math.sin(self.yaw)
+        root = tree.start[0]
+        here = np.array([self.x, self.y, self.z])
         if (self.scale, self.yaw) == (1.0, 0.0) and (root == here).all():
             return replace(tree, name=self.name)
         turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -87,7 +87,8 @@ class ReceivedScene:
     ) -> None:  # fmt: skip
         """Begin at rest; a `ParameterError` for arrays that the kernel would read past its end."""
         _check(kinds, kind_of, places, speeds)
-        self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
+        self._dt = dt
+        self._sizes = [len(kind.arrays['stiffness']) for kind in kinds]
         m = max(self._sizes)
         self.tables = np.concatenate([table_of(k.numbers, k.arrays, m) for k in kinds])
         self.instances = np.zeros(len(places), dtype=instance_layout(m))
@@ -97,14 +98,16 @@ class ReceivedScene:
         self._time_steps = np.zeros(len(found), dtype=time_step_layout(m))
         for own, (number, own_dt) in zip(self._time_steps, found, strict=True):
             arrays = kinds[number].arrays
-            damping, stiffness = arrays['own_damping'], arrays['stiffness']
+            damping = arrays['own_damping']
+            stiffness = arrays['stiffness']
             whole, half = (
                 propagator(1.0, damping, stiffness, span) for span in (own_dt, 0.5 * own_dt)
             )
             fill_time_step(own, Propagators(damping, stiffness, whole, half), own_dt)
         self._placed = placement_records(self._kind_of, places, speeds)
         self._placed['time_step'] = self._full_steps = step
-        self._steps, self._watches = 0, dict[int, ClampWatch]()
+        self._steps = 0
+        self._watches = dict[int, ClampWatch]()
         self.reduced = 0
         """Times that a tree whose steps stayed clamped continued on fewer coordinates."""
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
@@ -172,7 +175,8 @@ class ReceivedScene:
         change[part] = values - self.state()[part]
         for tree, kind in enumerate(self._kind_of.tolist()):
             own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
-            instance, count = self.instances[tree], self._count(tree)
+            instance = self.instances[tree]
+            count = self._count(tree)
             whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :count]
             instance['eta'][:count] += own[:count]
             way = np.maximum(whole[1], _SLOWEST * whole[1].max())

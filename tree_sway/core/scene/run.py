@@ -86,7 +86,8 @@ class Run:
         starting: Callable[[float], object] = lambda felt: None,
         timer: Callable[[], float] | None = None,
     ) -> None:
-        self.simulator, self.period = simulator, round(1e9 / rate)
+        self.simulator = simulator
+        self.period = round(1e9 / rate)
         self.intake = WindIntake() if intake is None else intake
         self.counts: GateCounts = self.intake.counts
         """Counts of accepted and refused samples, by reason."""
@@ -101,13 +102,17 @@ class Run:
         """Number of samples that arrived after the step of their time, since the last restart."""
         self.newest: int | None = None
         """Time of the newest sample in [ns]; None before any."""
-        self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
+        self._make_wind = make_wind
+        self._stepped = stepped
+        self._timer = timer
         self._starting = starting
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
         self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
         self._index: int | None = None
-        self._origin, self._felt, self._cost = 0, -math.inf, 0.0
+        self._origin = 0
+        self._felt = -math.inf
+        self._cost = 0.0
 
     @property
     def is_wind_lost(self) -> bool:
@@ -121,8 +126,10 @@ class Run:
 
     def warm_up(self) -> float:
         """Prepare kernels; return the cost of a frame of the trees on ``auto`` in [us]."""
-        adaptive, spent = adaptive_among(self.simulator.simulators), []
-        wind, dt = np.array([1.0, 0.0, 0.0]), self.period * 1e-9
+        adaptive = adaptive_among(self.simulator.simulators)
+        spent = []
+        wind = np.array([1.0, 0.0, 0.0])
+        dt = self.period * 1e-9
         for _ in range(_WARM_FRAMES):
             self.simulator.step(wind, dt)
             self.simulator.place()
@@ -225,7 +232,9 @@ class Run:
         self._begin(time)
         self._wind = self._make_wind()
         self._samples.clear()
-        self.newest, self.late, self._felt = None, 0, -math.inf
+        self.newest = None
+        self.late = 0
+        self._felt = -math.inf
         self.intake.gate.reset()
         self.simulator.reset()
 
@@ -258,12 +267,14 @@ class Run:
             self._begin(to)
         elif to < self._index * self.period - _BACK:
             self.restart(to)
-        index, limit = to // self.period, most or max(1, LONGEST_JUMP // self.period)
+        index = to // self.period
+        limit = most or max(1, LONGEST_JUMP // self.period)
         passed = index - (self._index or 0)
         if passed <= 0:
             return 0
         self.clamped += passed > limit
-        periods, self._index = min(passed, limit), index
+        periods = min(passed, limit)
+        self._index = index
         n_steps = 1 if may_join and self._cost > 0.5e-9 * self.period else periods
         length = self.period * periods // n_steps  # whole numbers: the same dt at any lateness
         dt = length * 1e-9

@@ -116,7 +116,8 @@ class Scene(PlacedTrees):
             number_of('moved', number)
         if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
             return self
-        c, s = math.cos(yaw), math.sin(yaw)
+        c = math.cos(yaw)
+        s = math.sin(yaw)
 
         def there(px: float, py: float, pz: float) -> tuple[float, float, float]:
             return x + c * px - s * py, y + s * px + c * py, z + pz

@@ -88,7 +88,8 @@ class SceneSimulator:
         progress: Callable[[int], object] = lambda done: None,
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
-        self._scene, self.settings = scene, settings
+        self._scene = scene
+        self.settings = settings
         self.names = tuple(each.name for each in scene.trees)
         self._sharing = sharing_of(scene, settings)
         self._shared = SharedTables(scene, self._sharing, settings, cache=cache, progress=progress)
@@ -424,7 +425,8 @@ class SceneSimulator:
         number, tree = self._highest
         if number in self._alone:
             return self._alone[number].tip_displacement
-        top, poses = int(np.argmax(tree.end[:, 2])), np.empty((tree.n_segments, 7))
+        top = int(np.argmax(tree.end[:, 2]))
+        poses = np.empty((tree.n_segments, 7))
         self._shared.place_tree(number, poses)
         return np.asarray(ends_of_poses(poses, tree.length)[1][top] - tree.end[top])
 

@@ -87,11 +87,13 @@ class SharedTables:
         progress: Callable[[int], object],
     ) -> None:
         """Prepare every kind that has a table."""
-        self._scene, self._sharing = scene, sharing
+        self._scene = scene
+        self._sharing = sharing
         self.kinds: list[SwaySimulator] = []
         """Simulators of the kinds in their own frames; they are not stepped."""
         for row, number in enumerate(sharing.kinds.tolist()):
-            kind, first = scene.kinds[number], int(sharing.trees_on(row)[0])
+            kind = scene.kinds[number]
+            first = int(sharing.trees_on(row)[0])
             with inside(scene.trees[first].name):
                 chosen = replace(kind.settings(settings), model=sharing.size_of(row))
                 prepared = prepare(kind.tree, kind.species, chosen, cache=cache)
@@ -234,7 +236,8 @@ class SharedTables:
     def _set_step(self, dt: float) -> None:
         """Fill the coefficients of every kind and scale, rounded to a hundredth."""
         rows = np.flatnonzero(self._sharing.is_shared)
-        kinds, scales = self.placements['kind'][rows], self.placements['scale'][rows]
+        kinds = self.placements['kind'][rows]
+        scales = self.placements['scale'][rows]
         found, number = own_steps(kinds, scales, dt)
         reduced = np.flatnonzero(self._counted < self._sharing.counts)
         self._time_steps = np.zeros(len(found) + len(reduced), dtype=self._time_steps.dtype)
@@ -279,7 +282,8 @@ class SharedTables:
         found = self._pushed.get(number)
         if found is not None:
             return found
-        kind, table = self._kind_of(number), int(self.placements['kind'][number])
+        kind = self._kind_of(number)
+        table = int(self.placements['kind'][number])
         instance = self._instances[number : number + 1]
         return TreeOnTable(kind.tree, kind.banks[0], self._oscillators[table], instance)
 

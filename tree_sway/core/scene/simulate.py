@@ -140,7 +140,8 @@ class Rig:
         """Reduce the tree, once for the simulator and for its strain."""
         bare, species = tree_and_species(tree)
         chosen = settings_with(settings, changes)
-        self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
+        self.tree = bare
+        self.reductions = TreeReductions(bare, species, solved(chosen))
         refuse_other_kind('motion', motion, Sequence, 'give a list of PlacedMotion')
         for each in motion:
             refuse_other_kind('motion', each, PlacedMotion, 'give a list of PlacedMotion')
@@ -164,7 +165,9 @@ class Rig:
         branches: Sequence[int] | None = None,
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`."""
-        tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
+        tree = self.tree
+        simulator = self.simulator
+        chosen = _chosen(self.tree, branches)
         if isinstance(simulator, ObservedTree):
             simulator.set_rate(rate)
             for each in self.motion:
@@ -177,8 +180,10 @@ class Rig:
                 )
         simulator.reset()
         before = replace(simulator.counts)
-        gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
-        poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
+        gauge = StrengthGauge(self.reductions)
+        per_rotation = moment_per_rotation(self.reductions)
+        poses = np.empty((tree.n_segments, 7))
+        rows = list[tuple[Floats, ...]]()
         bands = list[tuple[Floats, Floats]]()
         rest = tips_of_poses(tree, simulator.place(), chosen)
 
@@ -250,7 +255,8 @@ def _other_times(motion: Sequence[PlacedMotion], seconds: float) -> Iterator[str
     """Report sensors whose samples are all before or after the simulated time, 0 to seconds."""
     for each in motion:
         if len(each.time) and not (each.time[-1] >= 0.0 and each.time[0] <= seconds):
-            first, last = float(each.time[0]), float(each.time[-1])
+            first = float(each.time[0])
+            last = float(each.time[-1])
             yield (
                 f'{each.name}: its samples are of {first:.6g} to {last:.6g} s, and the wind of 0 '
                 f'to {seconds:.6g} s: shift one of them'
@@ -282,7 +288,8 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
 
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
-    now, found = simulator.counts, [bank.doubt for bank in simulator.banks if bank.doubt]
+    now = simulator.counts
+    found = [bank.doubt for bank in simulator.banks if bank.doubt]
     if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     if now.reduced > before.reduced:
@@ -310,7 +317,8 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
     inertia together that a strain gauge measures.
     """
     stem = reductions.reduced(reductions.settings.model).models[0]
-    along, found = stem.beam.tangent[0], []
+    along = stem.beam.tangent[0]
+    found = []
     for field in stem.fields:
         across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)
         bending = stem.beam.second_moment[0][:, None] * across
@@ -346,9 +354,11 @@ def _steps(
             raise ParameterError(f'{text} is no wind', where='wind', cure=cure) from None
         means = np.atleast_1d(means)
         is_long = means.ndim == 2 and means.shape[1] == 3
-        count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
+        count = len(means) if is_long else 0
+        what = f'wind of shape {means.shape}'
         if not np.isfinite(means).all():
-            count, what = 0, 'wind that is not finite'
+            count = 0
+            what = 'wind that is not finite'
         run = Run(simulator, rate, stepped=measure)
         steps = map(run.step, means)
     if not count:

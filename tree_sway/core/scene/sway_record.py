@@ -55,7 +55,7 @@ class SwayRecord:
         Bounds within which the real tree is for 80 % of the time, lower and upper, of ``tips``,
         (t, 2, k, 3), and of ``base_moment``, (t, 2, 3); None where they were not asked for.
     learned
-        What motion sensors told about the tree; None without them, or before the first fit.
+        Findings of motion sensors; None without them, or before the first fit.
 
     """
 

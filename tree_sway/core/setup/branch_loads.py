@@ -106,7 +106,10 @@ def _orient(parent: Floats, rotation: Vector, orientation: Floats) -> None:
     """Write the orientation of a base, w x y z, that is rotated from its parent's."""
     w, x, y, z = quaternion(rotation[0], rotation[1], rotation[2])
     w, x, y, z = product(parent[0], parent[1], parent[2], parent[3], w, x, y, z)
-    orientation[0], orientation[1], orientation[2], orientation[3] = w, x, y, z
+    orientation[0] = w
+    orientation[1] = x
+    orientation[2] = y
+    orientation[3] = z
 
 
 @part

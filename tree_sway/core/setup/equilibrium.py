@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Where the springs of a tree balance the load of a steady wind.
+Equilibrium of a tree in a steady wind: its springs balance the load.
 
 It is found from the equilibrium in a weaker wind, by Broyden's method (Broyden 1965, Mathematics
 of Computation 19, 577-593) with the slopes there, or new ones where these do not converge. Where a
@@ -45,8 +45,10 @@ class EquilibriumSearch:
     def __init__(
         self, moments: WindMoments, slopes: LoadSlopes, shapes: Floats, stiffness: Floats
     ) -> None:
-        self._moments, self._slopes = moments, slopes
-        self._shapes, self._root = shapes, np.sqrt(stiffness)
+        self._moments = moments
+        self._slopes = slopes
+        self._shapes = shapes
+        self._root = np.sqrt(stiffness)
         self._still = np.zeros(len(shapes))
 
     def near(self, weaker: Floats, pressure: float, ahead: Floats, turning: Floats) -> Floats:
@@ -72,13 +74,15 @@ class EquilibriumSearch:
         """
         pose = nearest = weaker
         step = rest = weaker
-        least, size_before = np.inf, np.inf
+        least = np.inf
+        size_before = np.inf
         inverse: Floats = np.eye(len(pose))
         for turn in range(_MOST_TURNS):
             rest_before = rest
             rest, size = self._imbalance(pose, pressure, ahead)
             if size < least:
-                nearest, least = pose, size
+                nearest = pose
+                least = size
             if size < _AT_REST:
                 break
             if size < size_before < np.inf:

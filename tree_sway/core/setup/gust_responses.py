@@ -51,7 +51,8 @@ def gust_responses(
 
     """
     circular = modes.circular
-    slowest, fastest = circular[0], circular[-1]
+    slowest = circular[0]
+    fastest = circular[-1]
     identity = np.eye(len(circular))
     swept = np.geomspace(slowest / _BEYOND, _BEYOND * fastest, _COUNT)[:, None]
     # Root of the spectrum w^(-5/3) over bands of width w, constant below the slowest mode.

@@ -89,7 +89,8 @@ def leaning_responses(
     swept = swept[:, None, None]
     inertia = np.square(swept) * np.eye(m)
     for speed in speeds:
-        level, per_speed = SPEEDS.index(speed), drag_density(speed, *law)
+        level = SPEEDS.index(speed)
+        per_speed = drag_density(speed, *law)
         dynamic_pressure = per_speed * speed**2
         growth = _growth(speed, law)
         poses = table['equilibrium'][:, level]
@@ -100,7 +101,8 @@ def leaning_responses(
             by_rates = table['damping'][azimuth, level].T.astype(np.float64)
             springs = np.diag(stiffness) - dynamic_pressure * slopes
             dampers = np.diag(damping) - per_speed * speed * by_rates
-            along, across = growth * stiffness * pose, springs @ turned[azimuth]
+            along = growth * stiffness * pose
+            across = springs @ turned[azimuth]
             upward = dynamic_pressure * _by_elevation(table, azimuth, pose)
             load = np.stack([along, across, upward], axis=1)
             system = springs - inertia + 1j * swept * dampers
@@ -114,8 +116,10 @@ def _growth(speed: float, law: DragLaw) -> float:
 
     It is 0 where there is no drag.
     """
-    slow, fast = (1.0 - _TURN) * speed, (1.0 + _TURN) * speed
-    low, high = drag_density(slow, *law) * slow**2, drag_density(fast, *law) * fast**2
+    slow = (1.0 - _TURN) * speed
+    fast = (1.0 + _TURN) * speed
+    low = drag_density(slow, *law) * slow**2
+    high = drag_density(fast, *law) * fast**2
     return (high - low) / (_TURN * (high + low)) if high + low > 0.0 else 0.0
 
 

@@ -102,7 +102,7 @@ class LoadSlopes:
     Parameters
     ----------
     records
-        Records of branches, work and loads that ``moments`` writes, as `modal.wind_moments`.
+        Records of branches, work and loads that ``moments`` (`branch_loads.wind_moments`) writes.
     moments
         Function that finds the loads at a pose (N,), rates (N,) and a wind [m/s], (3,), of 1
         kg/m^3.
@@ -119,7 +119,8 @@ class LoadSlopes:
     ) -> None:
         """Find the motion of each branch on its parent per unit of each shape."""
         branches, self._work, self._loads = records
-        self._branches, count = branches, len(branches)
+        self._branches = branches
+        count = len(branches)
         # Branches that carry others, and for each branch the place of its parent among them.
         self._bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
         self._levels = levels_of(np.r_[-1, self._on[self._bearing[1:]]])
@@ -161,7 +162,9 @@ class LoadSlopes:
         return place
 
     def _joints(self, frame: Floats, place: Floats) -> _Joints:
-        branches, work, count = self._branches, self._work, len(self._branches)
+        branches = self._branches
+        work = self._work
+        count = len(self._branches)
         parent_frame = frame[self._bearing[self._on]]
         force = (frame @ work['wrench'][:, :3, None])[..., 0]
         moment = (frame @ work['wrench'][:, 3:, None])[..., 0]
@@ -203,7 +206,8 @@ class LoadSlopes:
         air = (frame @ self._in_slots('air_velocity')[..., None])[..., 0]
         air = np.einsum('bji,bj->bi', own_frame, air)
         drag = self._drag(air)
-        force, lever = self._in_slots('own_force'), self._in_slots('coupling')
+        force = self._in_slots('own_force')
+        lever = self._in_slots('coupling')
         moment = (lever @ force[..., None])[..., 0]
         return _Loads(
             to_branch,
@@ -231,16 +235,19 @@ class LoadSlopes:
             turning += _power(by_motion, joint)
 
             moves = loads.to_branch[rows] @ twist
-            velocity, spin = moves[:, :3], moves[:, 3:]
+            velocity = moves[:, :3]
+            spin = moves[:, 3:]
             turned = loads.turn[rows] @ self._load_rotation[rows] + spin
             centre = loads.lever[rows] @ spin + velocity
             loaded = centre + self._load_mode[rows]
-            force, moment = loads.force[rows], loads.moment[rows]
+            force = loads.force[rows]
+            moment = loads.moment[rows]
             turning -= _power(force @ turned, velocity)
             turning -= _power(moment @ turned + force @ velocity, spin)
             turning += _power(loads.by_turn[rows] @ turned, loaded)
             damping -= _power(loads.drag[rows] @ loaded, loaded)
-        keys, excess = self._keys.reshape(-1, m), self._excess_damping(loads.drag).reshape(-1, 1)
+        keys = self._keys.reshape(-1, m)
+        excess = self._excess_damping(loads.drag).reshape(-1, 1)
         return turning, damping - keys.T @ (excess * keys)
 
     def _excess_damping(self, drag: Singles) -> Singles:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Table of the model `wind_basis`: loads of all uniform winds on the coordinates of a tree.
+Table of the loads of all uniform winds on the coordinates of a tree, for `run.table_model`.
 
 In a uniform wind U = |U| d all branches have one wind direction d, and the load is ``Q = s L(d)``
 with the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is
@@ -123,11 +123,13 @@ class WindBasisTable:
 
     def __init__(self, bank: Coordinates, wind_moments: WindMoments, drag_law: DragLaw) -> None:
         """Find the loads of the tree in all winds."""
-        self._shapes, self._moments = bank.shapes, wind_moments
+        self._shapes = bank.shapes
+        self._moments = wind_moments
         self._inertia_slopes = bank.inertia_slopes
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
-        self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
+        self._root = np.sqrt(bank.stiffness)
+        self._damping = bank.damping
         self._search = EquilibriumSearch(wind_moments, self._slopes, bank.shapes, bank.stiffness)
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m))
@@ -177,7 +179,8 @@ class WindBasisTable:
         for azimuth, (wind, load) in enumerate(zip(winds, loads, strict=True)):
             # One unit of the lean is the pose in a steady wind that bends the tree a little.
             found.amount[azimuth] = load / max(float(load @ (load / stiffness)), 1e-300)
-            turning, damping = found.turning[azimuth], found.damping[azimuth]
+            turning = found.turning[azimuth]
+            damping = found.damping[azimuth]
             opposite = azimuth - len(winds) // 2
             if opposite >= 0:
                 turning[0], damping[0] = -found.turning[opposite, 0], found.damping[opposite, 0]
@@ -185,7 +188,8 @@ class WindBasisTable:
                 turning[0], damping[0] = self._slopes(self._still, wind)
             pose = np.zeros(len(stiffness))
             for level in range(1, N_LEVELS):
-                weaker, pressure_there = pose, pressures[level]
+                weaker = pose
+                pressure_there = pressures[level]
                 pose = self._search.near(weaker, pressure_there, wind, turning[level - 1])
                 found.equilibrium[azimuth, level] = pose
                 if pose is weaker:
@@ -236,7 +240,8 @@ class WindBasisTable:
         springs, ``K - A K``, is zero at the equilibrium with the load, and is taken per dynamic
         pressure [kg/m/s^2].
         """
-        turning, damping = standing.turning[azimuth, level], standing.damping[azimuth, level]
+        turning = standing.turning[azimuth, level]
+        damping = standing.damping[azimuth, level]
         count = len(self._inertia_slopes)
         unit = np.eye(count)
         change = inertia_change(self._inertia_slopes, standing.equilibrium[azimuth, level])
@@ -263,7 +268,8 @@ class WindBasisTable:
 
     def _fill_aslant(self, table: np.void) -> None:
         """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
-        m, azimuths = int(table['n_modes']), self._azimuths
+        m = int(table['n_modes'])
+        azimuths = self._azimuths
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
         falling = -np.roll(rising, len(azimuths) // 2, axis=0)
@@ -320,7 +326,8 @@ def _without_gain(damping: Floats) -> Floats:
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
     """Return unit vectors, (..., 3)."""
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
-    x, y = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth)
+    x = np.cos(elevation) * np.cos(azimuth)
+    y = np.cos(elevation) * np.sin(azimuth)
     return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))
 
 

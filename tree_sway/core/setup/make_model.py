@@ -109,7 +109,8 @@ def _stream(
     It comes from the responses of the leaning tree by its table, and where there is none from the
     responses to gusts and winds that the coordinates come from.
     """
-    law, shapes = reductions.drag_law, coordinates.shapes
+    law = reductions.drag_law
+    shapes = coordinates.shapes
     branches = reductions.with_subtrees.branches
     if table:
         own = coordinates.stiffness, coordinates.damping
@@ -119,14 +120,16 @@ def _stream(
     responses = reductions.responses
     in_gale = responses.in_gale * responses.rotations
     found = basis_of_responses(branches, responses.rotations, in_gale)
-    matrix, back = projection @ found.matrix, found.projection @ shapes
+    matrix = projection @ found.matrix
+    back = found.projection @ shapes
     return arrays_of_stream(replace(found, matrix=matrix, projection=back))
 
 
 @one_thread()
 def _isolated_branches(reductions: TreeReductions, settings: Settings) -> SwayModel:
     """Prepare each branch's own oscillator: the mean of its two axes."""
-    tree, reduced = reductions.tree, reductions.isolated
+    tree = reductions.tree
+    reduced = reductions.isolated
     matrices = reduced.reduction
     refuse_buckling(tree, matrices)
     inertia = _of_branches(subtree_inertia(tree, matrices))
@@ -136,7 +139,8 @@ def _isolated_branches(reductions: TreeReductions, settings: Settings) -> SwayMo
     if settings.volume_stiffness:
         volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
         rule = np.sqrt(volume * volume[np.maximum(tree.branch_parent, 0)])
-        stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
+        stiffness = settings.volume_stiffness * rule
+        damping = settings.volume_damping * rule
     circular = np.sort(np.sqrt(stiffness / inertia))
     return SwayModel(
         **_whole(reductions, reduced, settings),
@@ -161,7 +165,8 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
     Branches are in the order of their first segments in the tree: a branch that is cut is several,
     and in a cut tree the children of its first piece come before the second.
     """
-    records, places = reduced.branches, reduced.places
+    records = reduced.branches
+    places = reduced.places
     order = np.argsort(records['first'])
     row = np.argsort(reduced.row)
     """Segment of the cut tree for each one of the tree."""

@@ -3,10 +3,10 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as
-one rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear,
-angular) of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate
-i are
+Coordinates are the key rotations of all branches here, before `modes` reduces them to a few. A
+child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as one
+rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear, angular)
+of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate i are
 
     M_ij = (v, w)_i . H_j          mass
     Kg_ij = g e_z . (w_i x p_j)     gravity, p_j the linear part of H_j
@@ -155,7 +155,8 @@ class _Assembly:
     """
 
     def __init__(self, tree: Tree, models: list[BranchModel], gravity: float) -> None:
-        self.tree, self.gravity = tree, gravity
+        self.tree = tree
+        self.gravity = gravity
         counts = [len(model.fields) for model in models]
         self.first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
         size = int(self.first[-1])
@@ -375,7 +376,8 @@ def _lift(model: BranchModel, mass_beyond: Floats, hanging: Floats) -> tuple[Flo
 
 def _work_of_weight(model: BranchModel, moment_beyond: Floats) -> Floats:
     """Sum the work of the moment at rest, e_z x the moment of mass, on rho x d rho, (k, k)."""
-    east, north = moment_beyond[..., 0], moment_beyond[..., 1]
+    east = moment_beyond[..., 0]
+    north = moment_beyond[..., 1]
     borne = np.stack([north, -east, np.zeros_like(east)], axis=-1)
     borne *= model.beam.weight[..., None]
     about = np.stack([cross(borne, field.slope) for field in model.fields], axis=-4)

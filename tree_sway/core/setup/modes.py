@@ -135,10 +135,12 @@ def leading_modes(reduction: Reduction, answers: Floats, tips: Floats, count: in
     """
     from scipy import linalg
 
-    stiffness, mass = reduction.stiffness, reduction.mass
+    stiffness = reduction.stiffness
+    mass = reduction.mass
     squares, mixes = np.linalg.eigh(tips.T @ tips)
     chosen = [i for i in np.argsort(-squares)[:count] if squares[i] > _NEW * squares[-1]]
-    shapes, tips = answers @ mixes[:, chosen], tips @ mixes[:, chosen]
+    shapes = answers @ mixes[:, chosen]
+    tips = tips @ mixes[:, chosen]
     stiff = stiffness @ shapes
     scale = 1.0 / np.sqrt(np.einsum('nl,nl->l', shapes, stiff))
     shapes *= scale

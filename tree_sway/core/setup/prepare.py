@@ -75,7 +75,8 @@ def prepared(
             where='model',
             cure='make it by make_simulator, or give a number of coordinates',
         )
-    tree, species = reductions.tree, reductions.species
+    tree = reductions.tree
+    species = reductions.species
     digest = digest_of_source(tree, species, settings, plain=reductions.plain)
     found = None if cache is None else cache.read(digest)
     if found is not None:

@@ -75,8 +75,11 @@ class TreeReducer:
         drag_law: DragLaw,
         leaf_load_area: Floats,
     ) -> None:
-        self._tree, self._species, self._settings = tree, species, settings
-        self._drag_law, self._leaf_load_area = drag_law, leaf_load_area
+        self._tree = tree
+        self._species = species
+        self._settings = settings
+        self._drag_law = drag_law
+        self._leaf_load_area = leaf_load_area
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._speed = settings.profile.over_anemometer(middle)
         """Wind at each segment's middle over that at the anemometer, (n,)."""
@@ -113,7 +116,8 @@ class TreeReducer:
         return self._beams_of(whole_tree(self._tree))
 
     def _beams_of(self, cut: CutTree) -> TreeBeams:
-        species, settings = self._species, self._settings
+        species = self._species
+        settings = self._settings
         leaf_mass = np.zeros(self._tree.n_branches)
         if settings.leaf_mass is not None:
             leaf_mass = one_of_each(
@@ -132,7 +136,8 @@ class TreeReducer:
 
     @one_thread()
     def _reduced(self, cut: CutTree, models: list[BranchModel], *, subtrees: bool) -> ReducedTree:
-        tree, species = cut.tree, self._species
+        tree = cut.tree
+        species = self._species
         shear_modulus = species.shear_ratio * species.modulus
         reduction = reduce_tree(
             tree,

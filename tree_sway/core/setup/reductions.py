@@ -74,7 +74,8 @@ class TreeReductions:
     ) -> None:
         if settings.root_stiffness is not None:
             species = replace(species, root_stiffness=settings.root_stiffness)
-        self.tree, self.species = tree, species
+        self.tree = tree
+        self.species = species
         self.settings = in_season(tree, species, settings)
         self.plain = plain or bool(WHY_PLAIN)
         self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
@@ -137,12 +138,14 @@ class TreeReductions:
         def moved(rotations: Floats) -> Floats:
             return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
 
-        loss, tips = self.damping_ratio * np.ones(candidates), moved(natural.shapes)
+        loss = self.damping_ratio * np.ones(candidates)
+        tips = moved(natural.shapes)
         gusts = gust_responses(branches, natural, tips, loss, self.drag_law)
         squares, mixes = np.linalg.eigh(gusts @ gusts.T)
         mixes *= np.sqrt(np.maximum(squares, 0.0))
         steady = self._static_responses()
-        tips, moved_steadily = tips @ mixes, moved(steady)
+        tips = tips @ mixes
+        moved_steadily = moved(steady)
         weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
         answers = np.hstack([natural.shapes @ mixes, weight * steady])
         in_gale = drag_density(_GALE, *self.drag_law) * _GALE**2 / weight
@@ -152,7 +155,8 @@ class TreeReductions:
         """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
         from tree_sway.core.setup.static_responses import static_responses
 
-        law, solve = self.drag_law, self.with_subtrees.reduction.factors.solve
+        law = self.drag_law
+        solve = self.with_subtrees.reduction.factors.solve
         return static_responses(self.wind_moments, solve, lambda u: drag_density(u, *law) * u * u)
 
     @cached_property

@@ -73,9 +73,11 @@ class Thickening:
 
     def sentence(self, tree: Tree) -> str:
         """Say what was changed, in one sentence."""
-        count, worst = len(self.branch), tree.branch_names[int(self.branch[0])]
+        count = len(self.branch)
+        worst = tree.branch_names[int(self.branch[0])]
         limbs = '1 limb' if count == 1 else f'{count} limbs'
-        from_mm, to_mm = 1e3 * self.before[0], 1e3 * self.after[0]
+        from_mm = 1e3 * self.before[0]
+        to_mm = 1e3 * self.after[0]
         return (
             f'the scan could carry {100.0 * self.carried:.0f} % of its weight: {limbs} thickened, '
             f"most '{worst}', from {from_mm:.3g} to {to_mm:.3g} mm; "
@@ -126,7 +128,8 @@ def standing_tree(
 @one_thread()
 def _thickest(tree: Tree, species: Species) -> tuple[Floats, float]:
     """Find least diameters of all segments [m], (n,), and the share of its weight it carries."""
-    least, carried = np.zeros(tree.n_segments), 1.0
+    least = np.zeros(tree.n_segments)
+    carried = 1.0
     for number in range(_ROUNDS):
         found = _filled(tree, least)
         with solvable(found):
@@ -154,7 +157,9 @@ def _filled(tree: Tree, least: Floats) -> Tree:
 
 def _least_diameters(reduced: ReducedTree, vector: Floats, growth: float) -> Floats:
     """Least diameter of each segment [m], (n,), by which a mode carries a weight that grows."""
-    reduction, energies, moments = reduced.reduction, [], []
+    reduction = reduced.reduction
+    energies = []
+    moments = []
     for piece, model in enumerate(reduced.models):
         amounts = vector[reduction.first[piece] : reduction.first[piece + 1]]
         curvature = np.tensordot(amounts, [field.curvature for field in model.fields], 1)
@@ -162,11 +167,15 @@ def _least_diameters(reduced: ReducedTree, vector: Floats, growth: float) -> Flo
         energy = model.beam.over_segments(moment**2 / model.beam.second_moment)
         energies.append(energy * model.beam.segment_length)
         moments.append(model.beam.over_segments(moment))
-    energy, shape = np.concatenate(energies), np.cbrt(np.concatenate(moments))
+    energy = np.concatenate(energies)
+    shape = np.cbrt(np.concatenate(moments))
     diameter = 0.5 * (reduced.tree.base_diameter + reduced.tree.tip_diameter)
     has = shape > 0.0
-    energy, shape, diameter = energy[has], shape[has], diameter[has]
-    low, high = 0.0, growth**0.25 * float((diameter / shape).max())
+    energy = energy[has]
+    shape = shape[has]
+    diameter = diameter[has]
+    low = 0.0
+    high = growth**0.25 * float((diameter / shape).max())
     for _ in range(60):
         middle = 0.5 * (low + high)
         left = energy @ np.minimum(diameter / (middle * shape), 1.0) ** 4

@@ -40,7 +40,8 @@ class WindMoments:
 
     def __init__(self, branches: Records, *, plain: bool = False) -> None:
         """Make scratch memory."""
-        self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
+        self.branches = branches
+        self._plain = plain or bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
         self._of_copies: dict[int, NumpyPasses] = {}
 
@@ -92,7 +93,8 @@ class WindMoments:
         angles = passes.per_branch(poses.ravel())
         bases = passes.outward(angles, np.zeros_like(angles))
         wind = np.repeat(winds, len(self.branches), axis=0)
-        still, at_once = np.zeros_like(angles), np.zeros(len(angles))
+        still = np.zeros_like(angles)
+        at_once = np.zeros(len(angles))
         force = passes.wind_forces(bases, angles, still, wind, 1.0, at_once, np.zeros_like(wind))
         moments = np.empty(poses.size)
         passes.bent_loads(bases, angles, force, moments)
@@ -111,10 +113,13 @@ class WindMoments:
 
     def _in_numpy(self, x: Floats, v: Floats, wind: Floats, moments: Floats) -> None:
         """Write the moments, and in the records what `LoadSlopes` reads, as the kernel does."""
-        passes, count = self._passes, len(self.branches)
-        angles, rates = passes.per_branch(x), passes.per_branch(v)
+        passes = self._passes
+        count = len(self.branches)
+        angles = passes.per_branch(x)
+        rates = passes.per_branch(v)
         bases = passes.outward(angles, rates)
-        at_once, impulse = np.zeros(count), np.zeros((count, 3))
+        at_once = np.zeros(count)
+        impulse = np.zeros((count, 3))
         force = passes.wind_forces(bases, angles, rates, wind, 1.0, at_once, impulse)
         _, work, loads = self._records
         work['force'] = passes.bent_loads(bases, angles, force, moments)

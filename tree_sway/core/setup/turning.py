@@ -18,11 +18,11 @@ class Turning(NamedTuple):
     """Small rotations (..., q, 3) per unit of each coordinate."""
 
     joint: Floats
-    """Of each branch's base on its parent, (b, q, 3)."""
+    """Rotation of each branch's base on its parent, (b, q, 3)."""
     base: Floats
-    """Of each branch's base from rest, (b, q, 3)."""
+    """Rotation of each branch's base from rest, (b, q, 3)."""
     own: Floats
-    """Of each segment on the base of its branch, (n, q, 3)."""
+    """Rotation of each segment on the base of its branch, (n, q, 3)."""
 
 
 def turning_of(tree: Tree, places: Places, shapes: Floats) -> Turning:

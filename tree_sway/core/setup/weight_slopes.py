@@ -42,8 +42,10 @@ def weight_slopes(
         Gravity in [m/s^2].
 
     """
-    first, on = places.first[:-1], places.base_segment
-    branch, parent = tree.branch_of_segment, np.maximum(places.parent, 0)
+    first = places.first[:-1]
+    on = places.base_segment
+    branch = tree.branch_of_segment
+    parent = np.maximum(places.parent, 0)
     turning = turning_of(tree, places, shapes)
     whole = turning.base[branch] + turning.own
     arm = tree.start[first] - tree.start[on]
@@ -54,7 +56,8 @@ def weight_slopes(
     load = np.concatenate([beyond, carried])
     rotations = np.concatenate([whole, whole[on]])
     down = np.array([0.0, 0.0, -gravity])
-    along, across = rotations @ down, np.einsum('rqk,rk->qr', rotations, arms)
+    along = rotations @ down
+    across = np.einsum('rqk,rk->qr', rotations, arms)
     crossed = (across * load) @ along
     falling = np.repeat(load * (arms @ down), 3)
     flat = rotations.swapaxes(1, 2).reshape(-1, rotations.shape[1])
@@ -81,7 +84,8 @@ def weight_slopes(
 def _masses_beyond(places: Places, mass: Floats) -> tuple[Floats, Floats]:
     """Mass [kg] that the middle of each chord carries, (n,), and that of each subtree, (b,)."""
     seated = mass.copy()
-    beyond, carried = np.zeros(len(mass)), np.zeros(len(places.parent))
+    beyond = np.zeros(len(mass))
+    carried = np.zeros(len(places.parent))
     for b in range(len(carried) - 1, -1, -1):
         own = slice(places.first[b], places.first[b + 1])
         onward = np.cumsum(seated[own][::-1])[::-1]

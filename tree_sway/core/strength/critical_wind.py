@@ -20,7 +20,8 @@ from tree_sway.core.arrays import Floats
 PERIOD = 600.0
 """Time over which the mean wind and the largest load are taken [s]."""
 _EULER = 0.5772
-_LEAST_POWER, _LARGEST_POWER = 0.8, 2.5
+_LEAST_POWER = 0.8
+_LARGEST_POWER = 2.5
 
 
 def largest_expected(values: Floats, rate: float, seconds: float = PERIOD) -> float:
@@ -37,7 +38,8 @@ def largest_expected(values: Floats, rate: float, seconds: float = PERIOD) -> fl
         The time [s].
 
     """
-    mean, deviation = float(values.mean()), float(values.std())
+    mean = float(values.mean())
+    deviation = float(values.std())
     above = values > mean
     crossings = int(np.count_nonzero(above[1:] & ~above[:-1]))
     count = max(crossings / (len(values) / rate) * seconds, 2.0)
@@ -54,7 +56,8 @@ class ShareCurve:
 
     def speed_of(self, share: float) -> float:
         """Return the wind at which a share is used, by a power law through the two nearest."""
-        log_speed, log_share = np.log(self.speed), np.log(np.maximum(self.share, 1e-9))
+        log_speed = np.log(self.speed)
+        log_share = np.log(np.maximum(self.share, 1e-9))
         wanted = math.log(share)
         # The pair of neighbours around the share, or the pair at the end that is nearer to it.
         right = int(np.clip(np.searchsorted(log_share, wanted), 1, len(log_share) - 1))

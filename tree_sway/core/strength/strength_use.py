@@ -84,7 +84,8 @@ class StrengthGauge:
         """Begin at rest."""
         self._reductions = reductions
         self._strain = WoodStrain(reductions)
-        self._largest, self._moment = np.zeros(len(self._strain.branch)), 0.0
+        self._largest = np.zeros(len(self._strain.branch))
+        self._moment = 0.0
 
     def read(self, rotations: Floats, base_moment: Floats) -> Floats:
         """
@@ -112,7 +113,8 @@ class StrengthGauge:
 
     def use(self) -> StrengthUse:
         """Return the used shares since the beginning."""
-        tree, species = self._reductions.tree, self._reductions.species
+        tree = self._reductions.tree
+        species = self._reductions.species
         at = int(np.argmax(self._largest))
         stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())
         capacity = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass

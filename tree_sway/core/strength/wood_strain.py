@@ -30,7 +30,8 @@ class WoodStrain:
     def __init__(self, reductions: TreeReductions) -> None:
         """Find the curvature by each coordinate."""
         reduced = reductions.reduced(reductions.settings.model)
-        blocks, radii = [], []
+        blocks = []
+        radii = []
         for model in reduced.models:
             beam = model.beam
             along = beam.tangent[:, None, :]

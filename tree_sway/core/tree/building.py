@@ -62,7 +62,8 @@ def tree_from_segments(
         that does not exist, a cycle, more than one root, a branch that is not a chain.
 
     """
-    starts, ends = _numbers('start', start), _numbers('end', end)
+    starts = _numbers('start', start)
+    ends = _numbers('end', end)
     diameters = _numbers('diameter', diameter)
     if diameters.ndim == 1:
         diameters = np.stack([diameters, diameters], axis=1)
@@ -227,15 +228,18 @@ def _chains(keys: Ints, parents: Ints, depth_order: Ints, labels: Sequence[str])
 
 def _depth_first(chains: Sequence[Ints], parents: Ints) -> list[int]:
     """Numbers of branches in depth-first order; siblings from base to tip of their parent."""
-    place, owner = np.empty(len(parents), dtype=np.int64), np.empty(len(parents), dtype=np.int64)
+    place = np.empty(len(parents), dtype=np.int64)
+    owner = np.empty(len(parents), dtype=np.int64)
     for number, chain in enumerate(chains):
-        place[chain], owner[chain] = np.arange(len(chain)), number
+        place[chain] = np.arange(len(chain))
+        owner[chain] = number
     first = np.array([chain[0] for chain in chains])
     children: dict[int, list[int]] = {}
     for number in np.lexsort((first, place[parents[first]]))[::-1].tolist():
         base = parents[first[number]]
         children.setdefault(-1 if base < 0 else int(owner[base]), []).append(number)
-    ordered, stack = list[int](), children[-1]
+    ordered = list[int]()
+    stack = children[-1]
     while stack:
         ordered.append(stack.pop())
         stack.extend(children.get(ordered[-1], ()))

@@ -48,7 +48,8 @@ FORMS = (
 )
 """Outlines of leaves, and the ways that needles stand."""
 
-_LEVEL, _CROSSED = (0.0, 1.35, -0.75), (0.2, -0.9, 1.3)
+_LEVEL = (0.0, 1.35, -0.75)
+_CROSSED = (0.2, -0.9, 1.3)
 _FILLED, _FILLED_BY_NEEDLES = 1.5, 1.25
 """Length of a spray as wide as it is long over the diameter of its cluster [-]."""
 

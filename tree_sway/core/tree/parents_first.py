@@ -34,7 +34,8 @@ def checked_order(parents: ArrayLike, labels: Sequence[str]) -> Ints:
 
     A `TreeError` reports a parent that does not exist, or a cycle.
     """
-    above, n = np.asarray(parents, dtype=np.int64), len(labels)
+    above = np.asarray(parents, dtype=np.int64)
+    n = len(labels)
     for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
         what = f'orphan: its parent {above[index]} does not exist'
         cure = f'give a parent from 0 to {n - 1}, or -1 for the root'

@@ -23,7 +23,9 @@ from tree_sway.errors import ParameterError, TreeError
 
 _WOOD = {'modulus': ('Pa', 1e7, 5e11), 'density': ('kg/m^3', 40.0, 10_000.0)}
 """Unit and limits of the values of wood."""
-_HEIGHT_LIMIT, _DIAMETER_LIMIT, _SLENDERNESS_LIMIT = 250.0, 20.0, (2.0, 2000.0)
+_HEIGHT_LIMIT = 250.0
+_DIAMETER_LIMIT = 20.0
+_SLENDERNESS_LIMIT = (2.0, 2000.0)
 _LEAN = 60.0
 _SWAY_FACTOR = 5.0
 

@@ -138,7 +138,8 @@ def species_like(name: str) -> tuple[Species, str]:
     except SpeciesError:
         pass
     plain = _plain(name)
-    first, last = (plain.split() or [''])[0], (plain.split() or [''])[-1]
+    first = (plain.split() or [''])[0]
+    last = (plain.split() or [''])[-1]
     ends = (each for each in _ENDS if last.endswith(each))
     # Foresters' abbreviations of two letters, as Fi for spruce, are whole names alone.
     first, last = (each if len(each) > 2 else '' for each in (first, last))

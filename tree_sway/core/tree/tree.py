@@ -137,7 +137,8 @@ class Tree:
     @cached_property
     def volume(self) -> Floats:
         """Volume of each segment, a conical frustum, in [m^3], (n,)."""
-        d0, d1 = self.base_diameter, self.tip_diameter
+        d0 = self.base_diameter
+        d1 = self.tip_diameter
         return _read_only(np.pi / 12.0 * self.length * (d0 * d0 + d0 * d1 + d1 * d1))
 
     @property

@@ -72,7 +72,9 @@ class WindAverage:
     def reset(self) -> None:
         """Forget every sample and every step, but not the count of refused ones."""
         self._curve = WindCurve(CAPACITY)
-        self._before, self._fade_start, self._fade_end = _CALM, -math.inf, -math.inf
+        self._before = _CALM
+        self._fade_start = -math.inf
+        self._fade_end = -math.inf
         self._timing = SensorTiming(self._timeout)
         self._newest = -math.inf  # time of the newest sample
         self._passed = -math.inf  # end of the latest step: the curve before it does not change
@@ -152,7 +154,8 @@ class WindAverage:
             If the step is not finite or ends before it starts.
 
         """
-        start, end = number_of('start', start), number_of('end', end)
+        start = number_of('start', start)
+        end = number_of('end', end)
         if not (math.isfinite(start) and start <= end < math.inf):
             raise ParameterError(f'no step from {start} to {end}', where='wind average')
         self._clamp_clock(start)
@@ -172,7 +175,8 @@ class WindAverage:
 
         """
         # A different thread may call this: changing values are read once.
-        newest, timing = self._newest, self._timing
+        newest = self._newest
+        timing = self._timing
         if newest == -math.inf:
             return 'none'
         if time - newest <= timing.longest_live + timing.lateness:
@@ -199,7 +203,8 @@ class WindAverage:
         since = self._passed
         before = self._mean(since, since)
         self._curve = WindCurve(CAPACITY)
-        self._before, self._fade_start = before, since
+        self._before = before
+        self._fade_start = since
         self._fade_end = since + min(silence, BLEND, self._timeout)
         if since > -math.inf:
             self._curve.append(since, before)
@@ -211,7 +216,8 @@ class WindAverage:
         calm = self._newest + self._timing.lateness + self._timing.longest_hold
         if end <= calm:
             return self._curve.mean(start, end)
-        since, level = max(start, calm), self._curve.value(end)
+        since = max(start, calm)
+        level = self._curve.value(end)
         if since == end:
             return math.exp((calm - end) / self._decay) * level
         left = math.exp((calm - since) / self._decay) - math.exp((calm - end) / self._decay)

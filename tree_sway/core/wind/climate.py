@@ -62,7 +62,8 @@ class WindClimate:
         # Each line is divided between the frequencies next below and above it.
         below = np.searchsorted(frequencies, at, side='right') - 1
         below = np.minimum(below, len(frequencies) - 2)
-        low, high = frequencies[below], frequencies[below + 1]
+        low = frequencies[below]
+        high = frequencies[below + 1]
         share = np.minimum((at - low) / (high - low), 1.0)
         power = np.zeros((len(frequencies), 3, 3))
         np.add.at(power, below, (1.0 - share)[:, None, None] * squares)
@@ -80,11 +81,13 @@ class ClimateTracker:
         self._memory = memory
         self._cells = np.zeros((round(memory * _RATE), 4))
         self._count = 0
-        self._sum, self._open = np.zeros(4), 0.0
+        self._sum = np.zeros(4)
+        self._open = 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
         """Add the wind [m/s] of a step of dt [s]."""
-        speed, left = float(np.linalg.norm(wind)), min(dt, self._memory)
+        speed = float(np.linalg.norm(wind))
+        left = min(dt, self._memory)
         load = speed * np.append(wind, 1.0)
         while left > 0.0:
             part = min(left, 1.0 / _RATE - self._open)
@@ -94,7 +97,8 @@ class ClimateTracker:
             if self._open > (1.0 - 1e-9) / _RATE:
                 self._cells[self._count % len(self._cells)] = self._cell
                 self._count += 1
-                self._sum[:], self._open = 0.0, 0.0
+                self._sum[:] = 0.0
+                self._open = 0.0
 
     @property
     def climate(self) -> WindClimate:

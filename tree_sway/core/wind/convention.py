@@ -97,7 +97,8 @@ class WindConvention:
 
     @cached_property
     def _enu_from_source(self) -> Floats:
-        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
+        c = math.cos(self.yaw_offset)
+        s = math.sin(self.yaw_offset)
         return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
     def velocity(self, components: ArrayLike) -> Floats:

@@ -159,8 +159,11 @@ class CrownWind:
 def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     """Perform `CrownWind.push` for the first record of an array."""
     here = crowns[0]
-    run, at, mean = here['run'], here['at'], here['mean']
-    wanted, apart = here['wanted'], here['apart']
+    run = here['run']
+    at = here['at']
+    mean = here['mean']
+    wanted = here['wanted']
+    apart = here['apart']
     remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
     follow_mean(mean, x, y, dt, _AVERAGING)
     longest = min(here['spread'] / max(math.hypot(mean[0], mean[1]), _SLOWEST), LONGEST_DELAY)

@@ -63,7 +63,8 @@ class WindCurve:
             if knot_time <= time:
                 part = (time - knot_time) / (after_time - knot_time)
                 return (1.0 - part) * knot + part * after
-            after_time, after = knot_time, knot
+            after_time = knot_time
+            after = knot
         return after
 
     def mean(self, start: float, end: float) -> Floats:

@@ -80,7 +80,7 @@ class Exposure:
     spacing
         Mean distance between the trees of the stand in [m].
     crown_width, crown_depth
-        Of the trees of the stand in [m].
+        Width and depth of the crowns of the stand in [m].
     drag
         Drag coefficient of a crown in [-], at 10 m/s.
     anemometer_height
@@ -104,9 +104,9 @@ class Exposure:
     def __post_init__(self) -> None:
         """Check the values."""
         one_of('exposure', self.kind, EXPOSURES)
-        for name, high in (('height', 150.0), ('crown_width', 60.0), ('crown_depth', 150.0)):
+        highs = {'height': 150.0, 'spacing': 100.0, 'crown_width': 60.0, 'crown_depth': 150.0}
+        for name, high in highs.items():
             within(name, getattr(self, name), 0.0, high, 'm', above=True)
-        within('spacing', self.spacing, 0.1, 100.0, 'm')
 
     @property
     def frontal_area(self) -> float:
@@ -160,7 +160,8 @@ class Exposure:
         """
         ratio = min(max(self.spacing / self.height, 0.075), 0.45)
         inside = 2.7193 * ratio - 0.061
-        at_edge, decay = 0.9701 - 1.273 * ratio, 1.1127 * ratio + 0.0311
+        at_edge = 0.9701 - 1.273 * ratio
+        decay = 1.1127 * ratio + 0.0311
         deep = at_edge * decay**9
         return (inside + at_edge) / (inside + deep)
 

@@ -151,7 +151,8 @@ class WindGate:
         self._max_rate = within('max_rate', max_rate, 0.0, 1e4, 'm/s^2', above=True)
         refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
         frozen = within('frozen_after', frozen_after, 0.0, 1e5, 's', above=True)
-        self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
+        self._longest_refusal = round(SECOND * refusal)
+        self._frozen_after = round(SECOND * frozen)
         self.counts = GateCounts()
         self.reset()
 
@@ -218,13 +219,15 @@ class WindGate:
             reason = 'no_time'
         else:
             reason = self._judge(time, x, y, z)
-            self._time, self._stamp = time, stamp
+            self._time = time
+            self._stamp = stamp
             self._arrival = stamp if arrival is None else arrival
             self._note_reading(time, (x, y, z))
         self.counts.add(reason)
         is_good = reason == 'accepted'
         if is_good:
-            self._good, self._good_time = (x, y, z), time
+            self._good = (x, y, z)
+            self._good_time = time
             self._refused_since = _NEVER
             self._fade_in(since)
         return Verdict(is_good, reason, time, self._given)
@@ -232,7 +235,8 @@ class WindGate:
     def _note_reading(self, time: int, reading: tuple[float, float, float]) -> None:
         """Note for how long the sensor has repeated one reading."""
         if reading != self._seen:
-            self._seen, self._equal_since = reading, time
+            self._seen = reading
+            self._equal_since = time
             self.is_frozen = self.is_still = False
         elif time - self._equal_since < self._frozen_after:
             return
@@ -244,9 +248,11 @@ class WindGate:
 
     def _fade_in(self, since: float) -> None:
         """Return the last good sample; a new level fades in no faster than a gust."""
-        left, most = math.dist(self._good, self._given), self._max_rate * since
+        left = math.dist(self._good, self._given)
+        most = self._max_rate * since
         if self._before is None or left <= most:
-            self._given, self._before = self._good, None
+            self._given = self._good
+            self._before = None
             return
         x, y, z = (a + most / left * (b - a) for a, b in zip(self._given, self._good, strict=True))
         self._given = x, y, z

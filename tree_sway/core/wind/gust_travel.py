@@ -183,8 +183,11 @@ class GustHistory:
         """Copy the history between two steps: its ends, runs, mean wind, delays, first delay."""
         while True:
             before = self._n_changes
-            at, run = self._at.copy(), self._run.copy()
-            mean, delay, first = self._mean.copy(), self.delay.copy(), float(self._first[0])
+            at = self._at.copy()
+            run = self._run.copy()
+            mean = self._mean.copy()
+            delay = self.delay.copy()
+            first = float(self._first[0])
             if self._n_changes == before and before % 2 == 0:
                 return at, run, mean, delay, first
 
@@ -199,7 +202,8 @@ class GustHistory:
         self._n_changes += 1
         for x, y, z in rows.tolist():
             remember(self._run, self._at, self._finest, x, y, z, SPACING)
-        self._mean[:], self.delay[:] = means, delays
+        self._mean[:] = means
+        self.delay[:] = delays
         self._n_changes += 1
 
     def memory(self) -> tuple[NDArray[Any], ...]:
@@ -228,8 +232,10 @@ def remember(
     size = len(run)
     if at[1] == 0:
         run[0] = 0.0
-        at[0], at[1] = 0, 1
-    last, step = at[0], (dt, x * dt, y * dt, z * dt)
+        at[0] = 0
+        at[1] = 1
+    last = at[0]
+    step = (dt, x * dt, y * dt, z * dt)
     is_joined = at[1] > 2 and run[last, 0] + dt - run[(last - 1) % size, 0] <= finest
     head = last if is_joined else (last + 1) % size
     for k in range(4):
@@ -258,35 +264,45 @@ def past_winds(
     x: float, y: float, z: float, dt: float, out: Floats,
 ) -> None:  # fmt: skip
     """Move delays [s], (t,), towards their targets; average the history over the step of each."""
-    now, most = run[at[0], 0], LARGEST_STRETCH * dt
+    now = run[at[0], 0]
+    most = LARGEST_STRETCH * dt
     for i in range(len(delay)):
-        goal, before = min(max(wanted[i], 0.0), longest), delay[i]
+        goal = min(max(wanted[i], 0.0), longest)
+        before = delay[i]
         if at[1] == 2:
             # The first step has no delays before it.
             before = goal
         delay[i] = min(max(goal, before - most), before + most)
         if before == 0.0 and delay[i] == 0.0:
-            out[i, 0], out[i, 1], out[i, 2] = x, y, z
+            out[i, 0] = x
+            out[i, 1] = y
+            out[i, 2] = z
             continue
-        begin, end = now - dt - before, now - delay[i]
+        begin = now - dt - before
+        end = now - delay[i]
         bx, by, bz = run_until(run, at, begin)
         ex, ey, ez = run_until(run, at, end)
         span = end - begin
-        out[i, 0], out[i, 1], out[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
+        out[i, 0] = (ex - bx) / span
+        out[i, 1] = (ey - by) / span
+        out[i, 2] = (ez - bz) / span
 
 
 @kernel
 def run_until(run: Floats, at: NDArray[np.int64], time: float) -> tuple[float, float, float]:
     """Run of the wind at a time; before the history begins it is that of its first step."""
-    size, count = len(run), at[1]
+    size = len(run)
+    count = at[1]
     oldest = at[0] - count + 1
-    low, high = 0, count - 1
+    low = 0
+    high = count - 1
     while high - low > 1:
         middle = (low + high) // 2
         if run[(oldest + middle) % size, 0] <= time:
             low = middle
         else:
             high = middle
-    a, b = run[(oldest + low) % size], run[(oldest + high) % size]
+    a = run[(oldest + low) % size]
+    b = run[(oldest + high) % size]
     u = (time - a[0]) / (b[0] - a[0])
     return a[1] + u * (b[1] - a[1]), a[2] + u * (b[2] - a[2]), a[3] + u * (b[3] - a[3])

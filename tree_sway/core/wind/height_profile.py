@@ -101,7 +101,9 @@ class WindProfile:
 
     def _in_canopy(self, height: Floats) -> Floats:
         """Wind in and above a stand over that at its top, at heights above the ground [m]."""
-        top, d, z0 = self.canopy_height, self.displacement, self.roughness
+        top = self.canopy_height
+        d = self.displacement
+        z0 = self.roughness
         above = np.log(np.maximum(height - d, top - d) / z0) / math.log((top - d) / z0)
         inside = np.exp(-self.attenuation * (1.0 - np.minimum(height / top, 1.0)))
         inside = np.minimum(self.exposed * inside, 1.0)

@@ -15,14 +15,16 @@ from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 RATE = 15
 """Frames per second."""
 
-_SPEED, _DT = 6.0, 1.0 / 60.0
+_SPEED = 6.0
+_DT = 1.0 / 60.0
 
 
 def in_breeze(
     simulator: SwaySimulator, seconds: float, sample: Callable[[], Floats]
 ) -> list[Floats]:
     """Run a simulator for a time [s] and return a sample of each frame; it is then set back."""
-    before, samples = simulator.state(), []
+    before = simulator.state()
+    samples = []
     rng = np.random.default_rng(7)
     wind = simulate_turbulence(_SPEED, rate=1.0 / _DT, duration=seconds, rng=rng)
     for number, each in enumerate(wind):

@@ -15,8 +15,11 @@ _COMPONENTS = {
     'int8': 5120, 'uint8': 5121, 'int16': 5122, 'uint16': 5123, 'uint32': 5125, 'float32': 5126
 }  # fmt: skip
 _SHAPES = {(): 'SCALAR', (2,): 'VEC2', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
-_LINEAR, _LINEAR_MIPMAP_LINEAR, _REPEAT = 9729, 9987, 10497
-ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
+_LINEAR = 9729
+_LINEAR_MIPMAP_LINEAR = 9987
+_REPEAT = 10497
+ARRAY_BUFFER = 34962
+ELEMENT_ARRAY_BUFFER = 34963
 
 
 class GltfDocument:
@@ -53,7 +56,8 @@ class GltfDocument:
         shares are stored as integers.
         """
         columns = array.reshape(len(array), -1)
-        rows, stride = columns, columns.itemsize * columns.shape[1]
+        rows = columns
+        stride = columns.itemsize * columns.shape[1]
         if target == ARRAY_BUFFER and stride % 4:  # vertices begin at multiples of 4 bytes
             rows = np.pad(columns, ((0, 0), (0, -stride % 4 // columns.itemsize)))
         view = self.add(

@@ -53,7 +53,8 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     if tree.n_segments > _MAX_JOINTS:
         what = f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin'
         raise FormatError(what, where=tree.name, cure='convert its trees one by one')
-    document, poses = GltfDocument(_GENERATOR), tree.rest_poses
+    document = GltfDocument(_GENERATOR)
+    poses = tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
     root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)
     for name, pose in zip(tree.segment_names, poses.tolist(), strict=True):
@@ -62,7 +63,8 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
     for material, mesh in _meshes(tree, leaves):
-        points, normals = mesh.placed(poses), _normals(mesh, poses)
+        points = mesh.placed(poses)
+        normals = _normals(mesh, poses)
         primitive = _primitive(
             document,
             material,
@@ -75,7 +77,8 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
         )
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
-        joint[:, 0], weight[:, 0] = mesh.segment, 255
+        joint[:, 0] = mesh.segment
+        weight[:, 0] = 255
         primitive['attributes'] |= {
             'JOINTS_0': document.add_array(joint, target=ARRAY_BUFFER),
             'WEIGHTS_0': document.add_array(weight, target=ARRAY_BUFFER, is_share=True),
@@ -99,15 +102,18 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     vertex by half the size of the tree, and the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
-    tree, basis = simulator.tree, basis_of(simulator)
+    tree = simulator.tree
+    basis = basis_of(simulator)
     storm = basis.scale / MARGIN
-    document, rest = GltfDocument(_GENERATOR), tree.rest_poses
+    document = GltfDocument(_GENERATOR)
+    rest = tree.rest_poses
     meshes = _meshes(tree, leaves)
     steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
     changes = [[_change(material, mesh, step) for step in steps] for material, mesh in meshes]
     places = [mesh.placed(rest) for _, mesh in meshes]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
-    size, middle = 0.5 * float((high - low).max()), 0.5 * (low + high)
+    size = 0.5 * float((high - low).max())
+    middle = 0.5 * (low + high)
     greatest = np.array([[np.abs(change).max() for change in each] for each in changes]).max(
         axis=0
     )
@@ -176,7 +182,8 @@ def _primitive(
     document: GltfDocument, material: str, species: str, mesh: TreeMesh, **attributes: int
 ) -> dict[str, Any]:
     """Part of a mesh, with its colour, texture coordinates and further attributes of vertices."""
-    is_bark, look = material == 'bark', look_of(species)
+    is_bark = material == 'bark'
+    look = look_of(species)
     color = look.bark if is_bark else (1.0, 1.0, 1.0)
     png = bark_picture(look.bark_pattern) if is_bark else leaf_picture(species)
     kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip

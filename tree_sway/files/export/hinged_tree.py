@@ -355,7 +355,8 @@ def _weight(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> tuple[Floats, spars
     np.add.at(carried, hinges.hinge, bodies.mass[hinges.body, None] * lever)
     turned = np.cross(hinges.axes, carried[:, None])
     moment = -_GRAVITY * turned[:, :, 2]
-    lower, upper = hinges.axes[hinges.hinge], turned[hinges.body]
+    lower = hinges.axes[hinges.hinge]
+    upper = turned[hinges.body]
     change = np.cross(lower[:, :, None], upper[:, None])[..., 2] * _GRAVITY
     # Hinges of one segment turn one after another.
     n_axes = hinges.axes.shape[1]

@@ -67,7 +67,8 @@ _LINK = f"""\
 
 def mjcf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as MJCF, MuJoCo's model file."""
-    tree, hinged = simulator.tree, hinged_tree(simulator)
+    tree = simulator.tree
+    hinged = hinged_tree(simulator)
     inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
     texts = [
         _BODY.format_map({**values, 'joints': _joints(hinged, segment)})
@@ -95,7 +96,8 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
 
 def sdf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
-    tree, hinged = simulator.tree, hinged_tree(simulator, has_twist_and_weight=False)
+    tree = simulator.tree
+    hinged = hinged_tree(simulator, has_twist_and_weight=False)
     return '\n'.join(
         [
             '<sdf version="1.9">',
@@ -145,7 +147,8 @@ def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
 
 def _joints(hinged: HingedTree, segment: int) -> str:
     """Return the joints of a segment as MJCF."""
-    stiffness, reference = hinged.stiffness[segment], hinged.reference[segment]
+    stiffness = hinged.stiffness[segment]
+    reference = hinged.reference[segment]
     joints = []
     for hinge, (axis, along) in enumerate(_AXES.items()):
         values = {
@@ -163,10 +166,8 @@ def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
     bearing = np.linspace(0.0, np.pi, _BEARINGS, endpoint=False)
     cosine = along[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
     sine_square = np.maximum(1.0 - cosine**2, 0.0)
-    side, end = (
-        (np.pi * radius * (0.5 * tree.length + radius))[:, None],
-        np.pi * radius[:, None] ** 2,
-    )
+    side = (np.pi * radius * (0.5 * tree.length + radius))[:, None]
+    end = np.pi * radius[:, None] ** 2
     numerator = side**4 * sine_square + end**4 * cosine**2
     projected = np.sqrt(numerator / (side**2 * sine_square + end**2 * cosine**2))
     ours = 0.5 * drag_area * np.mean(sine_square**1.5, axis=1)

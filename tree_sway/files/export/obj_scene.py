@@ -38,7 +38,8 @@ class ObjScene:
         self._meshes: list[TreeMesh] = [wood_mesh(tree)]
         if leaves is not None:
             self._meshes.append(leaf_mesh(leaves, look_of(tree.species).spray))
-        self._faces, first = list[str](), 1
+        self._faces = list[str]()
+        first = 1
         for name, mesh in zip(('wood', 'leaves'), self._meshes, strict=False):
             lines = '\n'.join(f'f {a} {b} {c}' for a, b, c in (mesh.triangles + first).tolist())
             self._faces.append(f'g {name}\nusemtl {name}\n{lines}\n')

@@ -17,6 +17,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.gltf_document import GltfDocument
 from tree_sway.files.export.yaml_writing import yaml_of_tree
+from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
 SUFFIXES = ('.yaml', '.yml', '.glb')
@@ -51,6 +52,7 @@ def write_tree(
         If the species table does not know the tree's species.
 
     """
+    learned = tree.learned if isinstance(tree, TreeFile) and species is None else None
     if not isinstance(tree, Tree):
         tree, species = tree_and_species(tree, species)
     suffix = Path(path).suffix.lower()
@@ -62,7 +64,7 @@ def write_tree(
 
         write_gltf(path, skinned_tree(tree, leaves))
     else:
-        write_text_whole(path, yaml_of_tree(tree, species))
+        write_text_whole(path, yaml_of_tree(tree, species, learned))
 
 
 def write_gltf(path: str | Path, document: GltfDocument) -> None:

@@ -57,7 +57,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
     around = np.stack([np.zeros(SIDES), np.cos(angle), np.sin(angle)], axis=1)
-    base, tip = 0.5 * tree.base_diameter, 0.5 * tree.tip_diameter
+    base = 0.5 * tree.base_diameter
+    tip = 0.5 * tree.tip_diameter
     rings = np.stack([base[:, None, None] * around, tip[:, None, None] * around], axis=1)
     rings[:, 1, :, 0] = tree.length[:, None]
     slope = np.arctan2(base - tip, tree.length)[:, None, None]
@@ -71,7 +72,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
-    first, last = np.zeros_like(fan), np.full_like(fan, SIDES)
+    first = np.zeros_like(fan)
+    last = np.full_like(fan, SIDES)
     triangles = np.vstack(
         [
             np.stack([i, j, j + SIDES], axis=1),

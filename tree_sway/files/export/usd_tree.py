@@ -26,7 +26,8 @@ from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _SECONDS = 10.0
-_STEADY, _SETTLED = 8.0, 30.0
+_STEADY = 8.0
+_SETTLED = 30.0
 _MAX_GROUPS = 4
 
 
@@ -43,7 +44,9 @@ def usd_of_tree(
     """
     tree = simulator.tree
     frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
-    rest, name, look = tree.rest_poses, plain_name(tree.name), look_of(tree.species)
+    rest = tree.rest_poses
+    name = plain_name(tree.name)
+    look = look_of(tree.species)
     joints = f'uniform token[] joints = {_strings(_paths(tree))}'
     last = len(frames) - 1
     parts = [
@@ -94,14 +97,17 @@ def branch_groups(tree: Tree) -> Ints:
 
 def influences(simulator: SwaySimulator) -> Floats:
     """Own rotation of the branches' tips in a steady wind by groups, over the largest, (g,)."""
-    tree, before, dt = simulator.tree, simulator.state(), 1.0 / 60.0
+    tree = simulator.tree
+    before = simulator.state()
+    dt = 1.0 / 60.0
     simulator.reset()
     for _ in range(round(_SETTLED / dt)):
         simulator.step((_STEADY, 0.0, 0.0), dt)
     steady = Rotation.from_quat(simulator.place()[:, 3:])
     simulator.set_state(before)
     turned = steady * Rotation.from_quat(tree.rest_poses[:, 3:]).inv()
-    first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
+    first = tree.branch_first[:-1]
+    last = tree.branch_first[1:] - 1
     carrier = tree.segment_parent[first]
     own = turned[np.maximum(carrier, 0)].inv() * turned[last]
     slope = np.where(carrier < 0, turned[last].magnitude(), own.magnitude())
@@ -111,7 +117,8 @@ def influences(simulator: SwaySimulator) -> Floats:
 
 
 def _wind_attributes(simulator: SwaySimulator) -> list[str]:
-    groups, found = branch_groups(simulator.tree), influences(simulator)
+    groups = branch_groups(simulator.tree)
+    found = influences(simulator)
     values = {
         'token[] unreal:dynamicWind:jointNames': _strings(plain_names(simulator.tree)),
         'int[] unreal:dynamicWind:jointSimulationGroups': groups.tolist(),

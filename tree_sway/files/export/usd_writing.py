@@ -30,7 +30,8 @@ def write_usd(
     path: str | Path, simulator: SwaySimulator, leaves: LeafClusters | None = None
 ) -> None:
     """Write ``.usda`` with its pictures beside it, or ``.usdz``; see `usd_of_tree`."""
-    path, species = Path(path), simulator.tree.species
+    path = Path(path)
+    species = simulator.tree.species
     stem = path.stem
     pictures = {f'{stem}_bark.png': bark_picture(look_of(species).bark_pattern)}
     if leaves is not None:

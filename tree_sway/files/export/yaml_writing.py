@@ -82,8 +82,10 @@ def _branch(tree: Tree, branch: int) -> dict[str, Any]:
     if its_parent >= 0:
         content['parent'] = tree.branch_names[its_parent]
         content['segment'] = int(tree.segment_parent[part.start] - tree.branch_first[its_parent])
-    start, end = tree.start[part], tree.end[part]
-    base, tip = tree.base_diameter[part], tree.tip_diameter[part]
+    start = tree.start[part]
+    end = tree.end[part]
+    base = tree.base_diameter[part]
+    tip = tree.tip_diameter[part]
     if np.array_equal(start[1:], end[:-1]) and np.array_equal(base[1:], tip[:-1]):
         nodes = np.column_stack([np.vstack([start, end[-1:]]), np.append(base, tip[-1])])
         return {**content, 'nodes': nodes.tolist()}

@@ -142,7 +142,8 @@ def _tree(about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Tree:
 
 def _check_tree(arrays: Mapping[str, NDArray[Any]], names: Sequence[str]) -> None:
     """Check types, shapes and numbers of the arrays of a tree, and that parents come first."""
-    count, first = len(arrays['start']), arrays['branch_first']
+    count = len(arrays['start'])
+    first = arrays['branch_first']
     if first[0] != 0 or first[-1] != count or (np.diff(first) < 1).any():
         raise _damaged('branches without segments')
     if len(first) != len(names) + 1:
@@ -154,7 +155,8 @@ def _check_tree(arrays: Mapping[str, NDArray[Any]], names: Sequence[str]) -> Non
             raise _damaged(f'tree_{name} is {array.dtype} of shape {array.shape}')
         if not (np.abs(array) < _FARTHEST).all() or (name in _DIAMETERS and array.min() <= 0.0):
             raise _damaged(f'tree_{name} has a number that no tree has')
-    parent, before = arrays['segment_parent'], np.arange(-1, count - 1)
+    parent = arrays['segment_parent']
+    before = np.arange(-1, count - 1)
     is_base = np.isin(before + 1, first[1:])
     if not ((parent == before) | (is_base & (0 <= parent) & (parent <= before))).all():
         raise _damaged('segments that are not in depth-first order')
@@ -164,7 +166,8 @@ def _made(kind: Any, values: Mapping[str, Any]) -> Any:
     """Make a dataclass of numbers and texts that `write_model` wrote; others are refused."""
     if not isinstance(values, dict):
         raise TypeError(f'{values!r:.40} in place of the fields of {kind.__name__}')
-    hints, given = get_type_hints(kind), {}
+    hints = get_type_hints(kind)
+    given = {}
     for name, value in values.items():
         hint = hints[name]
         if is_dataclass(hint):

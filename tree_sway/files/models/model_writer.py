@@ -29,7 +29,8 @@ def write_model(path: str | Path, model: SwayModel) -> None:
 
     """
     refuse_other_kind('model', model, SwayModel, 'give the result of prepare')
-    tree, settings = model.tree, model.settings
+    tree = model.tree
+    settings = model.settings
     about = {
         'format': FORMAT,
         'version': VERSION,

@@ -53,7 +53,8 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
         except struct.error:
             rows.append((recorded, np.full(_NUMBERS, np.nan)))
     if not rows:
-        what, cure = f'no message on {chosen[0]}', 'record while the sensor publishes'
+        what = f'no message on {chosen[0]}'
+        cure = 'record while the sensor publishes'
         raise FormatError(what, where=str(path), cure=cure)
     epoch = rows[0][0] * 1e-9
     time = np.array([(each - rows[0][0]) * 1e-9 for each, _ in rows])

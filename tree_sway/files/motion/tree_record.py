@@ -44,7 +44,7 @@ class TreeRecord(NamedTuple):
     leaves
         ``on``, ``off`` or ``auto``.
     wind_source
-        What measured the wind.
+        Source of the wind.
     sway, branch
         Table of the displacement of a tip, and its branch; empty without one.
     notes

@@ -3,5 +3,5 @@
 """
 Recordings of a swaying tree: rosbag2 bags, MCAP or sqlite3, written and read without ROS.
 
-`bag_writer` takes messages as bytes; `state_record` reads the state and its description.
+`bag_writer` writes messages as bytes, `bag_reader` reads them.
 """

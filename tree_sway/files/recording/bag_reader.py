@@ -59,12 +59,16 @@ def messages_of_bag(path: str, *types: str) -> Arrays:
     """Yield topics and their types, (t, 2), and of each message topic, stamp, size and bytes."""
     from rosbags.rosbag2 import Reader
 
-    parts, topics = [Path(path)], dict[str, str]()
+    parts = [Path(path)]
+    topics = dict[str, str]()
     if parts[0].is_dir() and not (parts[0] / 'metadata.yaml').exists():
         parts = sorted(each for each in parts[0].iterdir() if each.suffix in ('.db3', '.mcap'))
         if not parts:
             raise ValueError('no metadata.yaml, no .db3 and no .mcap file in it')
-    numbers, stamps, sizes, content = array('q'), array('q'), array('q'), bytearray()
+    numbers = array('q')
+    stamps = array('q')
+    sizes = array('q')
+    content = bytearray()
     for part in parts:
         with Reader(part) as reader:
             topics |= {each.topic: each.msgtype for each in reader.connections}

@@ -12,7 +12,9 @@ from tree_sway.errors import FormatError
 from tree_sway.files.paths import path_of
 from tree_sway.files.text_file import read_text
 
-NAME, LOW, HIGH = 'name', 'low_80 [m/s]', 'high_80 [m/s]'
+NAME = 'name'
+LOW = 'low_80 [m/s]'
+HIGH = 'high_80 [m/s]'
 
 
 def read_critical_winds(path: str | Path) -> dict[str, tuple[float, float]]:

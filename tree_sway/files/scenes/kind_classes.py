@@ -17,7 +17,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-_HEIGHTS, _SLENDERNESSES = 3.0, 1.3
+_HEIGHTS = 3.0
+_SLENDERNESSES = 1.3
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,8 @@ def kind_classes(
 
     ``heights`` and ``slendernesses`` are the factors within which one class is.
     """
-    sizes, slender = np.array(height), np.zeros(len(keys))
+    sizes = np.array(height)
+    slender = np.zeros(len(keys))
     named = np.array(keys)
     ratio = np.nan_to_num(height / diameter)
     for key in dict.fromkeys(keys):

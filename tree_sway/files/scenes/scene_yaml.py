@@ -104,9 +104,12 @@ def _trees(
         named = species_named(species)
         return open_tree(where, seed, wood=lambda _: named)
 
-    trees, notes, faults = [], list[str](), list[str]()
+    trees = []
+    notes = list[str]()
+    faults = list[str]()
     for number, entry in enumerate(entries):
-        name, where = entry['name'], document.where('trees', number)
+        name = entry['name']
+        where = document.where('trees', number)
         try:
             file = opened(entry['tree'], entry.get('seed', 0), entry.get('species'))
         except TreeSwayError as error:

@@ -13,12 +13,13 @@ easting, northing, or latitude and longitude, in two columns or one), ``species`
 from __future__ import annotations
 
 from collections.abc import Mapping
+import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tree_sway.core.growth.grow import grow, stem_range
+from tree_sway.core.growth.grow import grow, height_of_stem, stem_range
 from tree_sway.core.scene.placed_tree import LARGEST, PlacedTree, SMALLEST
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.grown_tree import GrownTree, rooted
@@ -130,7 +131,9 @@ class _Growing:
         exact: bool,
     ) -> None:
         """Sort the rows into classes."""
-        self._inventory, self._given, self._seed = inventory, given, seed
+        self._inventory = inventory
+        self._given = given
+        self._seed = seed
         self.notes = notes
         wood = inventory.wood
         self.keys = [wood[each].key if each in wood else each for each in inventory.species]
@@ -179,9 +182,17 @@ def grown_kind(
     """
     Grow the tree of a class, of a height [m] and height over diameter, 0 if unknown.
 
-    An impossible stem is made thinner or thicker, which is added to the notes.
+    A height beyond those of the habit is scaled from the nearest of them, and an impossible stem
+    is made thinner or thicker, which is added to the notes.
     """
-    key, diameter = species.key, None
+    key = species.key
+    diameter = None
+    least = height_of_stem(key, 0.0)
+    most = height_of_stem(key, math.inf)
+    if not least <= height <= most:
+        nearest_height = min(max(height, least), most)
+        notes.append(f'{key} of {height:.3g} m: scaled from one of {nearest_height:.3g} m')
+        height = nearest_height
     if slenderness:
         low, high = stem_range(species, height)
         diameter = min(max(height / slenderness, low), high)

@@ -34,7 +34,7 @@ class TreeFile:
     origin
         Origin of the tree in the frame of the file in [m].
     learned
-        What motion sensors told about it, in its species already; None without.
+        Findings of motion sensors, which its species already has; None without.
 
     """
 
@@ -56,8 +56,10 @@ class TreeFile:
         return (*self.faults, *oddities(self.tree, self.species))
 
     def of_species(self, species: Species) -> TreeFile:
-        """Return the tree with a different species, and its leaves."""
-        return replace(self, tree=replace(self.tree, species=species.key), species=species)
+        """Return the tree with a species and its leaves; nothing was learned of another one."""
+        tree = replace(self.tree, species=species.key)
+        learned = self.learned if species == self.species else None
+        return replace(self, tree=tree, species=species, learned=learned)
 
     def checked(self) -> TreeFile:
         """Return the tree if it is plausible, else raise as `refuse_implausible`."""

@@ -59,25 +59,47 @@ class LearnedFile:
         self.path = path
         self.opened = TreeFile(grown.tree, grown.species, path)
         """The tree, with what was learned before."""
-        if path_of(path).is_file():
+        self._text = _text_of(path)
+        if self._text is not None:
             self.opened = _learned_before(path, grown)
         self._in_leaf = is_in_leaf(self.opened.species, in_leaf)
         self._kept: TreeFit | None = None
 
     def write(self, learned: LearnedTree) -> None:
-        """Write the tree with what was learned, before and in this run."""
-        before, species = self.opened.learned, self.opened.species
+        """
+        Write the tree with what was learned, before and in this run.
+
+        Raises a `FormatError` if another program, or a person, wrote the file meanwhile: it would
+        lose what they know.
+        """
+        if _text_of(self.path) not in (None, self._text):
+            what = 'was written by another program meanwhile, and is left as it is'
+            raise FormatError(what, where=self.path, cure='name another file to learn into')
+        before = self.opened.learned
+        species = self.opened.species
         species = learned.over(before).of(species, in_leaf=self._in_leaf)
-        write_text_whole(self.path, yaml_of_tree(self.opened.tree, species, learned))
+        text = yaml_of_tree(self.opened.tree, species, learned)
+        write_text_whole(self.path, text)
+        self._text = text.encode()
 
     def keep(self, twin: ObservedTree) -> bool:
         """Write what a tree has learned since the last call, if anything; tell whether it was."""
-        fit, learned = twin.observer.fit, twin.learned
+        fit = twin.observer.fit
+        learned = twin.learned
         if fit is None or fit is self._kept or learned is None:
             return False
         self._kept = fit
         self.write(learned)
         return True
+
+
+def _text_of(path: str) -> bytes | None:
+    """Return the content of a file; None if there is none."""
+    file = path_of(path)
+    try:
+        return file.read_bytes() if file.is_file() else None
+    except OSError as error:
+        raise FormatError(f'cannot be read: {error.strerror}', where=path) from None
 
 
 def _learned_before(path: str, grown: GrownTree) -> TreeFile:

@@ -93,7 +93,8 @@ def _refuse_several_trees(path: Path, head: str) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
     where = str(path)
     if begins_with_key(path, head, 'trees'):
-        what, cure = 'a forest, where one tree is expected', 'name one of its trees'
+        what = 'a forest, where one tree is expected'
+        cure = 'name one of its trees'
         raise FormatError(what, where=where, cure=cure)
     is_table = is_stand_table(head, path)
     if is_table or begins_with_key(path, head, 'stand'):
@@ -140,7 +141,8 @@ def open_scene(
     path = path_of(name_or_path)
     if str(name_or_path) in BUILTIN_TREES or not path.is_file():
         return scene_of_files([open_tree(name_or_path, seed, wood=wood, **options)])
-    head, read = read_head(path), None
+    head = read_head(path)
+    read = None
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
         read = partial(read_scene_yaml, path, open_tree, exact=exact)
     elif is_stand_table(head, path):
@@ -168,7 +170,8 @@ def open_scene(
 
 def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
     """Return the trees of one file as a scene: several at their places, the first at 0."""
-    one, trees = files[0], []
+    one = files[0]
+    trees = []
     for each in files:
         moved = np.subtract(each.origin, one.origin)
         x, y, z = (moved + each.tree.start[0]).tolist()

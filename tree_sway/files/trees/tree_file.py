@@ -72,7 +72,8 @@ def read_trees(
             tree = replace(each.tree, name=f'{each.tree.name}{number}')
             files[number - 1] = replace(each, tree=tree)
     if wanted.tree not in range(len(files) + 1):
-        what, cure = f'tree {wanted.tree} of {len(files)}', f'give 1 to {len(files)}, or 0 for all'
+        what = f'tree {wanted.tree} of {len(files)}'
+        cure = f'give 1 to {len(files)}, or 0 for all'
         raise ParameterError(what, where=str(path), cure=cure)
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]

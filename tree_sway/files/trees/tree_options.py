@@ -23,7 +23,8 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
 
-_ENDS, _DIAMETERS = ('start', 'end'), ('diameter', 'base_diameter', 'tip_diameter')
+_ENDS = ('start', 'end')
+_DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')
 _Shape = TypeVar('_Shape', Tree, Cylinders)
 _RANGES = {
     'length_unit': (1e-6, 1e3), 'diameter_unit': (1e-6, 1e3),
@@ -116,9 +117,12 @@ class TreeOptions:
         ``wood`` returns the species to use in place of that of the file or of the option: what a
         limb can carry depends on it.
         """
-        tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
+        tree = content.tree
+        notes = list(content.notes)
+        origin = np.zeros(3)
         given = content.species if self.species is None else species_named(self.species)
-        species, faults = wood(given), list(content.faults)
+        species = wood(given)
+        faults = list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
         if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
@@ -132,7 +136,7 @@ class TreeOptions:
             tree, beyond = grown_beyond(
                 replace(tree, species=species.key), twig, self.trusted_diameter
             )
-            notes += [] if beyond is None else [beyond.sentence()]
+            notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
             tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
@@ -149,3 +153,10 @@ class TreeOptions:
             content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=(x, y, z)
         )
         return done if species is content.species else done.of_species(species)
+
+
+def _why_nothing_grows(twig: float) -> str:
+    """Say why nothing was grown beyond a scan, whose last twigs have a diameter [m]."""
+    if twig <= 0.0:
+        return 'nothing is grown beyond it: give the diameter of its twigs, twig_diameter=0.003'
+    return f'nothing is grown beyond it: no end is thicker than two twigs of {1e3 * twig:g} mm'

@@ -49,9 +49,11 @@ def read_bag_wind(
     source = str(path)
     bag = read_bag(path, WIND_TYPES)
     chosen = _chosen(bag.types, topic, source)
-    kind, messages = bag.types[chosen], bag.messages[chosen]
+    kind = bag.types[chosen]
+    messages = bag.messages[chosen]
     rows = WindRows(source, row_name='message')
-    epoch, n_unstamped = -1, 0
+    epoch = -1
+    n_unstamped = 0
     for number, (recorded, data) in enumerate(messages, start=1):
         try:
             stamp, velocity = _sample(data, has_header=not kind.endswith('/Vector3'))
@@ -87,7 +89,9 @@ def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
 
 def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
     """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
-    order, at, stamp = '<' if data[1:2] == b'\1' else '>', 0, 0
+    order = '<' if data[1:2] == b'\1' else '>'
+    at = 0
+    stamp = 0
     if has_header:
         second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
         stamp = second * 1_000_000_000 + nanosecond

@@ -37,8 +37,10 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
 
     A `FormatError` reports a missing one.
     """
-    rows, gusts = WindRows(str(path)), list[float]()
-    day, passed = 0, 0
+    rows = WindRows(str(path))
+    gusts = list[float]()
+    day = 0
+    passed = 0
     for number, line in enumerate(read_lines(path), start=1):
         report = METAR.search(line)
         if report is None:

@@ -80,14 +80,16 @@ def _read(
         raise FormatError(what, where=source, cure='choose the 10 m u and v components of wind')
     clock, x, y, gust = (data.variables.get(name) for name in names.values())
     notes, place = _place(data, x, point)
-    east, north = _series(x, clock, place), _series(y, clock, place)
+    east = _series(x, clock, place)
+    north = _series(y, clock, place)
     seconds, epoch = _seconds(clock)
     rows = WindRows(source, row_name='sample')
     good = np.isfinite(east) & np.isfinite(north)
     for index in np.flatnonzero(~good).tolist():
         rows.refuse(index + 1, 'no value')
     velocity = np.stack([east, north, np.zeros(len(east))], axis=1)[good]
-    rows.time, rows.velocity = array('d', seconds[good]), array('d', velocity.ravel())
+    rows.time = array('d', seconds[good])
+    rows.velocity = array('d', velocity.ravel())
     rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
     if gust is not None:
         rows.gust = _series(gust, clock, place)[good]
@@ -106,7 +108,8 @@ def _place(
     data: Any, variable: Any, point: tuple[float, float] | None
 ) -> tuple[list[str], dict[str, int]]:
     """Index of each dimension at a point, and a note of where that is."""
-    chosen, said = dict[str, int](), list[str]()
+    chosen = dict[str, int]()
+    said = list[str]()
     for axis, quantity in enumerate(('latitude', 'longitude')):
         name = next((d for d in variable.dimensions if rank_of(d, quantity) is not None), None)
         if name is None:

@@ -113,7 +113,9 @@ def _mwv(fields: list[str], heading: float) -> Velocity | str:
         return f'{len(fields)} fields of 5'
     if fields[4] != 'A':
         return f"status is '{fields[4][:8]}', not A"
-    angle, speed, unit = finite(fields[0]), finite(fields[2]), _UNITS.get(fields[3])
+    angle = finite(fields[0])
+    speed = finite(fields[2])
+    unit = _UNITS.get(fields[3])
     bearing = None if angle is None else degrees_to_bearing(angle)
     if bearing is None:
         return _lacking('angle', fields[0])
@@ -158,7 +160,8 @@ def _xdr(fields: list[str], heading: float) -> Velocity | str:
 
 def _vwr(fields: list[str], heading: float) -> Velocity | str:
     """Angle up to half a turn, left or right; the first given speed is used."""
-    angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ''
+    angle = finite(fields[0])
+    side = fields[1] if len(fields) > 1 else ''
     speeds = (
         (finite(speed), _UNITS.get(unit))
         for speed, unit in zip(fields[2::2], fields[3::2], strict=False)

@@ -149,7 +149,8 @@ class WindRows:
             first = f'; first {self.first_refused}' if self.refused else ''
             what = f'no good row of wind, {self.refused} refused{first}'
             raise FormatError(what, where=self.source, cure='check that it is a file of wind')
-        time, velocity = time[rows], np.ascontiguousarray(velocity[rows])
+        time = time[rows]
+        velocity = np.ascontiguousarray(velocity[rows])
         return WindRecord(
             time - time[0], velocity, self.source, self.refused, self.first_refused,
             None if epoch is None else epoch + float(time[0]), notes,
@@ -170,9 +171,11 @@ def increasing(time: Floats) -> NDArray[np.bool_]:
             ends.append(value)
         else:
             ends[rank[index]] = value
-    wanted, bound = len(ends) - 1, float('inf')
+    wanted = len(ends) - 1
+    bound = float('inf')
     for index in range(len(time) - 1, -1, -1):
         keep[index] = rank[index] == wanted and time[index] < bound
         if keep[index]:
-            wanted, bound = wanted - 1, float(time[index])
+            wanted = wanted - 1
+            bound = float(time[index])
     return keep

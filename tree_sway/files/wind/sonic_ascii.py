@@ -78,7 +78,8 @@ def _gill(fields: list[str], heading: float) -> Velocity | str:
     status = next((f for f in fields[place + 1 :] if _STATUS.fullmatch(f)), '')
     if status not in _GOOD:
         return f"status is '{status}', not 00"
-    texts, unit = fields[1:place], _UNITS[fields[place]]
+    texts = fields[1:place]
+    unit = _UNITS[fields[place]]
     values = [finite(text) for text in texts]
     signed = [text[:1] in ('+', '-') for text in texts]
     if len(values) >= 2 and None not in values and all(signed):
@@ -88,7 +89,8 @@ def _gill(fields: list[str], heading: float) -> Velocity | str:
         return x + left_x, y + left_y, w
     if len(values) < 2 or '.' not in texts[1] or signed[0]:
         return f'neither components nor a direction: {",".join(texts)[:30]}'
-    speed, up = values[1], values[2] if len(values) > 2 else 0.0
+    speed = values[1]
+    up = values[2] if len(values) > 2 else 0.0
     bearing = degrees_to_bearing(values[0]) if values[0] is not None else None
     if speed is None or up is None or speed < 0.0:
         return f"speed '{texts[1][:8]}'"

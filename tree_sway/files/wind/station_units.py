@@ -40,7 +40,8 @@ def speed_units(table: TextTable, columns: Mapping[str, int], given: str | None)
     if given is not None and unit_factor('speed', given) is None:
         cure = f'use one of: {", ".join(UNITS["speed"])}'
         raise ParameterError(f"speed_unit is '{given}'", cure=cure)
-    factors, notes = dict[str, float](), list[str]()
+    factors = dict[str, float]()
+    notes = list[str]()
     maker = _maker_of(table)
     for quantity in ('wind_speed', 'gust'):
         if quantity not in columns:

@@ -90,7 +90,8 @@ def wind_of_table(
 ) -> WindRecord:
     """Return the wind of a table, as `read_table_wind`."""
     table = with_units_in_head(table)
-    rows, notes = WindRows(table.source), list[str]()
+    rows = WindRows(table.source)
+    notes = list[str]()
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
@@ -107,14 +108,16 @@ def wind_of_table(
         speed, note = _speed(table, found['wind_speed'], speed_unit)
         notes += [note] if note else []
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention or 'from')
-        yaw, convention = 0.0, 'to'
+        yaw = 0.0
+        convention = 'to'
     assert time is not None
     stored = np.flatnonzero(winds.good)
     times = row_times(table, *time, stored.tolist())
     notes += [times.note] if times.note else []
     if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
         # The newest row first, as services export them.
-        stored, times = stored[::-1], _reversed(times)
+        stored = stored[::-1]
+        times = _reversed(times)
     _fill(rows, table, winds, stored, times.seconds, speed_unit)
     record = rows.record(
         epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)

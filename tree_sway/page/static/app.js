@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The page: what comes over the line onto the screen, what hands do back onto the line. */
+/** The page: connects the stream to the view, and user input to the stream. */
 
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
@@ -13,12 +13,14 @@ import { Risk } from "./risk.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, motionSensors, setLanguage, windFrom, windSource, word } from "./words.js";
 
-/** Age of the newest state from which on it is behind, and time until numbers are written again [ms]. */
-const [BEHIND, FACTS_EVERY] = [1000, 400];
-/** How far a pointer may move in a click [px]. */
+/** Age of the newest frame from which on the stream counts as behind [ms]. */
+const BEHIND = 1000;
+/** Interval at which numbers are written [ms]. */
+const FACTS_EVERY = 400;
+/** Largest movement of a pointer in a click [px]. */
 const STILL = 4;
 
-/** Write texts where they are others. @param {Record<string, string>} texts by the ids of what shows them */
+/** Write texts that have changed. @param {Record<string, string>} texts by the id of their element */
 function write(texts) {
   for (const [id, text] of Object.entries(texts)) {
     if (element(id).textContent !== text) element(id).textContent = text;
@@ -34,20 +36,22 @@ const traces = {
   tip: new Trace(element("tip-trace"), "motion"),
 };
 const { settings, view } = readLink(location.hash);
-/** Address of this page, with the token for the stream; the bar of the browser does not keep it, as people
- * pass on what is there. A cookie has it when the page is loaded again. */
+/** Address of this page with the token of the stream. The token leaves the address bar, since people pass that on;
+ * a cookie keeps it for the next time. */
 const address = new URL(location.href);
 const query = address.searchParams;
 const barAddress = new URL(address);
 barAddress.searchParams.delete("token");
 history.replaceState(null, "", barAddress);
-/** Token of links to this page: those who have it can look, not change anything. */
+/** Token for links to this page, which allows looking but no changes. */
 let viewersToken = "";
 let line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
 let retryAt = 0;
 let lastFrameAt = 0;
-let [bytes, frames, drawn, fps, factsAt] = [0, 0, 0, 0, performance.now()];
-/** Time that leaves flutter by [s]; it stops with the tree. */
+/** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
+const since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
+let fps = 0;
+/** Time of the drawing [s], which stops while the tree is paused. */
 let sceneTime = 0;
 let lastDrawn = 0;
 let status = /** @type {Record<string, any>} */ ({});
@@ -55,13 +59,13 @@ let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
 const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 let day = days[0];
-/** Segment of the branch that was clicked; -1 if it was picked otherwise. */
+/** Segment that was clicked; -1 if the branch was picked in another way. */
 let pointedAt = -1;
 let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
 const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("write_again", error.message)));
-// Nothing is left out in full quality, however slow that is.
+// In full quality nothing is left out, even without a graphics unit.
 const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
   .catch((error) => giveUp(word("blind"), word("cure", error.message)));
 const stream = new TreeStream(address.href, {
@@ -88,8 +92,8 @@ const stream = new TreeStream(address.href, {
   },
   onFrame(_frame, _arrival, size) {
     lastFrameAt = performance.now();
-    bytes += size;
-    frames += 1;
+    since.bytes += size;
+    since.frames += 1;
   },
   onMessage({ hello, refused, unreadable, values, status: newStatus }) {
     if (hello) {
@@ -122,14 +126,14 @@ const hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null });
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
-/** Say why there is nothing to see; nothing follows. @param {string} title @param {string} text
+/** Show why nothing can be drawn, and stop there. @param {string} title @param {string} text
  * @returns {Promise<never>} */
 function giveUp(title, text) {
   notice(title, text);
   return new Promise(() => undefined);
 }
 
-/** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
+/** State of the stream, and its text. @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
 function stateNow() {
   const age = performance.now() - lastFrameAt;
   if (line !== "open") return [line, word(line)];
@@ -183,9 +187,9 @@ function toast(text) {
 
 function showFacts() {
   const now = performance.now();
-  const span = (now - factsAt) / 1000;
+  const span = (now - since.at) / 1000;
   if (span < FACTS_EVERY / 1000) return;
-  fps = drawn / span;
+  fps = since.drawn / span;
   const { leftOut } = scene.quality;
   const { corrections = 0, largest = 0 } = stream.byWind ?? {};
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
@@ -194,7 +198,7 @@ function showFacts() {
   const { mean, greatest } = traces.wind.statistics;
   write({
     drawn: `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`,
-    stream: `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`,
+    stream: `${Math.round(since.frames / span)} Hz, ${(since.bytes / span / 1000).toFixed(1)} kB/s`,
     latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
@@ -204,12 +208,12 @@ function showFacts() {
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
   });
-  [bytes, frames, drawn, factsAt] = [0, 0, 0, now];
+  Object.assign(since, { bytes: 0, frames: 0, drawn: 0, at: now });
   showState();
   for (const trace of Object.values(traces)) trace.draw();
 }
 
-/** Where no card lies over the picture, see `Camera`. */
+/** Part of the picture that no card covers, as `Camera.room`. */
 function room() {
   const [head, lines, form, tools] = ["head", "traces", "panel", "tools"].map((id) => element(id).getBoundingClientRect());
   const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
@@ -227,12 +231,12 @@ function room() {
   return [left / width, top, right / width, tools.height ? tools.top / height : 1];
 }
 
-/** See all of the scene between the cards, unless somebody looks at something of it. */
+/** Fit the scene between the cards, unless someone has moved the camera. */
 function fit() {
   if (scene.camera.isHome) scene.camera.home();
 }
 
-/** A model by its name, or by how many coordinates it has. @param {string} model */
+/** Name of a model for people. @param {string} model */
 const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) : model);
 
 /** @param {number} now */
@@ -245,7 +249,7 @@ function draw(now) {
   if (!isStill) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
   lastDrawn = now;
   scene.draw(coordinates, sceneTime, isStill);
-  drawn += 1;
+  since.drawn += 1;
   if (coordinates) {
     const [at, speed] = [scene.position(), Math.hypot(...playout.wind)];
     hands.drag?.frame();
@@ -269,7 +273,7 @@ function setDay(time) {
   scene.day = DAYLIGHT[time];
 }
 
-/** Buttons say what is: a tree that was started bare has no leaves to show. */
+/** Show the state of each button; a bare tree has no leaves to show. */
 function showButtons() {
   const { hasLeaves, leavesShown, isAutumn: season } = scene;
   const [pull, sound, headset] = [hands.drag?.isOn, hands.sound?.isOn, hands.headset?.session];
@@ -278,7 +282,7 @@ function showButtons() {
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
-/** @param {number} branch to follow; the highest if -1 @param {number} [segment] of it that was pointed at */
+/** Follow a branch. @param {number} branch the highest if -1 @param {number} [segment] that was clicked */
 function pick(branch, segment = -1) {
   const names = scene.watched.kind?.branch_names ?? [];
   scene.picked = names[branch] === undefined ? -1 : branch;
@@ -288,7 +292,7 @@ function pick(branch, segment = -1) {
   traces.tip.show(shown.value);
 }
 
-/** @param {number} step to the next branch, or back */
+/** Follow another branch. @param {number} step 1 for the next, -1 for the one before */
 function pickNext(step) {
   const count = scene.watched.kind?.branch_names.length ?? 0;
   if (count) pick((scene.picked + step + count) % count);
@@ -304,7 +308,7 @@ async function copyLink() {
   toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`);
 }
 
-/** @param {string} chosen language */
+/** Change the language of the page. @param {string} chosen */
 function speak(chosen) {
   setLanguage(chosen);
   /** @type {HTMLSelectElement} */ (element("language")).value = language();
@@ -317,7 +321,7 @@ function speak(chosen) {
   showState();
 }
 
-/** @type {Record<string, () => unknown>} what buttons do, and keys that are written beside them */
+/** Actions of the buttons, by their ids, and of the keys that their elements name. @type {Record<string, () => unknown>} */
 const actions = {
   home: () => scene.camera.home(),
   leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
@@ -391,7 +395,7 @@ document.addEventListener("drop", (event) => {
   if (file && connection instanceof OwnLine) connection.take(file).catch((error) => toast(error.message));
 });
 
-/** Follow what people prefer. @param {string} what @param {(isSo: boolean) => void} take */
+/** Follow a preference of the browser. @param {string} what @param {(isSo: boolean) => void} take */
 function prefers(what, take) {
   const found = window.matchMedia(`(prefers-${what})`);
   found.addEventListener("change", () => take(found.matches));
@@ -403,7 +407,7 @@ prefers("reduced-motion: reduce", (isCalm) => (scene.flutters = !isCalm));
 setDay(days.find((each) => each === settings.day) ?? day);
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });
 if (settings.shown in QUANTITIES) shown.value = settings.shown;
-// A page that is a file is what its `.html` would be.
+// A page that is a file already is its own export.
 for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700 && window.innerHeight > 560;
@@ -414,7 +418,7 @@ scene.camera.listen(canvas);
 stream.open();
 requestAnimationFrame(draw);
 
-/** For tests and for the curious at the console. */
+/** For tests, and for the console. */
 Object.assign(window, {
   treeSway: {
     scene, stream, connection, playout, traces, hands, risk,

@@ -1,9 +1,9 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Starts a page that is one file: unpacks its modules, and gives them the names they import. */
+/** Starts a page that is one file: unpacks its modules and registers them under the names that they import. */
 
 (async () => {
-  /** What an element of the page holds. @param {string} id */
+  /** Unpack the content of an element. @param {string} id */
   const unpacked = (id) => {
     const text = document.getElementById(id)?.textContent ?? "";
     const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);

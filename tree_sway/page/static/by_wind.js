@@ -1,15 +1,16 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Frames of the wind alone, to whole ones: a page that solves the scene by itself. */
+/** Solves the scene on the page where frames carry the wind alone. */
 
 import { PART, PAUSED, RESTARTED } from "./protocol.js";
 
-/** Steps that a gap between two frames is bridged by, at most. */
+/** Most steps by which a gap between two frames is bridged. */
 const MOST_STEPS = 60;
+/** Weight of the newest spacing of frames in their mean. */
 const NEWEST = 0.05;
 
-/** Solves a stand by the wind of each frame, and follows the states among them; a frame that is lost is
- * bridged by a wind between the two that came. tree_sway/stream/by_wind.py does the same. */
+/** Steps a stand by the wind of each frame, and corrects it by the states that come now and then. Over a lost frame the
+ * wind is interpolated. tree_sway/stream/by_wind.py does the same. */
 export class ByWind {
   /** @param {import("./sway.js").Stand} stand */
   constructor(stand) {
@@ -17,12 +18,12 @@ export class ByWind {
     this._last = /** @type {Frame | null} */ (null);
     this._spacing = stand.dt;
     this._heard = 0;
-    /** States that the stand was brought to, and the largest change by one over full scale. */
+    /** Number of corrections by states, and the largest over full scale. */
     this.corrections = 0;
     this.largest = 0;
   }
 
-  /** Go on to a frame. @param {Frame} frame @returns {Frame | null} whole; null before the first state */
+  /** Step to a frame. @param {Frame} frame @returns {Frame | null} with all coordinates; null before the first state */
   take(frame) {
     const { stand, _last: last } = this;
     const { coordinates: values, flags, first } = frame;
@@ -43,13 +44,13 @@ export class ByWind {
     return { ...frame, flags: flags & ~PART, coordinates: stand.state() };
   }
 
-  /** Feel the wind that was on its way before the first frame. @param {Recent} gusts */
+  /** Take the wind that was under way before the first frame. @param {Recent} gusts */
   goOn(gusts) {
     this.stand.gusts.goOn(gusts);
     this._heard = gusts.sequence;
   }
 
-  /** Go on by the steps between two frames. @param {Frame} last @param {Frame} frame */
+  /** Make the steps between two frames. @param {Frame} last @param {Frame} frame */
   _step(last, frame) {
     const { stand } = this;
     const count = Math.max((frame.sequence - last.sequence) >>> 0, 1);

@@ -1,27 +1,27 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What a description must hold before it is used, as tree_sway/stream/check_description.py asks. */
+/** Checks of received messages before they are used, as in tree_sway/stream/check_description.py. */
 
 import { textOf } from "./files.js";
 
-/** What cannot be read; its message is for people. */
+/** A message that cannot be used; the text is for people. */
 export class ProtocolError extends Error {}
 
 const MOST_SEGMENTS = 500000;
 const MOST_POSES = 10000000;
 const MOST_COORDINATES = 65535;
-/** Tables times their coordinates squared, and trees times coordinates of a table. */
+/** Largest number of tables times their squared coordinates, and of trees times coordinates of a table. */
 const MOST_SLOPES = 400000;
 const MOST_STATES = 50000000;
 /** Largest wind of a tree over that of its kind, and smallest speed of gusts over the mean wind. */
 const FASTEST = 1e6;
 const LEAST_RATIO = 0.1;
-/** Of a height or an error [m]. */
+/** Largest magnitude of any number, such as a height [m]. */
 const GREATEST = 1e12;
 
 export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
-/** Type and axes of each array of a kind; those of leaves only where it bears any.
+/** Type and axes of each array of a kind; leaf arrays are absent on bare trees.
  * @type {{description: Forms, tables: Forms}} */
 export const FORMS = JSON.parse(await textOf("arrays.json"));
 
@@ -31,7 +31,7 @@ export const LOOKS = JSON.parse(await textOf("looks.json"));
 const BY_BRANCH = ["branch_parent", "branch_base_segment", "branch_coordinate", "branch_keys", "branch_base_turn",
   "branch_turn"];
 
-/** Refuse what does not hold. @param {boolean} holds @param {string} name */
+/** Throw a `ProtocolError` unless a condition holds. @param {boolean} holds @param {string} name of the part */
 export function need(holds, name) {
   if (!holds) throw new ProtocolError(`${name} does not fit the rest, or is not finite`);
 }
@@ -39,7 +39,7 @@ export function need(holds, name) {
 /** @param {unknown} value */
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
 
-/** Whether a look has everything that the average one has, of the same kind, and within reason.
+/** Whether a look has the same fields as the average one, of the same type and in a sane range.
  * @param {any} look @param {any} like @returns {boolean} */
 function fits(look, like) {
   if (typeof like === "number") return isFinite(look) && look > 0 && look < 100;
@@ -162,7 +162,7 @@ export function checkTablesHeader(header, sizes, own) {
 /** @param {any} value */
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/** Refuse a text that is none of doc/streaming.md. @param {Record<string, any>} message of the server */
+/** Refuse a text message that doc/streaming.md does not have. @param {Record<string, any>} message of the server */
 export function checkMessage(message) {
   need(isObject(message), "message");
   const { pong = 0, refused, hello, status = {}, values = {}, gusts } = message;

@@ -1,11 +1,11 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Trees whose steps stay clamped go on from rest with fewer coordinates, as in
+/** Finds trees whose steps stay clamped, which are then reset with fewer coordinates, as in
  * tree_sway/core/run/clamp_watch.py. */
 
-/** Time for which steps may be clamped, less the time of steps between that are not [s]. */
+/** Longest time in which steps may be clamped; free steps in between are subtracted [s]. */
 const LONGEST_CLAMPED = 1;
-/** Smallest number of coordinates that are left. */
+/** Smallest number of coordinates. */
 const FEWEST = 3;
 
 /** Sums the time for which the steps of a tree were clamped. */

@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** A client of the stream for any program: connects, keeps the line, gives the place of every segment now.
- * No dependency; three.js, Babylon or WebXR draw what it says. */
+/** A client of the stream for any program: connects, reconnects, and gives the present pose of every segment.
+ * It has no dependencies; draw the poses with three.js, Babylon or WebXR. */
 
 import { ByWind } from "./by_wind.js";
 import { Connection } from "./connection.js";
@@ -10,10 +10,11 @@ import { Placer } from "./placing.js";
 import { Playout } from "./playout.js";
 import { Stand } from "./sway.js";
 
-/** Playout delay of a scene that is solved here [ms]. */
+/** Playout delay of a scene without a server [ms]. */
 const OWN_DELAY = 40;
-/** This machine, from which scenes of fewer coordinates come as often as they are drawn. */
-const [HERE, FEW] = [/^(localhost|127[.]|\[::1\])/, 1000];
+/** Names of this machine; from there scenes of fewer coordinates than FEW are sent at 60 Hz. */
+const HERE = /^(localhost|127[.]|\[::1\])/;
+const FEW = 1000;
 
 export class TreeStream {
   /** @param {string} page address of the page, with its token if it has one
@@ -22,7 +23,7 @@ export class TreeStream {
     const { kept = null, byWind = false, delay = kept ? OWN_DELAY : undefined } = options;
     this.playout = new Playout(delay);
     this.placer = /** @type {Placer | null} */ (null);
-    /** What solves the scene by its wind; null where states come. */
+    /** Solver of a scene whose wind alone is sent; null where states are. */
     this.byWind = /** @type {ByWind | null} */ (null);
     const { onDescription, onFrame, onMessage } = listeners;
     /** @type {Listeners} */
@@ -58,17 +59,17 @@ export class TreeStream {
       : new Connection(url.href, taking, options.rate ?? (byWind ? 60 : undefined));
   }
 
-  /** Open the line now, whatever the wait. */
+  /** Connect now, without waiting for the next attempt. */
   open() {
     this.connection.open();
   }
 
-  /** Close the line for good. */
+  /** Disconnect for good. */
   close() {
     this.connection.close();
   }
 
-  /** What the server described; null before that. */
+  /** Description of the scene; null before it has come. */
   get description() {
     return this.connection.description;
   }
@@ -78,8 +79,8 @@ export class TreeStream {
     this.connection.send({ set: { name, value } });
   }
 
-  /** Pull at a branch, where the server lets anybody; say it again within half a second to go on.
-   * @param {Push} pull a spring; one of no stiffness lets go */
+  /** Pull a branch by a spring, if the server allows it; repeat within half a second to keep it.
+   * @param {Push} pull without stiffness it ends */
   pull(pull) {
     this.connection.send({ pull });
     this.byWind?.stand.push(pull);

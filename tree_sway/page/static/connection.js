@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The line to the server: opens it, asks for frames by credit, opens it again when it is lost. */
+/** The connection to the server: opens it, requests frames by credit, reconnects when it is lost. */
 
 import { checkMessage } from "./checks.js";
 import {
@@ -8,18 +8,20 @@ import {
 } from "./protocol.js";
 import { decodeTables } from "./sway.js";
 
-/** Frames that may be on their way at most, and at least where they are large. */
+/** Most frames that may be under way, and the least of it if they are large. */
 const [MOST_CREDIT, LEAST_CREDIT] = [24, 8];
-/** What may be on its way [bytes], so that a slow line holds little that is old. */
+/** Most bytes that may be under way, so that a slow connection does not fill with old frames. */
 const ON_THE_WAY = 200000;
+/** Number of frames for which credit is given at once. */
 const GRANT_EVERY = 4;
-/** Until a lost line is opened again, and between pings [ms]. */
-const [SHORTEST_WAIT, LONGEST_WAIT, PING_EVERY] = [500, 10000, 2000];
-/** A line that has been silent for longer is taken for lost [ms]. */
+/** Wait before a reconnection, doubled with each failure [ms]. */
+const [SHORTEST_WAIT, LONGEST_WAIT] = [500, 10000];
+const PING_EVERY = 2000;
+/** Silence after which a connection counts as lost [ms]. */
 const SILENCE = 6000;
 const LARGEST_TEXT = 2 ** 20;
 
-/** One line to a server, kept from `open` to `close`. */
+/** A connection to a server, kept up from `open` to `close`. */
 export class Connection {
   /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] of frames [1/s] */
   constructor(url, listeners, rate = 30) {
@@ -29,17 +31,17 @@ export class Connection {
     this.roundTrip = NaN;
     this.description = /** @type {Description | null} */ (null);
     this._socket = /** @type {WebSocket | null} */ (null);
-    /** Messages that could not be read; after each the line is made again. */
+    /** Number of messages that could not be read; each is followed by a reconnection. */
     this.unreadable = 0;
     this._wait = SHORTEST_WAIT;
-    /** Frames that were asked for and have not come. */
+    /** Frames that were requested and have not come. */
     this._awaited = 0;
     this._credit = MOST_CREDIT;
     this._heard = 0;
     this._retry = this._watching = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
   }
 
-  /** Open the line now, whatever the wait. */
+  /** Connect now, without waiting for the next attempt. */
   open() {
     this.close();
     const socket = this._socket = new WebSocket(this.url);
@@ -64,7 +66,7 @@ export class Connection {
     };
   }
 
-  /** Close the line for good. */
+  /** Disconnect for good. */
   close() {
     clearTimeout(this._retry);
     clearInterval(this._watching);
@@ -78,10 +80,10 @@ export class Connection {
     if (this._socket?.readyState === WebSocket.OPEN) this._socket.send(JSON.stringify(message));
   }
 
-  /** Lose the line, and make it again. */
+  /** Give the connection up, and reconnect after a wait. */
   _lose() {
     this.close();
-    // Many pages that lose one server do not come back in one instant.
+    // At random, so that many pages of one server do not all return at once.
     const wait = this._wait * (0.75 + 0.5 * Math.random());
     this._wait = Math.min(2 * this._wait, LONGEST_WAIT);
     this._retry = setTimeout(() => this.open(), wait);
@@ -112,7 +114,7 @@ export class Connection {
   }
 
   /** Read a text, a description, its tables or a frame. @param {string | ArrayBuffer} data
-   * @param {number} arrival [ms] @returns {() => void} what is left to do: give it to the listener */
+   * @param {number} arrival [ms] @returns {() => void} call that gives it to the listener */
   _read(data, arrival) {
     const isText = typeof data === "string";
     const size = isText ? data.length : data.byteLength;

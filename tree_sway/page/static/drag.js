@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** A branch pulled by hand: a spring to the pointer, and the pull test when it is let go. */
+/** Pulls a branch by hand: a spring to the pointer, then the free decay as a pull test. */
 
 import { save } from "./keepsake.js";
 import { element } from "./panel.js";
@@ -9,24 +9,26 @@ import { distance } from "./quaternions.js";
 import { chainTo, Touch } from "./touch.js";
 import { word } from "./words.js";
 
-/** Modulus of wood whose own is not described [Pa]. */
+/** Young's modulus where the description has none [Pa]. */
 const MODULUS = 8e9;
+/** Interval at which a pull is renewed [ms]. */
 const RENEW_EVERY = 100;
+/** Growth of the stiffness of a spring that is too weak, and its largest value [N/m]. */
 const [HARDER, STIFFEST] = [1.4, 1e5];
-/** A free decay is recorded for this time [s], and offered from the other on. */
+/** Length of the record of a free decay, and the length from which on it can be saved [s]. */
 const [RECORDED, OFFERED] = [30, 3];
-/** Until a tree elsewhere is surely let go [ms]. */
+/** Time after which a release has surely reached the server [ms]. */
 const RELEASED = 250;
-/** Share of the picture that a key pulls by, and where it does. */
+/** Movement of the hand per key press, over the size of the picture, and its directions. */
 const KEY_STEP = 0.02;
 /** @type {Record<string, number[]>} */
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-/** A solver that is late by more does not catch up [s]. */
+/** Gap between frames above which the solver did not catch up [s]. */
 const WAITED = 0.25;
-/** Trees that are looked through for a branch, the largest on the screen. */
+/** Number of trees that are searched for a branch, the largest on the screen first. */
 const MOST_TREES = 60;
 
-/** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
+/** Stiffness of the wood that carries a segment [N/m]: a spring as stiff bends a branch half of the way.
  * @param {Scene} scene @param {number} segment of the watched tree */
 function stiffnessAt(scene, segment) {
   const { kind, rest, place } = scene.watched;
@@ -41,7 +43,7 @@ function stiffnessAt(scene, segment) {
   return Math.min(STIFFEST, place[4] / Math.max(compliance, 1e-9));
 }
 
-/** The hand at a branch: where it was, what it pulls by, and what came of it. */
+/** One pull at a branch: its spring, then the record of the free decay. */
 export class Pull {
   /** @param {Scene} scene @param {TreeStream} stream @param {number} segment of the watched tree */
   constructor(scene, stream, segment) {
@@ -51,21 +53,21 @@ export class Pull {
     this.stiffness = stiffnessAt(scene, segment);
     this.to = scene.position(segment);
     this._sentAt = -Infinity;
-    /** Time [s] and displacement [m] since it was let go. */
+    /** Time [s] and displacement [m] since the release. */
     this.record = /** @type {number[][]} */ ([]);
     this._from = Infinity;
     this.isHeld = true;
     this._touch = /** @type {Touch | null} */ (null);
-    /** The newest of the record. */
+    /** Newest frame of the record. */
     this._last = /** @type {Frame | null} */ (null);
   }
 
-  /** What the spring pulls by [N]. */
+  /** Force of the spring [N]. */
   get force() {
     return this.isHeld ? this.stiffness * distance(this.to, this.scene.position(this.segment)) : 0;
   }
 
-  /** Pull on, now and then, harder until the branch comes half of the way. @param {number} now [ms] */
+  /** Renew the pull at its interval, with a stiffer spring until the branch comes half of the way. @param {number} now [ms] */
   renew(now) {
     if (!this.isHeld || now - this._sentAt < RENEW_EVERY) return;
     this._sentAt = now;
@@ -75,14 +77,14 @@ export class Pull {
     this._say(this.stiffness);
   }
 
-  /** Let go; the free decay begins with the state that comes next. */
+  /** Release; the free decay begins with the next state. */
   release() {
     this.isHeld = false;
     this._from = this.stream.playout.newest + RELEASED;
     this._say(0);
   }
 
-  /** Note where the states since the last have it. */
+  /** Record the place of the segment in the frames that have come. */
   note() {
     const { description, playout } = this.stream;
     if (this.isHeld || !description || this.seconds > RECORDED) return;
@@ -95,14 +97,14 @@ export class Pull {
       const last = this._last ?? frame;
       const count = Math.max(1, (frame.sequence - last.sequence) >>> 0);
       let span = (frame.stamp - last.stamp) / 1000;
-      // The tree waited where a busy machine let the solver wait.
+      // On a busy machine the solver stood still in the meantime, and the tree with it.
       if (span > WAITED * count) span = (count * this.seconds) / this.record.length;
       this.record.push([this.seconds + span, ...rest.map((each, c) => at[c] - each)]);
       this._last = frame;
     }
   }
 
-  /** How long the record is [s]. */
+  /** Length of the record [s]. */
   get seconds() {
     return this.record.at(-1)?.[0] ?? 0;
   }
@@ -130,7 +132,7 @@ export class Drag {
     const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
     this._shown = { line, label, saving };
     saving.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
-    /** @type {Record<string, (event: any) => boolean>} by types of events, what takes one if it is for it */
+    /** Handlers, which return whether the event was for them. @type {Record<string, (event: any) => boolean>} */
     const takers = {
       pointerdown: (event) => this._grab(event), pointermove: (event) => this._move(event),
       pointerup: (event) => this._release(event), pointercancel: (event) => this._release(event),
@@ -145,7 +147,7 @@ export class Drag {
     this.isOn = !this.isOn;
   }
 
-  /** By keys: arrows pull the tip that is followed, Enter lets go. @param {KeyboardEvent} event */
+  /** Pull by keys: arrows pull the tip that is followed, Enter releases. @param {KeyboardEvent} event */
   _key(event) {
     const { key } = event;
     if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
@@ -168,7 +170,7 @@ export class Drag {
     return true;
   }
 
-  /** The segment under the pointer, or -1; its tree is watched from then on. @param {PointerEvent} event */
+  /** Segment under the pointer, or -1; its tree is the watched one from then on. @param {PointerEvent} event */
   _under(event) {
     const { scene, scene: { detail } } = this;
     const before = detail.watched;

@@ -1,8 +1,8 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Files beside the modules that are no modules: words, tables, looks of species, programs of shaders. */
+/** Reads the files beside the modules: texts, tables, looks of species, shaders. */
 
-/** Text of a file; a page that is one file has it itself. @param {string} name @returns {Promise<string>} */
+/** Text of a file, or of its copy inside a page that is one file. @param {string} name @returns {Promise<string>} */
 export async function textOf(name) {
   const own = /** @type {any} */ (globalThis).treeSwayFiles?.[name];
   if (own !== undefined) return own;

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Draws the states that `tree-sway render` gives, and sends back a picture of each. */
+/** Draws the states that `tree-sway render` sends, and returns a picture of each. */
 
 /** @returns {any} */
 const page = () => /** @type {any} */ (window).treeSway;

@@ -7,12 +7,12 @@ import { turned } from "./quaternions.js";
 
 /** @typedef {{from: number[], along: number[]}} Ray of a controller, in the scene */
 
-/** A branch is pointed at that is within this angle of the ray [rad]. */
+/** Largest angle between a ray and the branch that it picks [rad]. */
 const AIM = 0.06;
-/** Teleport goes this far at most, and the first stand is that many heights away. */
+/** Longest teleport [m], and first distance over the height of the tree. */
 const [FARTHEST, HEIGHTS_AWAY] = [40, 0.9];
 
-/** One eye, drawn by as a `Camera` is. @param {any} view of WebXR @returns {View["camera"]} */
+/** The view of an eye with the interface of `Camera`. @param {any} view of WebXR @returns {View["camera"]} */
 function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, projectionMatrix: p }) {
   const matrix = Float32Array.from(m, (_, i) =>
     [0, 1, 2, 3].reduce((sum, k) => sum + p[(i % 4) + 4 * k] * inverse.matrix[4 * Math.floor(i / 4) + k], 0));
@@ -30,14 +30,14 @@ export class Headset {
     this.session = /** @type {any} */ (null);
     this.frames = 0;
     this.views = /** @type {View[]} */ ([]);
-    /** Place of its floor in the scene [m], and the heading that it looks along at first [rad]. */
+    /** Place of its floor in the scene [m], and its first heading [rad]. */
     this.origin = [0, 0, 0];
     this.heading = 0;
-    /** What each controller pulls at, and how far off it is [m]. */
+    /** Pull of each controller, and its distance [m]. */
     this.pulls = /** @type {Map<any, {pull: Pull, far: number}>} */ (new Map());
   }
 
-  /** Enter, or leave. @param {() => void} onEnd what is done when it has ended */
+  /** Enter, or leave. @param {() => void} onEnd called when it has ended */
   async toggle(onEnd) {
     if (this.session) return this.session.end();
     const { gl } = this.scene;
@@ -73,7 +73,7 @@ export class Headset {
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }
 
-  /** Where a controller points; null where it is not seen. @param {{frame: any, inputSource: any}} event */
+  /** Ray of a controller; null if it is not tracked. @param {{frame: any, inputSource: any}} event */
   _ray({ frame, inputSource }) {
     const pose = frame.getPose(inputSource.targetRaySpace, this.space);
     if (!pose) return null;

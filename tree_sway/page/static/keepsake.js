@@ -1,12 +1,12 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What people take with them: a picture, a clip, the tree, and a link that keeps the view. */
+/** Exports: a picture, a clip, the tree, and a link that keeps the view. */
 
 import { Quality } from "./drawing/quality.js";
 
 const FRAMES_PER_SECOND = 30;
 
-/** Hand a file to whoever looks. @param {Blob} blob @param {string} name @param {string} suffix */
+/** Download a file. @param {Blob} blob @param {string} name @param {string} suffix */
 export function save(blob, name, suffix) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -15,7 +15,7 @@ export function save(blob, name, suffix) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** Save what is seen, in full. @param {Scene} scene @param {string} name @param {() => void} draw a frame */
+/** Save the picture in full quality. @param {Scene} scene @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
   const { quality } = scene;
   scene.quality = new Quality();
@@ -24,7 +24,7 @@ export function savePicture(scene, name, draw) {
   scene.quality = quality;
 }
 
-/** Record until what is given back is called. @param {HTMLCanvasElement} canvas @param {string} name */
+/** Record a clip; the returned function ends it. @param {HTMLCanvasElement} canvas @param {string} name */
 export function recordClip(canvas, name) {
   if (!window.MediaRecorder) throw new Error("this browser records no clips: take Chrome 47, Firefox 25, Safari 14.1 or later");
   const type = ["video/mp4", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
@@ -36,7 +36,7 @@ export function recordClip(canvas, name) {
   return () => recorder.stop();
 }
 
-/** Save the tree as the server writes it. @param {"glb" | "html"} suffix @param {string} name
+/** Save the tree as a file that the server writes. @param {"glb" | "html"} suffix @param {string} name
  * @param {string | null} token of the page; without one a cookie may have it */
 export async function saveTree(suffix, name, token) {
   // No page of another origin can send this header.

@@ -1,17 +1,18 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The line of a page that solves by itself: it gives the states that a server would send. */
+/** In place of a connection on a page without a server: solves the scene and gives the frames a server would send. */
 
 import { Connection } from "./connection.js";
 import { decodeDescription, PAUSED, RESTARTED } from "./protocol.js";
 import { decodeTables, Stand } from "./sway.js";
 import { readWind, Recorded, Turbulence } from "./wind.js";
 
-/** A page that was slow or hidden catches up no more than this [ms]. */
+/** Most time that a slow or hidden page catches up [ms]. */
 const LATEST = 250;
+/** Interval of status messages [ms]. */
 const STATUS_EVERY = 500;
 
-/** What the page holds; null on one that is served, an `Error` if damaged. @returns {Promise<Kept | null>} */
+/** Scene inside the page; null on a page that a server sent. Throws if it is damaged. @returns {Promise<Kept | null>} */
 export async function keptScene() {
   const data = await /** @type {any} */ (window).treeSwayScene?.();
   if (!data) return null;
@@ -20,7 +21,7 @@ export async function keptScene() {
   return { description, stand: new Stand(decodeTables(data.slice(from), true), description) };
 }
 
-/** Used as a `Connection`: the same listeners, messages and frames. */
+/** Has the interface of `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
   /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind */
   constructor({ description, stand }, listeners, address = null) {
@@ -34,7 +35,7 @@ export class OwnLine {
     this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** newest of a live wind */
+    /** Newest frame of a live wind. */
     this._live = /** @type {Frame | null} */ (null);
     this._isPaused = false;
     this._hasRestarted = false;
@@ -79,7 +80,7 @@ export class OwnLine {
     this.listeners.onMessage({ hello: { controls, can_pull: true } });
   }
 
-  /** Take a change of a control, or a pull. @param {Record<string, any>} message */
+  /** Apply a change of a control, or a pull. @param {Record<string, any>} message */
   send({ set, pull }) {
     if (pull) this.stand.push(pull);
     if (!set) return;
@@ -93,14 +94,14 @@ export class OwnLine {
     this.listeners.onMessage({ values: { ...this._turbulence.values, pause: this._isPaused } });
   }
 
-  /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
+  /** Play a recorded wind; throws a `ProtocolError` if the file has none. @param {File} file */
   async take(file) {
     this._wind = readWind(await file.text(), file.name);
     this._record = file.name.replace(/\.[^.]*$/, "");
     this._hello();
   }
 
-  /** What blows now, as a server says it in its status. */
+  /** Source of the wind, as in the status of a server. */
   _source() {
     if (this._live) return { kind: "live", name: this._address ?? "" };
     return this._wind instanceof Recorded ? { kind: "recorded", name: this._record } : { kind: "simulated" };

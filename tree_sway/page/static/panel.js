@@ -1,18 +1,20 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Controls as the server describes them: sliders, choices, buttons; a refusal puts them back. */
+/** Controls as the server describes them: sliders, choices, texts, buttons; a refusal resets them. */
 
 import { hasWord, language, windPoint, word } from "./words.js";
 
+/** Least interval between two values of a slider [ms]. */
 const SEND_EVERY = 80;
+/** Positions of a slider. */
 const STEPS = 400;
-/** A range that is wider is one of powers. */
+/** Ratio of the ends of a range from which on its slider is logarithmic. */
 const WIDE = 1000;
 
 /** An element of the page. @param {string} id */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
-/** An element with properties and what is in it. @template {keyof HTMLElementTagNameMap} T @param {T} tag
+/** Make an element with properties and children. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
 export function made(tag, properties, ...within) {
   const element = Object.assign(document.createElement(tag), properties);
@@ -26,7 +28,7 @@ const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
 const named = ({ name, description }) =>
   ({ id: `control-${name}`, title: hasWord(`${name}_hint`) ? word(`${name}_hint`) : description });
 
-/** A number as people read it. @param {Control} control @param {number} value */
+/** A number with its unit as text. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
   if (name === "bearing_to") return windPoint([Math.sin(value), Math.cos(value)]);
   if (name === "month") {
@@ -38,12 +40,12 @@ function textOf({ name, unit }, value) {
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();
 }
 
-/** Range of a slider, and what its positions are as values. @param {Control} control
+/** Range of a slider, and the values of its positions. @param {Control} control
  * @returns {{min: number, max: number, step: number, valueOf: (at: number) => number, positionOf: (value: number) => number}} */
 function scaleOf({ name, minimum, maximum }) {
   const [low, high] = [minimum ?? 0, maximum ?? 1];
   const half = Math.PI;
-  // In degrees that the wind comes from, once about; the value is the angle that it blows to.
+  // The slider shows degrees that the wind comes from; the value is the angle that it blows to.
   if (name === "bearing_to") {
     return {
       min: 0, max: 360, step: 1,
@@ -66,7 +68,7 @@ export class Panel {
     this.form = form;
     this.send = send;
     this._show = /** @type {Map<string, (value: any) => void>} */ (new Map());
-    /** @type {string} the one that is being moved */
+    /** Name of the control that is being moved; its value is not overwritten. @type {string} */
     this._inHand = "";
   }
 
@@ -81,7 +83,7 @@ export class Panel {
     for (const { name, value } of controls) this._show.get(name)?.(value);
   }
 
-  /** Show values. @param {Record<string, any>} values @param {boolean} [isRefusal] also of what is in hand */
+  /** Show values. @param {Record<string, any>} values @param {boolean} [isRefusal] resets also the one being moved */
   update(values, isRefusal = false) {
     for (const [name, value] of Object.entries(values)) {
       if (isRefusal || name !== this._inHand) this._show.get(name)?.(value);
@@ -94,7 +96,7 @@ export class Panel {
     if (field) field.hidden = isHidden;
   }
 
-  /** Say something under a control. @param {string} name @param {string} text */
+  /** Write a note under a control. @param {string} name @param {string} text */
   note(name, text) {
     const field = this.form.querySelector(`#control-${name}`)?.closest(".field");
     if (!field) return;

@@ -1,15 +1,17 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** From the state to poses: state -> key rotations -> curves of branches -> segments, joined from the
- * root. The law is the solver's own (doc/streaming.md, "From a frame to poses"). */
+/** From streamed coordinates to poses: coordinates -> key rotations -> bent branches -> segments, from the root on. The
+ * law is the solver's own (doc/streaming.md, "From a frame to poses"). */
 
 import { addTurned, fromHalf, multiply } from "./quaternions.js";
 
-/** What is worked in: a place, half a rotation vector, quaternions of a turn and of a segment. */
+/** Work arrays: a place, half a rotation vector, the quaternions of a bend and of a segment. */
 const [at, half, turn, whole] = [3, 3, 4, 4].map((size) => new Float64Array(size));
+/** Squared angles [rad^2] up to which a slope is stretched, and between which the shape blends into that of a load at
+ * the tip. */
 const [STRETCH_TO, BLEND_FROM, BLEND_TO] = [2, 6, 4].map((part) => (Math.PI / part) ** 2);
 
-/** Half of the share that a slope has of an angle. @param {number} square of it @param {number} skew */
+/** Half of the slope over the angle of a branch. @param {number} square of the angle @param {number} skew */
 const stretch = (square, skew) => 0.5 * (1 + Math.min(square, STRETCH_TO) * skew);
 
 /** Numbers per pose: x y z [m] of the root-side node, the tree's scale, then the quaternion x y z w. */
@@ -17,14 +19,14 @@ export const STRIDE = 8;
 
 export const AT_ORIGIN = [0, 0, 0, 0, 1];
 
-/** Where a point of a kind at rest is in a tree. @param {number[]} place @param {ArrayLike<number>} point */
+/** Place in the scene of a point of a kind. @param {number[]} place @param {ArrayLike<number>} point */
 export function placed([x, y, z, yaw, scale], point) {
   const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
   return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
 }
 
-/** What follows the coordinates of a state: turns of pulled branches beyond them [rad], by the numbers of key
- * rotations. @param {ArrayLike<number>} values @param {number} count of coordinates */
+/** Rotations of pulled branches beyond the coordinates [rad], by the number of the key rotation; they follow the
+ * coordinates of a state. @param {ArrayLike<number>} values @param {number} count of coordinates */
 export function beyond(values, count) {
   const turns = /** @type {Map<number, number>} */ (new Map());
   for (let i = count; i < values.length; i += 2) turns.set(values[i], values[i + 1]);
@@ -33,7 +35,7 @@ export function beyond(values, count) {
 
 const NONE = /** @type {Map<number, number>} */ (new Map());
 
-/** Places the segments of a described scene, all of them, tree after tree. */
+/** Places all segments of a scene, tree after tree. */
 export class Placer {
   /** @param {Description} description */
   constructor(description) {
@@ -62,7 +64,7 @@ export class KindPlacer {
     this.order = order ?? Int32Array.from({ length: nBranches }, (_, i) => i);
     /** Row of each segment when branches are placed in this order. */
     this.slots = new Int32Array(kind.nSegments);
-    /** Rows of the first branches of the order together. */
+    /** Number of segments of the first branches of the order. */
     this.reached = new Int32Array(nBranches + 1);
     this.order.forEach((branch, i) => {
       const [from, end] = [arrays.branch_first[branch], arrays.branch_first[branch + 1]];
@@ -71,13 +73,13 @@ export class KindPlacer {
     });
     const { segment_rest: rest } = arrays; // w x y z
     this._rest = Float32Array.from(rest, (_, i) => rest[i % 4 < 3 ? i + 1 : i - 3]);
-    /** Key rotations [rad], and how each branch is turned at its base. */
+    /** Key rotations [rad], and the rotation of each branch at its base. */
     this._keys = new Float32Array(kind.nKeys);
     this._bases = new Float64Array(4 * nBranches);
   }
 
   /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
-   * @param {ArrayLike<number>} place as of a tree @param {number} count how many branches, in the order
+   * @param {ArrayLike<number>} place of the tree @param {number} count of branches, in the order
    * @param {Float32Array} poses written @param {number} to row of its first segment
    * @param {Map<number, number>} [turns] `beyond` @param {number} [firstKey] its first there */
   place(coordinates, from, place, count, poses, to, turns = NONE, firstKey = 0) {
@@ -95,8 +97,8 @@ export class KindPlacer {
     }
   }
 
-  /** Add half of what the key rotations of a branch turn somewhere. @param {number} branch
-   * @param {number} stretched half of the share of the first two @param {number} row of their turns */
+  /** Add half the rotation vector that the key rotations of a branch give at a place. @param {number} branch
+   * @param {number} stretched `stretch` of the first two @param {number} row of the place in `turn` */
   _addTurns(branch, stretched, row) {
     const { turn: turns, branch_coordinate: first, branch_keys: keys } = this.kind.arrays;
     for (let k = 0; k < keys[branch]; k++, row++) {
@@ -105,7 +107,7 @@ export class KindPlacer {
     }
   }
 
-  /** Where a branch begins, and how it is turned there by the branch that it sits on.
+  /** Find the base of a branch and its rotation there, by the branch that carries it.
    * @param {number} branch @param {ArrayLike<number>} place @param {Float32Array} poses @param {number} to */
   _placeBase(branch, place, poses, to) {
     const { kind: { arrays }, _bases: bases, _keys: keys } = this;
@@ -127,8 +129,8 @@ export class KindPlacer {
     addTurned(poses, under + 4, arrays.branch_offset, 3 * branch, place[4], at);
   }
 
-  /** The segments of a branch from its base on: by one slope about the axes across its chord, or by every
-   * key rotation in its own way. @param {number} branch @param {number} scale @param {Float32Array} poses
+  /** Place the segments of a branch from its base on: bent by one slope about the axes across its chord, or by all key
+   * rotations. @param {number} branch @param {number} scale @param {Float32Array} poses
    * @param {number} to */
   _placeSegments(branch, scale, poses, to) {
     const { kind: { arrays }, _bases: bases, _rest: rest, _keys: keys } = this;

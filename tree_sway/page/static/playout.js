@@ -1,33 +1,38 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** From frames that arrive when they will to a smooth motion: shown a little late, on a curve through the
- * states (Catmull-Rom); where they are close together one more is expected on the parabola of the last three, as
- * a tree has inertia. The last minute is kept to look back at. */
+/** Playout buffer: turns frames that arrive irregularly into smooth motion. States are shown a little late, on a
+ * Catmull-Rom curve through them. Where frames are close together, the next one is predicted on the parabola of
+ * the last three, since a tree has inertia. The last minute is kept to look back at. */
 
 import { PAUSED, RESTARTED } from "./protocol.js";
 
-/** Longest playout delay, and that of the beginning [ms]. */
+/** Initial and longest playout delay [ms]. The delay is the spacing of frames and their largest lateness, which
+ * decays with the time constant below. */
 export const DELAY = 150;
-/** The delay is what frames were late by, forgotten in CALMS [ms], at first in FIRST and then in as long as
- * the line is known, and a frame; it goes up and down by these shares of the time. */
-const [CALMS, FIRST] = [12000, 250];
+/** Time constant of the largest lateness [ms]: the age of the connection, at least and at most this. */
+const [YOUNGEST, CALMS] = [250, 12000];
+/** Fastest change of the delay, down and up, per time that passes [-]. */
 const [DOWN, UP] = [0.05, 0.2];
-/** Spacing of states up to which one more is expected [ms]. */
-const AHEAD = 30;
-/** Of the clocks, the longest gap, of the blend after one [ms]. */
-const [WINDOW, LONGEST_GAP, BLEND] = [30000, 500, 400];
-/** How long states are kept [ms], and how many numbers of theirs at most. */
+/** Frames closer together than this are continued by a predicted one [ms]. */
+const PREDICTED = 30;
+/** Time in which the quickest frame gives the offset of the clocks [ms]. */
+const WINDOW = 30000;
+/** Frames further apart than this are not joined by a curve [ms]. */
+const LONGEST_GAP = 500;
+/** Time over which the picture is blended after such a gap [ms]. */
+const BLEND = 400;
+/** How long frames are kept [ms], and how many of their numbers at most. */
 const [KEPT, MOST_NUMBERS] = [62000, 8e6];
 
-/** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the least of
- * the last half minute is the offset and the quickest travel. */
+/** Offset of two clocks from one-way times. Arrival less stamp is offset plus travel time; its least value in the
+ * last half minute is the offset plus the quickest travel. */
 export class ClockOffset {
   _least = /** @type {{at: number, value: number}[]} */ ([]);
 
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
   add(stamp, arrival) {
     const value = arrival - stamp;
-    // A sender whose clock was set back or that started again is another clock.
+    // The sender has started again, or its clock was set.
     if (Math.abs(value - this.value) > 5000) this._least.length = 0;
     this._least = this._least.filter((each) => each.value < value && each.at >= arrival - WINDOW);
     this._least.push({ at: arrival, value });
@@ -39,38 +44,40 @@ export class ClockOffset {
   }
 }
 
-/** The newest states, and what to draw of them. */
+/** Buffer of the newest frames, and the state to draw at a time. */
 export class Playout {
-  /** @param {number} [delay] [ms]; as the line asks for if left out */
+  /** @param {number} [delay] fixed [ms]; adapted to the connection if left out */
   constructor(delay) {
     this.delay = delay ?? DELAY;
     this._adapts = delay === undefined;
+    /** Mean spacing of frames, their largest lateness, the age of the connection [ms]. */
     this._spacing = 0;
     this._jitter = DELAY / 2;
-    this._age = FIRST;
+    this._age = YOUNGEST;
+    /** How far a predicted frame is ahead [ms]; 0 without. */
     this._ahead = 0;
     this.clock = new ClockOffset();
     this._frames = /** @type {Frame[]} */ ([]);
-    /** The first since the stream was cut; those before it are for looking back. */
+    /** Index of the first frame since the last gap; those before it are for looking back. */
     this._first = 0;
     this.received = 0;
-    /** Frames that came after they were to be shown. */
+    /** Number of frames that came too late to be shown. */
     this.late = 0;
-    /** Age of the newest frame when it came, over the quickest [ms]. */
+    /** Travel time of the newest frame beyond the quickest [ms]. */
     this.lateness = 0;
     this._shown = /** @type {Float32Array | null} */ (null);
-    /** What was drawn when the stream was cut, and the time of that [ms]. */
+    /** State shown before the last gap, and the time when frames came again [ms]. */
     this._before = this._shown;
     this._cutAt = 0;
     /** @type {[number, number, number]} */
     this.wind = [0, 0, 0];
     this.isPaused = false;
     this._back = 0;
-    /** Stamp of the newest frame when people began to look back [ms]. */
+    /** Stamp of the newest frame when looking back began [ms]. */
     this._from = 0;
   }
 
-  /** How long before the moment that people began to look back at [ms]; 0 follows the stream. */
+  /** How far to look back from that frame [ms]; 0 follows the stream. */
   get back() {
     return this._back;
   }
@@ -80,7 +87,7 @@ export class Playout {
     this._back = back;
   }
 
-  /** Forget everything: another tree comes. */
+  /** Forget all frames, as another tree comes. */
   clear() {
     this._frames.length = this._first = 0;
     this._before = this._shown = null;
@@ -92,22 +99,19 @@ export class Playout {
     const last = frames.at(-1);
     const span = frame.stamp - (last?.stamp ?? -Infinity);
     if (span <= 0 && span > -1000) return; // twice, or out of order
-    if (span <= 0) frames.length = 0;
-    if (last && (span <= 0 || span > LONGEST_GAP || frame.flags & RESTARTED)) {
-      [this._before, this._cutAt, this._first] = [this._shown?.slice() ?? null, arrival, frames.length];
+    const isOtherClock = span <= 0;
+    if (isOtherClock) frames.length = 0;
+    if (last && (isOtherClock || span > LONGEST_GAP || frame.flags & RESTARTED)) {
+      this._before = this._shown?.slice() ?? null;
+      this._cutAt = arrival;
+      this._first = frames.length;
     }
     this.received++;
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
     if (this.lateness > this.delay + this._ahead) this.late++;
-    if (this._adapts && last && this._first < frames.length) {
-      this._spacing += 0.1 * (span - this._spacing);
-      this._age += span;
-      this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
-      this._ahead = this._spacing < AHEAD ? this._spacing : 0;
-      const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
-      this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
-    }
+    const isFirst = !last || this._first === frames.length;
+    if (this._adapts && !isFirst) this._adaptDelay(span);
     frames.push(frame);
     const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
     while (frames[0].stamp < frame.stamp - KEPT || frames.length > most) {
@@ -116,12 +120,22 @@ export class Playout {
     }
   }
 
+  /** Move the delay towards what the connection needs. @param {number} span time since the last frame [ms] */
+  _adaptDelay(span) {
+    this._spacing += 0.1 * (span - this._spacing);
+    this._age += span;
+    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
+    this._ahead = this._spacing < PREDICTED ? this._spacing : 0;
+    const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
+    this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
+  }
+
   /** Stamp of the newest frame [ms]; 0 before the first. */
   get newest() {
     return this._frames.at(-1)?.stamp ?? 0;
   }
 
-  /** Frames that came after one. @param {number} stamp of that one [ms] */
+  /** Frames with a later stamp. @param {number} stamp [ms] */
   since(stamp) {
     return this._frames.filter((frame) => frame.stamp > stamp);
   }
@@ -131,27 +145,29 @@ export class Playout {
   sample(now) {
     let frames = this._frames;
     if (!frames.length) return this._shown;
-    const time = this._back ? this._from - this._back : now - this.clock.value - this.delay;
-    const first = this._back ? 0 : this._first;
+    const isBack = this._back > 0;
+    const time = isBack ? this._from - this._back : now - this.clock.value - this.delay;
+    const first = isBack ? 0 : this._first;
     const [x, y, z] = frames.slice(Math.max(first, frames.length - 3));
-    if (this._ahead && !this._back && z && time > y.stamp && z.stamp - y.stamp < AHEAD) frames = [...frames, expected(x, y, z)];
-    let i2 = frames.length - 1;
-    while (i2 > first + 1 && frames[i2 - 1].stamp > time) i2--;
-    const i1 = Math.max(i2 - 1, first);
-    const [a, b] = [frames[i1], frames[i2]];
-    // A jump is shown as one: nothing lies between its ends.
+    const isPredicted = this._ahead > 0 && !isBack && z && time > y.stamp && z.stamp - y.stamp < PREDICTED;
+    if (isPredicted) frames = [...frames, predicted(x, y, z)];
+    let next = frames.length - 1;
+    while (next > first + 1 && frames[next - 1].stamp > time) next--;
+    const before = Math.max(next - 1, first);
+    const [a, b] = [frames[before], frames[next]];
+    // Nothing lies between the two sides of a restart or a gap.
     const isJump = Boolean(b.flags & RESTARTED) || b.stamp - a.stamp > LONGEST_GAP;
     const share = isJump ? Number(time >= b.stamp) : (time - a.stamp) / (b.stamp - a.stamp);
-    const u = i1 === i2 || a.stamp === b.stamp ? 1 : Math.min(Math.max(share, 0), 1);
+    const u = before === next || a.stamp === b.stamp ? 1 : Math.min(Math.max(share, 0), 1);
     if (this._shown?.length !== b.coordinates.length) this._shown = new Float32Array(b.coordinates.length);
-    catmullRom(frames[Math.max(i1 - 1, first)], a, b, frames[Math.min(i2 + 1, frames.length - 1)], u, this._shown);
+    catmullRom(frames[Math.max(before - 1, first)], a, b, frames[Math.min(next + 1, frames.length - 1)], u, this._shown);
     for (let c = 0; c < 3; c++) this.wind[c] = a.wind[c] + u * (b.wind[c] - a.wind[c]);
     this.isPaused = (b.flags & PAUSED) !== 0;
-    if (!this._back) this._blend(now, this._shown);
+    if (!isBack) this._blend(now, this._shown);
     return this._shown;
   }
 
-  /** @param {number} now @param {Float32Array} shown */
+  /** Blend from the state before a gap. @param {number} now @param {Float32Array} shown changed in place */
   _blend(now, shown) {
     const u = (now - this._cutAt) / BLEND;
     if (u >= 1 || this._before?.length !== shown.length) this._before = null;
@@ -161,30 +177,32 @@ export class Playout {
   }
 }
 
-/** What is next on a parabola. @param {Frame} a @param {Frame} b @param {Frame} c @returns {Frame} */
-function expected(a, b, c) {
+/** The frame that follows three on the parabola through them. @param {Frame} a @param {Frame} b @param {Frame} c
+ * @returns {Frame} */
+function predicted(a, b, c) {
   if (new Set([a, b, c].map(({ coordinates }) => coordinates.length)).size > 1) return c;
   const [span, before] = [c.stamp - b.stamp, b.stamp - a.stamp];
   const coordinates = c.coordinates.map((each, i) => {
-    const [by, slower] = [each - b.coordinates[i], ((b.coordinates[i] - a.coordinates[i]) * span) / before];
-    return each + by + ((2 * span) / (span + before)) * (by - slower);
+    const step = each - b.coordinates[i];
+    const lastStep = ((b.coordinates[i] - a.coordinates[i]) * span) / before;
+    return each + step + ((2 * span) / (span + before)) * (step - lastStep);
   });
   return { ...c, stamp: c.stamp + span, flags: c.flags & PAUSED, coordinates };
 }
 
-/** The curve through b and c whose slopes there come from the neighbours. @param {Frame} a @param {Frame} b
+/** Catmull-Rom curve from b to c; its slopes there are those from a to c and from b to d. @param {Frame} a @param {Frame} b
  * @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
 export function catmullRom(a, b, c, d, u, out) {
-  const [span, before, behind] = [c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp];
+  const [span, aToC, bToD] = [c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp];
   const [u2, u3] = [u * u, u * u * u];
-  const [hb, hc] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3];
-  const sb = before > 0 ? ((u3 - 2 * u2 + u) * span) / before : 0;
-  const sc = behind > 0 ? ((u3 - u2) * span) / behind : 0;
-  // One may have more: what is pulled.
+  const [atB, atC] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3]; // Hermite polynomials
+  const slopeAtB = aToC > 0 ? ((u3 - 2 * u2 + u) * span) / aToC : 0;
+  const slopeAtC = bToD > 0 ? ((u3 - u2) * span) / bToD : 0;
+  // A frame may be longer by the rotations of pulled branches, which are not interpolated.
   const count = Math.min(...[a, b, c, d].map(({ coordinates }) => coordinates.length));
   for (let i = count; i < out.length; i++) out[i] = c.coordinates[i];
   for (let i = 0; i < count; i++) {
-    out[i] = hb * b.coordinates[i] + hc * c.coordinates[i]
-      + sb * (c.coordinates[i] - a.coordinates[i]) + sc * (d.coordinates[i] - b.coordinates[i]);
+    out[i] = atB * b.coordinates[i] + atC * c.coordinates[i]
+      + slopeAtB * (c.coordinates[i] - a.coordinates[i]) + slopeAtC * (d.coordinates[i] - b.coordinates[i]);
   }
 }

@@ -1,36 +1,37 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The binary form of a swaying tree (doc/streaming.md): a description sent once, then frames that need no
- * other frame. Reads what tree_sway/stream/protocol.py writes. */
+/** The binary protocol of the stream (doc/streaming.md): a description sent once, then frames that do not depend on each
+ * other. Reads the messages of tree_sway/stream/protocol.py. */
 
 import { checkedKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
 
 export { ProtocolError };
 
-/** Of descriptions, and of frames. */
+/** Versions of descriptions and of frames. */
 export const VERSION = 2;
 export const FRAME_VERSION = 1;
 export const FULL_SCALE = 32767;
-/** Wind of one unit of its int16 [m/s]. */
+/** Resolution of the wind, sent as int16 [m/s]. */
 export const WIND_UNIT = 0.005;
+/** Flags of a frame. */
 export const PAUSED = 1;
 export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
 export const PART = 8;
-/** No measured wind: none yet, or the last sample is too old and its force decays. */
+/** No sample of the wind has come yet, or the last is too old and its force decays. */
 export const WIND_LOST = 16;
 
-/** First bytes of what is sent once. */
+/** First bytes of descriptions and tables. */
 const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
 export const FRAME_SIZE = 28;
 
-/** Largest message with a description, and header in it [bytes]. */
+/** Largest description, and largest header in it [bytes]. */
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
 const LARGEST_HEADER = 8 * 2 ** 20;
 
-/** A reader of a message of a header and arrays; whatever goes wrong is a `ProtocolError`. Arrays in planes
- * have their first bytes together, then their second: they pack better. Own arrays are those of no kind.
+/** Make a reader of messages with a header and arrays; every failure becomes a `ProtocolError`. Arrays in planes have
+ * all first bytes, then all second bytes, which compress better. Own arrays belong to no kind.
  * @template T @param {keyof typeof MAGIC} what @param {(head: any, kinds: Arrays[], own: Arrays) => T} read *
  */
 export const reader = (what, read) => (/** @type {ArrayBuffer} */ data, inPlanes = false) => {
@@ -70,7 +71,7 @@ function unpack(data, what, inPlanes) {
   return { header, kinds, own };
 }
 
-/** Read a description; refused is one of which an array points outside of another. */
+/** Read a description; refuses indices beyond the arrays that they point into. */
 export const decodeDescription = reader("description", (header, parts, own) => {
   const { name, frame_id, identity, flutter = null } = header;
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
@@ -91,19 +92,19 @@ export const decodeDescription = reader("description", (header, parts, own) => {
   return { name, frame_id, identity, shortIdentity, kinds, trees, flutter, nSegments, nCoordinates, scale };
 });
 
-/** Whether a message begins as what is sent once. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
+/** Whether a message begins as a description or tables. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
 function begins(data, what) {
   const size = data.byteLength;
   return size >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
 }
 
-/** Whether a message is one of tables. @param {ArrayBuffer} data */
+/** Whether a message has tables. @param {ArrayBuffer} data */
 export const isTables = (data) => begins(data, "tables");
 
 /** Whether a message is a frame. @param {ArrayBuffer} data */
 export const isFrame = (data) => data.byteLength >= FRAME_SIZE && new Uint8Array(data)[0] === FRAME_KIND;
 
-/** Read a frame; null if it belongs to another description, which is to come. @param {ArrayBuffer} data
+/** Read a frame; null if it belongs to a description that has not come yet. @param {ArrayBuffer} data
  * @param {Description | null} description @returns {Frame | null} */
 export function decodeFrame(data, description) {
   const view = new DataView(data);

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Quaternions x y z w that lie in arrays, each from an index on; results are written in place. */
+/** Quaternions x y z w inside arrays, each from an index on; results are written into arrays. */
 
 /** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
  * @param {number} j @param {Numbers} out @param {number} [o] */

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Trees coloured by a storm: its mean wind at 10 m beside the band of the critical wind of each. */
+/** Colours trees by a storm: its mean wind at 10 m against the interval of the critical wind of each tree. */
 
 import { element, made } from "./panel.js";
 import { word } from "./words.js";
@@ -8,10 +8,11 @@ import { word } from "./words.js";
 /** Colours of a wind below the band, within it and above it, for any eye (Okabe & Ito 2008). */
 const COLORS = { below: [0, 0.45, 0.7], within: [0.9, 0.62, 0], above: [0.84, 0.25, 0] };
 const UNKNOWN = [0.6, 0.6, 0.6];
+/** Opacity of the colours. */
 const SHARE = 0.8;
 const KM_H = 3.6;
 
-/** Where a wind is to a band: `below`, `within` or `above` it. @param {number} wind [m/s]
+/** Whether a wind is below, within or above an interval. @param {number} wind [m/s]
  * @param {[number, number]} band low and high end [m/s] @returns {keyof typeof COLORS} */
 export function placeIn(wind, [low, high]) {
   if (wind < low) return "below";

@@ -1,10 +1,10 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The wind as one hears it: air that roars lower or higher with its speed, leaves that rustle as they move. */
+/** Sound of the wind: air whose pitch rises with its speed, and leaves that rustle as they move. */
 
-/** Speeds at which air and leaves are as loud as they get [m/s]. */
+/** Speeds at which air and leaves are loudest [m/s]. */
 const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
-/** What is heard follows within this time [s]. */
+/** Time constant of the sound [s]. */
 const FOLLOWS = 0.15;
 
 export class Sound {
@@ -25,7 +25,7 @@ export class Sound {
       const filter = new BiquadFilterNode(context, { type, frequency, Q: 0.8 });
       const gain = new GainNode(context, { gain: 0 });
       source.connect(filter).connect(gain).connect(this.out);
-      // Each begins elsewhere in the noise.
+      // Each voice starts at another place of the noise.
       source.start(0, 4 * Math.random());
       return { filter, gain };
     };
@@ -38,7 +38,7 @@ export class Sound {
     return this.isOn ? this.context.resume() : this.context.suspend();
   }
 
-  /** Sound as the tree is. @param {number} wind [m/s] @param {boolean} hasLeaves @param {number[]} tip [m] */
+  /** Follow the wind and the motion of a tip. @param {number} wind [m/s] @param {boolean} hasLeaves @param {number[]} tip [m] */
   follow(wind, hasLeaves, tip) {
     const { currentTime: now } = this.context;
     const motion = Math.hypot(...tip.map((each, c) => each - this._tip[c])) / Math.max(0.001, now - this._at);

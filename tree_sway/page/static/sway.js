@@ -1,42 +1,47 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The solver in JavaScript: trees in wind by the tables that this program exports.
+/** The solver in JavaScript: steps the trees of exported tables in a wind.
  *
- * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
- * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of table_model.py in tree_sway/core/run, gust_travel.py in core/wind and drag_law.py in
- * core/model, and vectors of these hold it;
- * doc/tree_as_a_file.md is for its users. */
+ * A tree is m oscillators. The wind's force on them is looked up in a table, by the direction of the wind and the
+ * lean of the tree; under it each oscillator moves by its exact propagator. Beyond the table its edge is used,
+ * and `Stand.outside` counts it. doc/sway_model.md has the equations, doc/tree_as_a_file.md the use. The same law
+ * is in tree_sway/core/run/table_model.py, core/wind/gust_travel.py and core/model/drag_law.py, which
+ * test/page/test_sway.py compares with this file. */
 
 import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
 import { ClampWatch, fewer } from "./clamp_watch.js";
 import { reader } from "./protocol.js";
 import { Touch } from "./touch.js";
 
-/** Time step of a stand unless it is given another [s]. */
+/** Default time step of a stand [s]. */
 export const STEP = 1 / 60;
 
+/** Azimuths of the wind in a table, and equilibria of each at rising dynamic pressure. */
 const [AZIMUTHS, LEVELS] = [24, 7];
-/** Sine of the elevation from which on a wind goes over to one straight up or down. */
+/** Sine of the elevation above which a table of level winds is blended into that of a vertical one. */
 const STEEP = Math.sin(Math.PI / 4);
-/** Passes in which the force of a step is found, as of tree_sway/core/run/table_model.py. */
+/** Iteration for the force of a step: most passes, share of the correction that is taken, share of the last change. */
 const [MOST_PASSES, STRIDE, MOMENTUM] = [8, 1.5, 0.1];
 const HALF_AIR_DENSITY = 0.5 * 1.225; // [kg/m^3]
-/** Speeds between which leaves streamline [m/s]. */
+/** Wind speeds between which the drag coefficient of leaves falls [m/s]. */
 const [STREAMLINING_FROM, STREAMLINING_TO] = [4, 20];
-/** Share by which scales may differ that have one time step. */
+/** Trees whose sizes differ by less than this share have one time step. */
 const FINEST_SCALE = 0.01;
-/** Of gusts: least mean wind that carries them [m/s], change of a delay per second, the time [s] over
- * which the mean is taken, and the longest delay [s]. */
-const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
-/** Of the wind that is on its way [s], and the share of the way of the slowest coordinate that a rate is
- * taken to go within a step, at least. */
-const [SPACING, SLOWEST] = [0.05, 0.3];
+/** Least mean wind that carries gusts [m/s]. */
+const SLOWEST_GUST = 0.5;
+/** Largest change of the delay of a gust per second [-]. */
+const LARGEST_STRETCH = 0.5;
+/** Time over which the mean wind is taken, and the longest delay of a gust [s]. */
+const [AVERAGING, MEMORY] = [60, 60];
+/** Spacing of the winds that a server sends of its last minute [s]. */
+const SPACING = 0.05;
+/** A correction changes the rate of a fast coordinate no more than by this share of the slowest one's. */
+const SLOWEST = 0.3;
 
-/** Highest degree of the harmonics. */
+/** Highest degree of the spherical harmonics. */
 const DEGREE = 5;
 
-/** Read tables; a `ProtocolError` with a sentence if they are damaged. */
+/** Read the tables of a scene; throws a `ProtocolError` if they are damaged. */
 export const decodeTables = reader("tables", (header, kinds, own) => {
   const { description, anemometer, convection_ratio: ratio } = header;
   checkTablesHeader(header, kinds.map((arrays) => arrays.stiffness?.values.length ?? 0), own);
@@ -45,38 +50,39 @@ export const decodeTables = reader("tables", (header, kinds, own) => {
   return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: Float64Array.from(speeds) };
 });
 
-/** What an even wind does to the coordinates of a kind of tree. */
+/** Wind forces on the coordinates of a kind of tree, in uniform wind. */
 export class Table {
   /** @param {Record<string, any>} numbers @param {Arrays} arrays */
   constructor(numbers, arrays) {
     const size = checkTable(numbers, arrays);
     const { m, n } = size;
     const { most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
-    /** Coordinates, and those of the description. */
+    /** Number of coordinates that are solved, and of those that are streamed. */
     this.m = m;
     this.n = n;
-    /** Dynamic pressure [kg/m/s^2] and twice the energy [J] up to which the table holds. */
+    /** Range of the table: dynamic pressure [kg/m/s^2], and twice the energy of the motion [J]. */
     this.mostPressure = /** @type {number} */ (mostPressure);
     this.mostEnergy = /** @type {number} */ (mostEnergy);
-    /** C, N and C0 of the drag, C U^-N + C0. @type {number[]} */
+    /** C, N and C0 of the drag coefficient C U^-N + C0. @type {number[]} */
     this.law = law;
-    /** All but the factors of slopes, in double precision. @type {Record<string, Float64Array>} */
+    /** Arrays in double precision, without the factors of the slopes. @type {Record<string, Float64Array>} */
     this.arrays = Object.fromEntries(Object.entries(arrays).filter(([name]) => !/_(rows|shapes)$/.test(name))
       .map(([name, { values }]) => [name, Float64Array.from(values)]));
     this.nKeys = size.keys;
-    // Turning and damping side by side: they are read together.
+    // Interleaved, as a step reads both at once.
     this.slopes = this._slopes(arrays, ["turning", "damping"]);
     this.steep = this._slopes(arrays, ["steep_turning", "steep_damping"]);
     this.lean = this._slopes(arrays, ["lean"]);
-    /** What is worked in. */
+    /** Work arrays of a step, named where they are used. */
     this.scratch = Array.from({ length: 10 }, () => new Float64Array(m));
     /** Change of the forces in the last pass of a step. */
     this.change = new Float64Array(m);
+    /** Spherical harmonics of the direction of the wind. */
     this.values = new Float64Array(arrays.harmonics.values.length / m);
   }
 
-  /** Slopes from their factors, a row of each direction of the wind: by the coordinate that is loaded, the
-   * one that moves, and the names in turn. @param {Arrays} arrays @param {string[]} names */
+  /** Multiply out the factors in which slopes are sent. One array per row of the table; in it the coordinate that is
+   * loaded, then the one that moves, then the names in turn. @param {Arrays} arrays @param {string[]} names */
   _slopes(arrays, names) {
     const { m } = this;
     const root = this.arrays.stiffness.map(Math.sqrt);
@@ -106,37 +112,41 @@ export class Table {
   }
 }
 
-/** How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
- * position from position, rate and force, then the rate from them. @param {Float64Array} stiffness
- * @param {Float64Array} damping @param {number} time [s] */
+/** Exact propagator of oscillators of unit inertia over a time, under a constant force. Six numbers each: position
+ * from position, rate and force, then rate from position, rate and force. The functions of the two eigenvalues
+ * are those of tree_sway/core/oscillators/exponential.py, without cancellation.
+ * @param {Float64Array} stiffness @param {Float64Array} damping @param {number} time [s] */
 export function propagator(stiffness, damping, time) {
   const out = new Float64Array(6 * stiffness.length);
   stiffness.forEach((k, i) => {
-    const [alpha, kappa] = [(damping[i] * time) / 2, k * time * time];
-    const square = alpha * alpha - kappa;
-    const root = Math.sqrt(Math.abs(square));
-    const [slow, fast] = [-kappa / (alpha + root), -alpha - root];
-    const even = square > 0 ? Math.exp(slow) : Math.exp(-alpha) * Math.cos(root);
-    let s = Math.exp(-alpha) * (1 + square / 6);
+    const alpha = (damping[i] * time) / 2;
+    const kappa = k * time * time;
+    const discriminant = alpha * alpha - kappa;
+    const root = Math.sqrt(Math.abs(discriminant));
+    const isOverdamped = discriminant > 0;
+    const slow = -kappa / (alpha + root); // the eigenvalues, if real
+    const fast = -alpha - root;
+    const even = isOverdamped ? Math.exp(slow) : Math.exp(-alpha) * Math.cos(root);
+    let s = Math.exp(-alpha) * (1 + discriminant / 6); // rate to position, over the time
     if (root > 1e-3) {
-      s = square > 0 ? (Math.exp(slow) - Math.exp(fast)) / (2 * root) : (Math.exp(-alpha) * Math.sin(root)) / root;
+      s = isOverdamped ? (Math.exp(slow) - Math.exp(fast)) / (2 * root) : (Math.exp(-alpha) * Math.sin(root)) / root;
     }
-    const stays = square > 0 ? even - slow * s : even + alpha * s;
-    const keeps = square > 0 ? Math.exp(fast) + slow * s : even - alpha * s;
-    let [pushed, before, term] = [0, 0, 0.5];
-    // The power series where 1 - stays would cancel.
-    for (let power = 2; power < 24; power++) {
+    const positionKept = isOverdamped ? even - slow * s : even + alpha * s;
+    const rateKept = isOverdamped ? Math.exp(fast) + slow * s : even - alpha * s;
+    let pushed = 0; // force to position, over the squared time
+    // A power series where 1 - positionKept would cancel.
+    for (let power = 2, before = 0, term = 0.5; power < 24; power++) {
       pushed += term;
       [before, term] = [term, (-2 * alpha * power * term - kappa * before) / (power * (power + 1))];
     }
-    if (kappa + alpha > 0.5) pushed = (1 - stays) / kappa;
-    out.set([stays, time * s, time * time * pushed, (-kappa * s) / time, keeps, time * s], 6 * i);
+    if (kappa + alpha > 0.5) pushed = (1 - positionKept) / kappa;
+    out.set([positionKept, time * s, time * time * pushed, (-kappa * s) / time, rateKept, time * s], 6 * i);
   });
   return out;
 }
 
-/** How oscillators get to the middle of a step, where the load is taken: exactly, but by an implicit Euler
- * step where one swings so fast that its rate there would not follow its force.
+/** Propagator to the middle of a step, where the load is evaluated: exact, but an implicit Euler step for an
+ * oscillator so fast that its exact rate there would not follow the force.
  * @param {Float64Array} stiffness @param {Float64Array} damping @param {number} time half of the step [s] */
 export function toMiddle(stiffness, damping, time) {
   const out = propagator(stiffness, damping, time);
@@ -149,7 +159,7 @@ export function toMiddle(stiffness, damping, time) {
   return out;
 }
 
-/** A tree on a table: its modal coordinates, their rates and the forces on them. */
+/** State of a tree: its modal coordinates, their rates and the forces on them. */
 export class TreeState {
   /** @param {Table} table */
   constructor(table) {
@@ -157,38 +167,72 @@ export class TreeState {
     this.eta = new Float64Array(table.m);
     this.rate = new Float64Array(table.m);
     this.force = new Float64Array(table.m);
-    /** Number of the first coordinates that are solved. */
+    /** How many of the coordinates are solved, the first ones. */
     this.count = table.m;
-    /** Whether the last step was clamped in a wind that cannot bend the tree so far. */
+    /** Whether the last step was clamped in a wind too light to bend the tree so far. */
     this.isBentTooFar = false;
   }
 
-  /** Return to rest, and solve the first coordinates only. @param {number} [count] all unless given */
+  /** Return to rest. @param {number} [count] coordinates to solve from now on; all by default */
   reset(count = this.table.m) {
     for (const each of [this.eta, this.rate, this.force]) each.fill(0);
     this.count = count;
     this.isBentTooFar = false;
   }
 
-  /** Go on a step. @param {Float64Array} half `toMiddle` of half a step @param {Float64Array} whole
+  /** Step. @param {Float64Array} half `toMiddle` of half a step @param {Float64Array} whole `propagator` of a step
    * @param {number} wx mean wind in the frame of the kind [m/s] @param {number} wy @param {number} wz
-   * @returns {boolean} whether the load was that of the table's edge */
+   * @returns {boolean} whether the wind or the motion was beyond the table */
   step(half, whole, wx, wy, wz) {
     const { table, eta, rate, force } = this;
-    const { m, mostPressure, mostEnergy, arrays: { stiffness } } = table;
-    const change = table.change;
+    const { mostPressure, mostEnergy } = table;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
-    const drag = table.dragDensity(speed);
-    let isOutside = drag * speed * speed > mostPressure;
-    let before = 0;
-    for (let i = 0; i < m; i++) before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
-    const push = Math.min(drag * speed * speed, mostPressure);
+    const density = table.dragDensity(speed);
+    const pressure = Math.min(density * speed * speed, mostPressure);
     const way = speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0];
-    let [passes, stiffest] = [1, 0];
+    const most = Math.max(this._energy(), mostEnergy);
+    this._findForce(half, way, pressure, density);
+    for (let i = 0, at = 0; i < table.m; i++, at += 6) {
+      const [q, v, f] = [eta[i], rate[i], force[i]];
+      eta[i] = whole[at] * q + whole[at + 1] * v + whole[at + 2] * f;
+      rate[i] = whole[at + 3] * q + whole[at + 4] * v + whole[at + 5] * f;
+    }
+    const isLimited = this._limitEnergy(most);
+    const isOutside = isLimited || density * speed * speed > mostPressure;
+    this.isBentTooFar = isOutside && pressure < 0.5 * mostPressure;
+    return isOutside;
+  }
+
+  /** Twice the energy of the motion [J]. */
+  _energy() {
+    const { eta, rate, table: { m, arrays: { stiffness } } } = this;
+    let energy = 0;
+    for (let i = 0; i < m; i++) energy += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
+    return energy;
+  }
+
+  /** Scale the motion down to an energy. @param {number} most twice of it [J] @returns {boolean} whether it had more */
+  _limitEnergy(most) {
+    const energy = this._energy();
+    if (energy <= most) return false;
+    const { eta, rate } = this;
+    if (energy < Infinity) {
+      const share = Math.sqrt(most / energy);
+      for (const all of [eta, rate]) all.forEach((each, i) => (all[i] = share * each));
+    } else for (const all of [eta, rate, this.force]) all.fill(0); // not a number: from rest again
+    return true;
+  }
+
+  /** Find the force over a step, implicit in the damping of each coordinate as if the others moved with it: stable in
+   * any wind and for any step. Where drag stops a coordinate within half a step one pass of it lags; more follow.
+   * @param {Float64Array} half @param {number[]} way of the wind @param {number} pressure @param {number} density */
+  _findForce(half, way, pressure, density) {
+    const { table: { m, change }, force } = this;
+    let passes = 1;
+    let stiffest = 0; // drag over half a step, largest of all coordinates
     for (let pass = 0; pass < passes; pass++) {
-      const [wanted, diagonal] = this.loadOfMiddle(half, way, push, drag);
+      const [wanted, diagonal] = this.loadOfMiddle(half, way, pressure, density);
       for (let i = 0; i < m; i++) {
-        // Implicit in all damping, as if the others moved with it: stable for any wind and step.
         const own = diagonal[i] * half[6 * i + 5];
         if (pass) {
           change[i] = STRIDE * ((wanted[i] - force[i]) / (1 - own)) + MOMENTUM * change[i];
@@ -200,44 +244,25 @@ export class TreeState {
           stiffest = Math.max(stiffest, -own);
         }
       }
-      // So bounded, the force lags where drag stops a coordinate within half a step.
       for (; !pass && stiffest > 1 && passes < MOST_PASSES; passes++) stiffest *= 0.5;
     }
-    let energy = 0;
-    for (let i = 0, at = 0; i < m; i++, at += 6) {
-      const [q, v, f] = [eta[i], rate[i], force[i]];
-      eta[i] = whole[at] * q + whole[at + 1] * v + whole[at + 2] * f;
-      rate[i] = whole[at + 3] * q + whole[at + 4] * v + whole[at + 5] * f;
-      energy += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
-    }
-    const most = Math.max(before, mostEnergy);
-    if (!(energy <= most)) {
-      // No wind takes it further; from rest again where it is not a number.
-      const share = energy < Infinity ? Math.sqrt(most / energy) : 0;
-      for (const all of share ? [eta, rate] : [eta, rate, force]) {
-        all.forEach((each, i) => (all[i] = share ? share * each : 0));
-      }
-      isOutside = true;
-    }
-    this.isBentTooFar = isOutside && push < 0.5 * mostPressure;
-    return isOutside;
   }
 
-  /** Go to the middle of a step under the force; returns the forces of the wind there and the diagonal of
-   * their slope by the rates. @param {Float64Array} half `toMiddle` of half a step @param {number[]} way of
-   * the wind @param {number} push dynamic pressure @param {number} drag the same over speed squared */
-  loadOfMiddle(half, way, push, drag) {
+  /** Force of the wind in the middle of a step, and the diagonal of its derivative by the rates; the force so far
+   * carries the state there. @param {Float64Array} half `toMiddle` of half a step @param {number[]} way of the wind
+   * @param {number} pressure dynamic pressure [kg/m/s^2] @param {number} density `Table.dragDensity` [kg/m^3] */
+  loadOfMiddle(half, way, pressure, density) {
     const { table, eta, rate, force } = this;
     const [midEta, midRate, wanted, diagonal] = table.scratch;
     for (let i = 0, at = 0; i < table.m; i++, at += 6) {
       midEta[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
       midRate[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
     }
-    windForce(table, way, push, drag, this.count);
+    windForce(table, way, pressure, density, this.count);
     return [wanted, diagonal];
   }
 
-  /** Write the coordinates of the description that hold this state.
+  /** Write this state as streamed coordinates.
    * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from] @returns {T} */
   coordinates(out, from = 0) {
     const { m, n, arrays: { state: matrix } } = this.table;
@@ -250,81 +275,116 @@ export class TreeState {
   }
 }
 
-/** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the rates,
- * into the scratch of its table. @param {Table} table @param {number[]} way where the wind goes, a unit
- * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared
+/** Where a wind and a lean lie in a table. Four corners surround them: the azimuths here and there, the levels
+ * below and above. Corner 00 is (here, below), 01 (here, above), 10 (there, below), 11 (there, above).
+ * @typedef {{here: number, there: number, row00: number, row10: number, toThere: number, toAbove: number,
+ * steep: number, rise: number, pole: number, weights: number[]}} Corners */
+
+/** Forces of a uniform wind on the coordinates in the middle of a step, and the diagonal of their derivative by the
+ * rates; both into the scratch of the table. @param {Table} table @param {number[]} way unit vector of the wind
+ * @param {number} pressure dynamic pressure [kg/m/s^2] @param {number} density the same over speed squared [kg/m^3]
  * @param {number} count of the first coordinates, whose motion loads all */
-function windForce(table, [x, y, z], push, drag, count) {
-  const { m, slopes, lean, values, arrays } = table;
-  const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
-  const [eta, rate, force, diagonal, leaning, leaned, offA, offB, offC, offD] = table.scratch;
-  fillHarmonics(x, y, z, values);
-  const { here, there, first, second, share, up } = corners(table, x, y);
-  const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
-  const slant = Math.min(Math.max(z, -STEEP), STEEP);
-  const [from, to, slight] = [1 - share, share, 1 - steep];
-  const [a, b, c, d] = [from * (1 - up), from * up, to * (1 - up), to * up].map((each) => slight * each);
-  const [ia, ib, ic, id] = [first * m, (first + 1) * m, second * m, (second + 1) * m];
-  let moving = drag > 0 ? push / drag : 0;
+function windForce(table, way, pressure, density, count) {
+  fillHarmonics(way[0], way[1], way[2], table.values);
+  const corners = cornersOf(table, way[0], way[1], way[2]);
+  const stillAir = density > 0 ? pressure / density : 0;
+  const speed = fillLevelLoads(table, corners, stillAir);
+  addSlopes(table, corners, pressure, density * speed, count);
+}
+
+/** Write the loads of the corners, without slopes, and how far the tree is from each corner.
+ * @param {Table} table @param {Corners} corners @param {number} windSquared [m^2/s^2]
+ * @returns {number} root mean square speed of the air over the moving tree [m/s] */
+function fillLevelLoads({ m, values, arrays, scratch }, corners, windSquared) {
+  const { row00, row10, toThere, toAbove: up, steep, rise, weights: [w00, w01, w10, w11] } = corners;
+  const { motion, load, equilibrium, harmonics } = arrays;
+  const [eta, rate, force, , leanHere, leanThere, away00, away01, away10, away11] = scratch;
+  const [at00, at01, at10, at11] = [row00 * m, (row00 + 1) * m, row10 * m, (row10 + 1) * m];
+  const [fromHere, fromThere] = [1 - toThere, toThere];
+  const level = 1 - steep;
   // Slopes are in single precision, and so are their weights.
-  const [e, f] = [slight * from * slant, slight * to * slant];
-  const [a4, b4, c4, d4, e4, f4, s4] = [a, b, c, d, e, f, steep].map(Math.fround);
+  const [weightHere, weightThere] = [level * fromHere * rise, level * fromThere * rise].map(Math.fround);
+  let speedSquared = windSquared;
   for (let i = 0; i < m; i++) {
-    const [on, by] = [equilibrium[ib + i] - equilibrium[ia + i], equilibrium[id + i] - equilibrium[ic + i]];
-    const away = eta[i] - from * (equilibrium[ia + i] + up * on) - to * (equilibrium[ic + i] + up * by);
-    // Half of the way to each pose, so that loads between levels are cubic.
-    offA[i] = a * (away + 0.5 * up * on), offB[i] = b * (away - 0.5 * (1 - up) * on);
-    offC[i] = c * (away + 0.5 * up * by), offD[i] = d * (away - 0.5 * (1 - up) * by);
-    moving += motion[i] * rate[i] * rate[i];
-    let sum = a * load[ia + i] + b * load[ib + i] + c * load[ic + i] + d * load[id + i];
+    const stepHere = equilibrium[at01 + i] - equilibrium[at00 + i];
+    const stepThere = equilibrium[at11 + i] - equilibrium[at10 + i];
+    const away = eta[i] - fromHere * (equilibrium[at00 + i] + up * stepHere)
+      - fromThere * (equilibrium[at10 + i] + up * stepThere);
+    // Half of the way to each corner, so that the load between two levels is a cubic.
+    away00[i] = w00 * (away + 0.5 * up * stepHere);
+    away01[i] = w01 * (away - 0.5 * (1 - up) * stepHere);
+    away10[i] = w10 * (away + 0.5 * up * stepThere);
+    away11[i] = w11 * (away - 0.5 * (1 - up) * stepThere);
+    speedSquared += motion[i] * rate[i] * rate[i];
+    let sum = w00 * load[at00 + i] + w01 * load[at01 + i] + w10 * load[at10 + i] + w11 * load[at11 + i];
     for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];
     force[i] = sum;
-    leaning[i] = Math.fround(e4 * Math.fround(eta[i]));
-    leaned[i] = Math.fround(f4 * Math.fround(eta[i]));
+    leanHere[i] = Math.fround(weightHere * Math.fround(eta[i]));
+    leanThere[i] = Math.fround(weightThere * Math.fround(eta[i]));
   }
-  const dragged = drag * Math.sqrt(moving);
-  const [ta, tb, tc, td] = [slopes[first], slopes[first + 1], slopes[second], slopes[second + 1]];
-  const [near, next, pole] = [lean[here], lean[there], table.steep[z > 0 ? 1 : 0]];
+  return Math.sqrt(speedSquared);
+}
+
+/** Add what the motion changes: the load turns with the tree, and drag damps the rates. A slope holds near its
+ * corner only, so the load is limited to the largest that a steady wind has.
+ * @param {Table} table @param {Corners} corners @param {number} pressure @param {number} densitySpeed [kg/m^2/s]
+ * @param {number} count */
+function addSlopes({ m, slopes, steep: poles, lean, arrays, scratch }, corners, pressure, densitySpeed, count) {
+  const { here, there, row00, row10, steep, pole, weights: [w00, w01, w10, w11] } = corners;
+  const { limit, cross_damping: cross } = arrays;
+  const [eta, rate, force, diagonal, leanHere, leanThere, away00, away01, away10, away11] = scratch;
+  const [at00, at01, at10, at11] = [row00 * m, (row00 + 1) * m, row10 * m, (row10 + 1) * m];
+  const [slopes00, slopes01, slopes10, slopes11] = [slopes[row00], slopes[row00 + 1], slopes[row10], slopes[row10 + 1]];
+  const [s00, s01, s10, s11, sSteep] = [w00, w01, w10, w11, steep].map(Math.fround);
+  const [slopeHere, slopeThere, slopePole] = [lean[here], lean[there], poles[pole]];
   for (let i = 0; i < m; i++) {
+    let turned = 0;
+    let damped = 0;
+    // Of each pair of coordinates the turning stands at `at`, the damping behind it.
+    for (let k = 0, at = 2 * i * m, flat = i * m; k < count; k++, at += 2, flat++) {
+      turned += away00[k] * slopes00[at] + away01[k] * slopes01[at] + away10[k] * slopes10[at] + away11[k] * slopes11[at]
+        + leanHere[k] * slopeHere[flat] + leanThere[k] * slopeThere[flat];
+      damped += rate[k] * (s00 * slopes00[at + 1] + s01 * slopes01[at + 1] + s10 * slopes10[at + 1] + s11 * slopes11[at + 1]);
+    }
+    for (let k = 0, at = 2 * i * m; steep > 0 && k < count; k++, at += 2) {
+      turned += Math.fround(sSteep * Math.fround(eta[k])) * slopePole[at];
+      damped += sSteep * rate[k] * slopePole[at + 1];
+    }
+    const load = Math.min(Math.max(force[i] + turned, -limit[i]), limit[i]);
+    force[i] = pressure * load + densitySpeed * damped;
     const own = 2 * (i * m + i) + 1;
-    let [turned, damped, at, flat] = [0, 0, 2 * i * m, i * m];
-    for (let k = 0; k < count; k++, at += 2, flat++) {
-      turned += offA[k] * ta[at] + offB[k] * tb[at] + offC[k] * tc[at] + offD[k] * td[at]
-        + leaning[k] * near[flat] + leaned[k] * next[flat];
-      damped += rate[k] * (a4 * ta[at + 1] + b4 * tb[at + 1] + c4 * tc[at + 1] + d4 * td[at + 1]);
-    }
-    for (let k = 0, p = 2 * i * m; steep > 0 && k < count; k++) {
-      turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
-      damped += s4 * rate[k] * pole[p++];
-    }
-    // Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
-    force[i] = push * Math.min(Math.max(force[i] + turned, -limit[i]), limit[i]) + dragged * damped;
-    diagonal[i] = dragged * (a * (ta[own] - cross[ia + i]) + b * (tb[own] - cross[ib + i])
-      + c * (tc[own] - cross[ic + i]) + d * (td[own] - cross[id + i]) + steep * pole[own]);
+    diagonal[i] = densitySpeed * (w00 * (slopes00[own] - cross[at00 + i]) + w01 * (slopes01[own] - cross[at01 + i])
+      + w10 * (slopes10[own] - cross[at10 + i]) + w11 * (slopes11[own] - cross[at11 + i]) + steep * slopePole[own]);
   }
 }
 
-/** Where a wind and a lean are in a table: azimuths, of both the rows of the level below, shares of the way
- * to the next. @param {Table} table @param {number} x @param {number} y */
-function corners({ m, scratch: [eta], arrays: { amount, levels } }, x, y) {
+/** Find the corners about a wind and the lean of the tree. @param {Table} table
+ * @param {number} x direction of the wind @param {number} y @param {number} z @returns {Corners} */
+function cornersOf({ m, scratch: [eta], arrays: { amount, levels } }, x, y, z) {
   const turn = Math.atan2(y, x) * (0.5 / Math.PI) * AZIMUTHS;
-  const share = turn - Math.floor(turn);
+  const toThere = turn - Math.floor(turn);
   const here = (Math.floor(turn) + AZIMUTHS) % AZIMUTHS;
   const there = (here + 1) % AZIMUTHS;
-  const [first, second] = [here * LEVELS, there * LEVELS];
   let lean = 0;
   for (let i = 0; i < m; i++) {
-    lean += ((1 - share) * amount[here * m + i] + share * amount[there * m + i]) * eta[i];
+    lean += ((1 - toThere) * amount[here * m + i] + toThere * amount[there * m + i]) * eta[i];
   }
-  const at = (/** @type {number} */ j) => (1 - share) * levels[first + j] + share * levels[second + j];
+  const leanAt = (/** @type {number} */ j) => (1 - toThere) * levels[here * LEVELS + j] + toThere * levels[there * LEVELS + j];
   let level = 0;
-  while (level < LEVELS - 2 && lean > at(level + 1)) level++;
-  const [below, above] = [at(level), at(level + 1)];
-  const up = Math.min(Math.max((lean - below) / (above - below), 0), 1);
-  return { here, there, first: first + level, second: second + level, share, up };
+  while (level < LEVELS - 2 && lean > leanAt(level + 1)) level++;
+  const [below, above] = [leanAt(level), leanAt(level + 1)];
+  const toAbove = Math.min(Math.max((lean - below) / (above - below), 0), 1);
+  const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
+  const [fromHere, fromThere] = [1 - toThere, toThere];
+  const weights = [fromHere * (1 - toAbove), fromHere * toAbove, fromThere * (1 - toAbove), fromThere * toAbove]
+    .map((each) => (1 - steep) * each);
+  return {
+    here, there, row00: here * LEVELS + level, row10: there * LEVELS + level, toThere, toAbove,
+    steep, rise: Math.min(Math.max(z, -STEEP), STEEP), pole: z > 0 ? 1 : 0, weights,
+  };
 }
 
-/** Square norms of the harmonics by degree and order, over those of their Legendre functions. */
+/** Factor of the Legendre function in each harmonic, by degree and order, for a mean square of 1. */
 const NORMS = [0, 1, 2, 3, 4, 5].map((degree) => {
   let norm = 2 * degree + 1;
   return Array.from({ length: degree + 1 }, (_, order) => {
@@ -333,14 +393,14 @@ const NORMS = [0, 1, 2, 3, 4, 5].map((degree) => {
   });
 });
 
-/** Real spherical harmonics of odd degree, as of tree_sway/core/model/spherical_harmonics.py.
+/** Evaluate the real spherical harmonics of odd degree, as tree_sway/core/model/spherical_harmonics.py does.
  * @param {number} x @param {number} y @param {number} z a unit vector
  * @param {Float64Array} out */
 function fillHarmonics(x, y, z, out) {
+  // The sine of the polar angle to the power of the order is in c and s, not in the Legendre functions.
   let [c, s, first] = [1, 0, 1];
   for (let order = 0; order <= DEGREE; order++) {
-    // Legendre functions over the sine to the power of their order, by their recurrence in the degree.
-    let [before, now] = [0, first];
+    let [before, now] = [0, first]; // of the recurrence in the degree
     for (let degree = order; degree <= DEGREE; degree++) {
       const middle = (degree * (degree + 1)) / 2;
       if (degree % 2) out[middle - order] = NORMS[degree][order] * now * s;
@@ -352,24 +412,29 @@ function fillHarmonics(x, y, z, out) {
   }
 }
 
-/** The wind of the last minute, and what of it each place feels: gusts travel with the mean wind. */
+/** The wind at each place: gusts travel with the mean wind (Taylor 1938), so each place has the measured wind of
+ * some time ago. Delays change slowly, and the mean over a step is taken of the run of the wind between its ends. */
 class Gusts {
   /** @param {number[][]} places @param {Tables} tables @param {number} dt [s] */
   constructor(places, { anemometer, ratio }, dt) {
     const [ox, oy] = anemometer ?? [0, 0];
-    this._along = places.map(([x, y]) => [x - ox, y - oy]);
-    this._fromFirst = !anemometer;
+    /** Places from the anemometer [m]. */
+    this._offsets = places.map(([x, y]) => [x - ox, y - oy]);
+    /** Without an anemometer the wind is that of the place farthest upwind. */
+    this._isFromFirst = !anemometer;
     this._ratio = ratio;
     this._dt = dt;
+    /** Mean wind of the last step at each place [m/s]. */
     this.felt = places.map(() => [0, 0, 0]);
-    /** Time, and run of the wind since the start, at the end of each step. */
+    /** Time [s] and run of the wind (its integral) [m], at the end of each step. */
     this._run = [[0, 0, 0, 0]];
-    /** Mean wind, and the time that it is the mean of. */
+    /** Mean wind [m/s], and the time over which it is taken [s]. */
     this._mean = [0, 0, 0];
+    /** Delay of each place [s]. */
     this._delay = places.map(() => 0);
   }
 
-  /** @param {number} x mean wind of a step [m/s] @param {number} y @param {number} z */
+  /** Take the wind of a step. @param {number} x mean over the step [m/s] @param {number} y @param {number} z */
   push(x, y, z) {
     const { _run: run, _mean: mean, _dt: dt, _delay: delay } = this;
     const last = run[run.length - 1];
@@ -379,8 +444,8 @@ class Gusts {
     mean[0] += (dt / mean[2]) * (x - mean[0]);
     mean[1] += (dt / mean[2]) * (y - mean[1]);
     const speed = Math.max(Math.hypot(mean[0], mean[1]), SLOWEST_GUST);
-    const wanted = this._along.map(([u, v]) => (u * mean[0] + v * mean[1]) / (this._ratio * speed * speed));
-    const first = this._fromFirst ? wanted.reduce((a, b) => Math.min(a, b), Infinity) : 0;
+    const wanted = this._offsets.map(([u, v]) => (u * mean[0] + v * mean[1]) / (this._ratio * speed * speed));
+    const first = this._isFromFirst ? wanted.reduce((a, b) => Math.min(a, b), Infinity) : 0;
     const now = last[0] + dt;
     wanted.forEach((each, i) => {
       const goal = Math.min(Math.max(each - first, 0), MEMORY);
@@ -388,13 +453,14 @@ class Gusts {
       const most = LARGEST_STRETCH * dt;
       delay[i] = Math.min(Math.max(goal, before - most), before + most);
       if (before === 0 && delay[i] === 0) return (this.felt[i] = [x, y, z]);
-      const [begin, end] = [now - dt - before, now - delay[i]];
-      const [from, to] = [this._until(begin), this._until(end)];
+      const begin = now - dt - before;
+      const end = now - delay[i];
+      const [from, to] = [this._runUntil(begin), this._runUntil(end)];
       this.felt[i] = from.map((each, c) => (to[c] - each) / (end - begin));
     });
   }
 
-  /** Go on from what another has felt, `GustHistory.recent` of tree_sway/core/wind/gust_travel.py.
+  /** Continue from the last minute of a server, `GustHistory.recent` of tree_sway/core/wind/gust_travel.py.
    * @param {Recent} recent */
   goOn({ mean, delay, wind }) {
     const { _run: run, _dt: dt } = this;
@@ -405,8 +471,8 @@ class Gusts {
     if (delay.length === this._delay.length) [this._mean, this._delay] = [mean, delay];
   }
 
-  /** Run of the wind at a time; before all it blew as in the first step. @param {number} time [s] */
-  _until(time) {
+  /** Run of the wind up to a time [m]; before the first step it blew as in that. @param {number} time [s] */
+  _runUntil(time) {
     const run = this._run;
     const cell = Math.floor((time - run[0][0]) / this._dt);
     const [a, b] = run.slice(Math.min(Math.max(cell, 0), run.length - 2));
@@ -415,7 +481,7 @@ class Gusts {
   }
 }
 
-/** Described trees that sway in one wind. */
+/** All trees of a description, stepped in one wind. */
 export class Stand {
   /** @param {Tables} tables @param {Description} description @param {number} [dt] time step [s] */
   constructor(tables, description, dt = STEP) {
@@ -433,32 +499,32 @@ export class Stand {
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
     this.gusts = this._newGusts();
-    /** Trees whose load was at the edge of their table in the last step. */
+    /** Number of trees beyond their table in the last step. */
     this.outside = 0;
-    /** Times that a tree whose steps stayed clamped went on from rest with fewer coordinates. */
+    /** How often a tree whose steps stayed clamped was reset with fewer coordinates. */
     this.reduced = 0;
     this._steps = 0;
     this._watches = /** @type {Map<number, ClampWatch>} */ (new Map());
-    const found = /** @type {Map<string, Float64Array[]>} */ (new Map());
-    /** Pushes by the numbers of trees. */
+    const propagators = /** @type {Map<string, Float64Array[]>} */ (new Map());
+    /** Pushes on each tree, by its number. */
     this._touches = /** @type {Map<number, Touch>} */ (new Map());
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
       const { stiffness, own_damping: damping } = table.arrays;
-      const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
-      // A tree of k times the size swings k times slower: it goes on by 1 / k of the time.
-      const own = dt / Math.exp(step * FINEST_SCALE);
-      const key = `${kind} ${own}`;
-      const [half, whole] =
-        found.get(key) ?? [toMiddle(stiffness, damping, own / 2), propagator(stiffness, damping, own)];
-      found.set(key, [half, whole]);
+      const sizeStep = Math.round(Math.log(place[4]) / FINEST_SCALE);
+      // A tree of k times the size swings k times slower: its table is stepped by 1 / k of the time.
+      const ownDt = dt / Math.exp(sizeStep * FINEST_SCALE);
+      const key = `${kind} ${ownDt}`;
+      const [half, whole] = propagators.get(key)
+        ?? [toMiddle(stiffness, damping, ownDt / 2), propagator(stiffness, damping, ownDt)];
+      propagators.set(key, [half, whole]);
       const speed = tables.speeds[number];
       const turn = [speed * Math.cos(place[3]), speed * Math.sin(place[3])];
       return { state: new TreeState(table), half, whole, speed, turn, firstCoordinate, full: [half, whole] };
     });
   }
 
-  /** Go on a step. @param {number} x mean wind, blowing to [m/s] @param {number} y @param {number} z */
+  /** Step all trees. @param {number} x mean wind, blowing to [m/s] @param {number} y @param {number} z */
   step(x, y, z) {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
     this.gusts.push(x, y, z);
@@ -474,7 +540,7 @@ export class Stand {
     });
   }
 
-  /** Go on with fewer coordinates of a tree whose steps stay clamped. @param {number} number */
+  /** Reset a tree whose steps stay clamped, with fewer coordinates. @param {number} number */
   _watchClamped(number) {
     const watch = this._watches.get(number) ?? new ClampWatch();
     this._watches.set(number, watch);
@@ -487,8 +553,8 @@ export class Stand {
     this.reduced++;
   }
 
-  /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
-   * @param {Push} push a spring of no stiffness lets go @param {number} [seconds] unless it is renewed */
+  /** Push the root-side end of a segment by a force, or pull it by a spring, for some time.
+   * @param {Push} push a spring without stiffness ends the pull @param {number} [seconds] until it ends by itself */
   push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
     const { segment, force = [], to = [], stiffness = 0 } = push;
     const { trees, kinds } = this.description;
@@ -501,14 +567,14 @@ export class Stand {
     this._touches.get(tree)?.add(push, seconds);
   }
 
-  /** Write the coordinates of the description that hold the state.
+  /** Write the state as streamed coordinates.
    * @template {Float32Array | Float64Array} T @param {T} out @returns {T} */
   write(out) {
     for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate);
     return out;
   }
 
-  /** The same, and behind it what pulled branches turn by beyond it. */
+  /** The streamed coordinates, and behind them the rotations of pulled branches beyond them (`beyond` in placing.js). */
   state() {
     const { nCoordinates } = this.description;
     const turns = [...this._touches.values()].flatMap((touch) => touch.beyond);
@@ -517,32 +583,32 @@ export class Stand {
     return this.write(out);
   }
 
-  /** Bring coordinates of the description to values that came from elsewhere, and rates to what would
-   * have brought them there. @param {Float32Array} values @param {number} [from] the first of them
-   * @param {number} [steps] that they had for it @returns {number} the largest change over full scale */
+  /** Set streamed coordinates to the values of a server, and change the rates by what would have led there.
+   * @param {Float32Array} values @param {number} [from] coordinate of the first value
+   * @param {number} [steps] over which they came apart @returns {number} the largest change over full scale */
   correct(values, from = 0, steps = Infinity) {
     const { nCoordinates, scale } = this.description;
     const now = this.write(new Float64Array(nCoordinates));
     let largest = 0;
     for (const { state: { eta, rate, count, table }, whole, firstCoordinate: first } of this.trees) {
       const { m, n, arrays: { correction } } = table;
-      const ways = eta.map((_, i) => whole[6 * i + 1]);
-      const least = SLOWEST * Math.max(...ways);
+      const perRate = eta.map((_, i) => whole[6 * i + 1]);
+      const least = SLOWEST * Math.max(...perRate);
       for (let k = 0; k < n; k++) {
-        const by = values[first + k - from] - now[first + k];
         if (first + k < from || first + k - from >= values.length) continue;
+        const difference = values[first + k - from] - now[first + k];
         for (let i = 0; i < count; i++) {
-          const own = by * correction[k * m + i];
+          const own = difference * correction[k * m + i];
           eta[i] += own;
-          rate[i] += (own * whole[6 * i + 4]) / (Math.max(ways[i], least) * steps);
+          rate[i] += (own * whole[6 * i + 4]) / (Math.max(perRate[i], least) * steps);
         }
-        largest = Math.max(largest, Math.abs(by) / scale[first + k]);
+        largest = Math.max(largest, Math.abs(difference) / scale[first + k]);
       }
     }
     return largest;
   }
 
-  /** Back to rest, without wind. */
+  /** Return all trees to rest, without wind. */
   reset() {
     for (const tree of this.trees) {
       tree.state.reset();

@@ -1,18 +1,20 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Pushes and springs on trees that are solved here, as of tree_sway/core/run/pushes.py: a force f at
- * a place p does (dp/dc)^T f to the coordinates c of the description, found by differences. What these leave of
- * the wood follows the force on the branches to the root, within SETTLES. */
+/** Pushes and springs on trees that are solved here, as in tree_sway/core/run/pushes.py. A force at a point p adds
+ * (dp/dc)^T f to the streamed coordinates c; the derivative is found by differences. The coordinates cannot
+ * represent all of a local bend: the compliance that is left over turns the branches from the point to the root. */
 
 import { KindPlacer, STRIDE } from "./placing.js";
 
-/** Time after which the lever of a push is found again [s], and turn for differences [rad]. */
-const [RENEWED, TURN] = [0.1, 0.01];
-/** Time in which the rest of the wood follows [s], and turn that is left of it [rad]. */
+/** Interval at which the lever of a push is found again [s]. */
+const RENEWED = 0.1;
+/** Rotation for differences [rad]. */
+const TURN = 0.01;
+/** Time constant of the bend beyond the coordinates [s], and its rotation that is no longer seen [rad]. */
 const [SETTLES, GONE] = [0.05, 1e-3];
 const MOST_PUSHES = 64;
 
-/** Branches from the root to that of a segment. @param {Kind} kind @param {number} segment */
+/** Branches from the root to the one of a segment. @param {Kind} kind @param {number} segment */
 export function chainTo({ arrays, nBranches }, segment) {
   const { branch_first: first, branch_parent: parent } = arrays;
   const chain = [];
@@ -22,13 +24,13 @@ export function chainTo({ arrays, nBranches }, segment) {
   return Int32Array.from(chain);
 }
 
-/** @param {ArrayLike<number>} u @param {number[]} v @param {number} [from] where v begins in u */
+/** Dot product. @param {ArrayLike<number>} u @param {number[]} v @param {number} [from] where v begins in u */
 const dot = (u, v, from = 0) => v.reduce((sum, each, i) => sum + u[from + i] * each, 0);
 
-/** How a force in a direction does work: how far a turn of each modal coordinate and of each key rotation moves the
- * segment [m], and what the key rotations turn by per force beyond the coordinates.
- * @typedef {{lever: number[], keyLever: number[], residual: number[]}} Way
- * @typedef {{push: Push, left: number, renewedIn: number, keys: number[], ways: Way[]}} Pushed */
+/** Work of a unit force along an axis: displacement of its point per modal coordinate (`lever`) and per key
+ * rotation (`keyLever`) [m], and the key rotations per force beyond the coordinates (`residual`) [rad/N].
+ * @typedef {{lever: number[], keyLever: number[], residual: number[]}} Axis
+ * @typedef {{push: Push, left: number, renewedIn: number, keys: number[], axes: Axis[]}} Pushed */
 
 /** Pushes on one tree. */
 export class Touch {
@@ -38,24 +40,24 @@ export class Touch {
     this.kind = description.kinds[this.tree.kind];
     this._pushes = /** @type {Map<number, Pushed>} */ (new Map());
     this._placers = /** @type {Map<number, KindPlacer>} */ (new Map());
-    /** What key rotations have beyond the coordinates [rad]. */
+    /** Key rotations beyond the coordinates [rad], by their numbers. */
     this._turns = /** @type {Map<number, number>} */ (new Map());
   }
 
-  /** Begin a push, or change that on the same segment. @param {Push} push @param {number} seconds */
+  /** Begin a push, or change the one on the same segment. @param {Push} push @param {number} seconds */
   add(push, seconds) {
     const segment = push.segment - this.tree.firstSegment;
-    const before = this._pushes.get(segment) ?? { renewedIn: 0, keys: [], ways: [] };
+    const before = this._pushes.get(segment) ?? { renewedIn: 0, keys: [], axes: [] };
     if (this._pushes.size >= MOST_PUSHES && !this._pushes.has(segment)) return;
     this._pushes.set(segment, { ...before, push, left: seconds });
   }
 
-  /** What follows the coordinates in a state, as `beyond` of placing.js reads it. */
+  /** Numbers that follow the coordinates in a state, as `beyond` of placing.js reads them. */
   get beyond() {
     return [...this._turns].flatMap(([key, turn]) => [this.tree.firstKey + key, turn]);
   }
 
-  /** Where the root side of a segment is [m]. @param {number} segment @param {Float64Array} coordinates
+  /** Place of the root-side end of a segment [m]. @param {number} segment @param {Float64Array} coordinates
    * @param {Map<number, number>} [turns] of key rotations beyond them */
   place(segment, coordinates, turns = this._turns) {
     const placer = this._placers.get(segment) ?? new KindPlacer(this.kind, chainTo(this.kind, segment));
@@ -66,33 +68,32 @@ export class Touch {
     return Array.from(poses.subarray(STRIDE * placer.slots[segment], STRIDE * placer.slots[segment] + 3));
   }
 
-  /** Push for a step that was just made. @param {import("./sway.js").TreeState} state
-   * @param {Float64Array} coordinates of the description of this tree @param {Float64Array} half
-   * @param {Float64Array} whole @param {number} dt [s] @returns {boolean} whether anything is left of pushes */
+  /** Add the pushes to a step that was just made. @param {import("./sway.js").TreeState} state
+   * @param {Float64Array} coordinates streamed ones of this tree @param {Float64Array} half
+   * @param {Float64Array} whole as of the step @param {number} dt [s] @returns {boolean} whether any push is left */
   step(state, coordinates, half, whole, dt) {
     const { _turns: turns, tree: { place: { 4: scale } } } = this;
     const settled = 1 - Math.exp(-dt / SETTLES);
-    // The step was implicit in the damping of each coordinate.
-    const soft = state.table.scratch[3].map((own, i) => 1 / (1 - own * half[6 * i + 5]) / scale ** 3);
+    const settledTurn = settled / scale ** 3; // share of the residual rotation in this step
+    // Per force; the step was implicit in the damping of each coordinate.
+    const accelerations = state.table.scratch[3].map((own, i) => 1 / (1 - own * half[6 * i + 5]) / scale ** 3);
+    const displacements = accelerations.map((each, i) => whole[6 * i + 2] * each);
     for (const [key, turn] of turns) turns.set(key, (1 - settled) * turn);
     const added = /** @type {number[][]} */ ([]);
     for (const [segment, each] of this._pushes) {
       const at = this.place(segment, coordinates);
       if (each.renewedIn <= 0) this._renew(segment, each, state.table, coordinates);
-      const { keys, ways, push } = each;
-      const give = ways.map((u) => ways.map((v) => dot(u.lever, v.lever.map((l, i) => whole[6 * i + 2] * soft[i] * l))));
-      const share = Math.min(1, each.left / dt);
-      const k = share * Math.min(push.stiffness ?? 0, 0.5 / (give[0][0] + give[1][1] + give[2][2]));
-      const rest = settled / scale ** 3;
-      const moved = give.map((row, a) => row.map((g, b) => g + rest * dot(ways[a].keyLever, ways[b].residual)));
-      const force = push.to ? pull(at, push.to, k, moved) : (push.force ?? [0, 0, 0]).map((f) => share * f);
-      soft.forEach((each, i) => {
-        const f = each * dot(force, ways.map(({ lever }) => lever[i]));
+      const { keys, axes, push } = each;
+      const share = Math.min(1, each.left / dt); // of the step, in which it acts
+      const force = push.to ? springForce(at, push.to, push.stiffness ?? 0, share, axes, displacements, settledTurn)
+        : (push.force ?? [0, 0, 0]).map((f) => share * f);
+      accelerations.forEach((acceleration, i) => {
+        const f = acceleration * dot(force, axes.map(({ lever }) => lever[i]));
         state.eta[i] += whole[6 * i + 2] * f;
         state.rate[i] += whole[6 * i + 5] * f;
         state.force[i] += f;
       });
-      added.push(...keys.map((key, i) => [key, rest * dot(force, ways.map(({ residual }) => residual[i]))]));
+      added.push(...keys.map((key, i) => [key, settledTurn * dot(force, axes.map(({ residual }) => residual[i]))]));
       each.left -= dt;
       each.renewedIn -= dt;
       if (each.left <= 1e-9) this._pushes.delete(segment);
@@ -101,43 +102,62 @@ export class Touch {
     return this._pushes.size > 0 || [...turns.values()].some((turn) => Math.abs(turn) > GONE);
   }
 
-  /** Find how a segment moves with each coordinate, and what these leave of the wood: the compliance of each branch
-   * less what the coordinates have of it (tree_sway/core/run/modal_coordinates.py). @param {number} segment
-   * @param {Pushed} push @param {import("./sway.js").Table} table @param {Float64Array} coordinates */
+  /** Find the axes of a push in the present pose. The residual is the compliance of each branch less the part that
+   * the coordinates have (tree_sway/core/run/modal_coordinates.py). @param {number} segment @param {Pushed} push
+   * @param {import("./sway.js").Table} table @param {Float64Array} coordinates */
   _renew(segment, push, { m, n, nKeys, arrays }, coordinates) {
     const { basis_matrix: basis, branch_coordinate: first, branch_keys: count } = this.kind.arrays;
     const { branch_compliance: compliance, shape_compliance: shapes } = arrays;
-    const [turns, width] = [this._turns, compliance.length / nKeys];
+    const width = compliance.length / nKeys;
     const chain = Array.from(chainTo(this.kind, segment), (branch) =>
       Array.from({ length: count[branch] }, (_, i) => first[branch] + i));
-    const moves = chain.map((keys) => keys.map((key) => {
-      const now = turns.get(key) ?? 0;
-      const [there, back] = [TURN, -TURN].map((by) =>
-        this.place(segment, coordinates, turns.set(key, now + by)));
-      turns.set(key, now);
-      return there.map((each, a) => (each - back[a]) / (2 * TURN));
-    }));
+    const moves = chain.map((keys) => keys.map((key) => this._moveBy(key, segment, coordinates)));
     push.renewedIn = RENEWED;
     push.keys = chain.flat();
-    push.ways = [0, 1, 2].map((a) => {
-      const keyLever = moves.flat().map((each) => each[a]);
+    push.axes = [0, 1, 2].map((axis) => {
+      const keyLever = moves.flat().map((move) => move[axis]);
+      // Per streamed coordinate, then what the coordinates do with it.
       const own = Array.from({ length: n }, (_, k) => dot(keyLever, push.keys.map((key) => basis[key * n + k])));
-      const held = own.map((_, k) => dot(shapes, own, k * n));
-      const residual = chain.flatMap((keys, branch) => keys.map((key) =>
-        dot(compliance, moves[branch].map((each) => each[a]), key * width) - dot(basis, held, key * n)));
+      const represented = own.map((_, k) => dot(shapes, own, k * n));
+      const residual = chain.flatMap((keys, branch) => {
+        const branchLever = moves[branch].map((move) => move[axis]);
+        return keys.map((key) => dot(compliance, branchLever, key * width) - dot(basis, represented, key * n));
+      });
       const lever = Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n));
       return { lever, keyLever, residual };
     });
   }
+
+  /** Displacement of a segment per turn of a key rotation [m/rad], by central differences. @param {number} key
+   * @param {number} segment @param {Float64Array} coordinates */
+  _moveBy(key, segment, coordinates) {
+    const turns = this._turns;
+    const now = turns.get(key) ?? 0;
+    const [there, back] = [TURN, -TURN].map((by) => this.place(segment, coordinates, turns.set(key, now + by)));
+    turns.set(key, now);
+    return there.map((each, c) => (each - back[c]) / (2 * TURN));
+  }
 }
 
-/** Force of a spring of k [N/m] by where it is at the end of the step. @param {number[]} at @param {number[]} to
- * @param {number} k @param {number[][]} give [m/N] */
-function pull(at, to, k, give) {
-  const [a, b, c] = give.map((row, i) => row.map((g, j) => k * g + (i === j ? 1 : 0)));
-  const f = to.map((each, i) => k * (each - at[i]));
+/** Force of a spring, implicit: by where its point is at the end of the step, which the force itself moves. With k the
+ * stiffness, G the displacement of the point per force and x - p the stretch, (1 + k G) f = k (x - p).
+ * @param {number[]} at p @param {number[]} to x @param {number} stiffness [N/m] @param {number} share share of the
+ * step in which it acts @param {Axis[]} axes
+ * @param {Float64Array} displacements of the modal coordinates per force over the step
+ * @param {number} settledTurn share of the residual rotation in the step */
+function springForce(at, to, stiffness, share, axes, displacements, settledTurn) {
+  const give = axes.map((u) => axes.map((v) => dot(u.lever, v.lever.map((l, i) => displacements[i] * l))));
+  // A stiffer spring than this would not be stable.
+  const k = share * Math.min(stiffness, 0.5 / (give[0][0] + give[1][1] + give[2][2]));
+  const matrix = axes.map((u, i) => axes.map((v, j) =>
+    k * (give[i][j] + settledTurn * dot(u.keyLever, v.residual)) + (i === j ? 1 : 0)));
+  return solve3(matrix, to.map((each, c) => k * (each - at[c])));
+}
+
+/** Solve a symmetric system of three equations by Cramer's rule. @param {number[][]} matrix @param {number[]} right */
+function solve3([a, b, c], right) {
   const cross = (/** @type {number[]} */ u, /** @type {number[]} */ v) =>
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-  // Its matrix is symmetric: rows are columns.
-  return [dot(f, cross(b, c)), dot(a, cross(f, c)), dot(a, cross(b, f))].map((each) => each / dot(a, cross(b, c)));
+  const determinant = dot(a, cross(b, c));
+  return [dot(right, cross(b, c)), dot(a, cross(right, c)), dot(a, cross(b, right))].map((each) => each / determinant);
 }

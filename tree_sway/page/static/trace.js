@@ -1,17 +1,17 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** A line of the last seconds of a number, with axes: their numbers, their unit, their zero. */
+/** A chart of the last seconds of a value, with the labels of its axes. */
 
 import { textOf } from "./files.js";
 
-/** Shown at once, and kept to look back at [s]. */
+/** Time shown at once, and time kept to look back at [s]. */
 const SECONDS = 20;
 export const LOOK_BACK = 60;
-/** What can be shown: the least span of its scale, so that rest is no storm, and units from below a value.
+/** Quantities: least span of the axis, so that rest does not look like a storm, and units by size.
  * @type {Record<string, {least: number, units: Unit[]}>} */
 export const QUANTITIES = JSON.parse(await textOf("units.json"));
 
-/** What a value is shown in. @param {string} quantity @param {number} value */
+/** Unit of a value. @param {string} quantity @param {number} value */
 export function unitOf(quantity, value) {
   const { units } = QUANTITIES[quantity];
   return units.find(({ below = Infinity }) => value < below) ?? units[0];
@@ -24,7 +24,7 @@ export class Trace {
     this._line = element.querySelector("polyline");
     this._shade = element.querySelector("polygon");
     this._labels = element.querySelectorAll("li");
-    /** How long ago what is shown ends [s]. */
+    /** Age of the right end [s]. */
     this.back = 0;
     this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
   }
@@ -36,7 +36,7 @@ export class Trace {
   }
 
   /** @param {number} time [s] @param {number} value
-   * @param {number[]} [band] from where to where the real one is likely, less the value */
+   * @param {number[]} [band] interval of the real one, less the value */
   add(time, value, band) {
     const points = this._points;
     if (time <= (points.at(-1)?.time ?? time - 1)) points.length = 0;

@@ -1,8 +1,8 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Types of what is sent, drawn and shown, for the checks of JSDoc and for editors. */
+/** Types of messages, drawings and texts, for the type check of the JSDoc comments and for editors. */
 
-// What is sent: see doc/streaming.md.
+// Messages: see doc/streaming.md.
 
 type NumberArray = Float32Array | Int32Array | Int16Array | Uint8Array;
 type Numbers = NumberArray | Float64Array | number[];
@@ -11,15 +11,15 @@ type Vector = [number, number, number];
 /** Type and axes of arrays by name. */
 type Forms = Record<string, ["f32" | "i32" | "i16" | "u8", ...(string | number)[]]>;
 
-/** What trees of one shape share. */
+/** A kind of tree: everything that trees of one shape share. */
 interface Kind {
   species: string;
-  /** That of an average broadleaf if left out. */
+  /** An average broadleaf if left out. */
   look?: Look;
   /** [m] */
   height: number;
   model: string;
-  /** What the basis leaves out [m]. */
+  /** Largest error of a tip from the streamed coordinates alone [m]. */
   basis_error: number;
   /** Young's modulus of its wood [Pa]. */
   modulus?: number;
@@ -34,13 +34,13 @@ interface Kind {
 
 interface Tree {
   name: string;
-  /** Its number among the kinds. */
+  /** Index of its kind. */
   kind: number;
   /** [m] */
   height: number;
-  /** x, y, z [m], how far it is turned about the vertical [rad], its scale. */
+  /** x, y, z [m], rotation about the vertical [rad], scale. */
   place: number[];
-  /** Among those of all trees. */
+  /** Where its own begin among those of all trees. */
   firstSegment: number;
   firstCoordinate: number;
   firstKey: number;
@@ -50,50 +50,50 @@ interface Description {
   name: string;
   frame_id: string;
   identity: string;
-  /** What frames carry of the identity. */
+  /** The part of the identity that frames repeat. */
   shortIdentity: number;
   kinds: Kind[];
   trees: Tree[];
-  /** Law of the leaves. */
+  /** Law of the flutter of leaves. */
   flutter: { gain: number; largest_angle: number } | null;
   /** Of all trees. */
   nSegments: number;
   nCoordinates: number;
-  /** Of each coordinate at full scale. */
+  /** Value of each coordinate at full scale. */
   scale: Float32Array;
 }
 
 interface Frame {
   identity: number;
   sequence: number;
-  /** Of the sender's clock [ms]. */
+  /** Time on the sender's clock [ms]. */
   stamp: number;
   flags: number;
-  /** Blowing to [m/s]. */
+  /** Direction it blows to [m/s]. */
   wind: Vector;
-  /** In their own unit, then what `beyond` reads; none in a frame of the wind alone. */
+  /** Streamed coordinates, then the numbers that `beyond` reads; empty in a frame of the wind alone. */
   coordinates: Float32Array;
-  /** Number of the first of them. */
+  /** Index of the first of them. */
   first: number;
 }
 
 interface Tables {
-  /** Identity of what they belong to. */
+  /** Identity of the description that they belong to. */
   description: string;
-  /** Where the wind is measured [m]; upwind of all if null. */
+  /** Place of the anemometer [m]; upwind of all trees if null. */
   anemometer: number[] | null;
   /** Speed of gusts over that of the mean wind. */
   ratio: number;
   kinds: import("./sway.js").Table[];
-  /** Wind of each tree over that of its kind. */
+  /** Wind speed at each tree over the wind of its kind. */
   speeds: ArrayLike<number>;
 }
 
-/** Who hears what comes over a line. */
+/** Callbacks of a connection. */
 interface Listeners {
   onState: (state: "connecting" | "open" | "lost", retryIn: number) => void;
   onDescription: (description: Description) => void;
-  /** After a description, by which to solve it. */
+  /** After a description: tables to solve it by. */
   onTables?: (tables: Tables) => void;
   onFrame: (frame: Frame, arrival: number, size: number) => void;
   onMessage: (message: Record<string, any>) => void;
@@ -102,13 +102,13 @@ interface Listeners {
 type StreamListeners = Partial<Listeners>;
 
 interface StreamOptions {
-  /** Frames per second that are asked for. */
+  /** Frames per second to ask for. */
   rate?: number;
-  /** Of the playout [ms]. */
+  /** Playout delay [ms]. */
   delay?: number;
-  /** Whether the wind alone is asked for, and the scene solved here. */
+  /** Whether to ask for the wind alone and solve the scene here. */
   byWind?: boolean;
-  /** Scene that is solved here, of no server. */
+  /** Scene of a page without a server, solved here. */
   kept?: Kept | null;
 }
 
@@ -117,7 +117,7 @@ interface Kept {
   stand: import("./sway.js").Stand;
 }
 
-/** What a viewer may change. */
+/** A value that a viewer may change. */
 interface Control {
   name: string;
   label: string;
@@ -130,7 +130,7 @@ interface Control {
   is_action: boolean;
 }
 
-// Of browsers with WebXR.
+// Globals of browsers with WebXR.
 
 declare const XRWebGLLayer: any;
 declare const XRRigidTransform: any;
@@ -138,7 +138,7 @@ interface Navigator {
   xr?: any;
 }
 
-// What is drawn.
+// Drawing.
 
 type GL = WebGL2RenderingContext;
 type Camera = import("./drawing/camera.js").Camera;
@@ -147,15 +147,15 @@ type TreeStream = import("./client.js").TreeStream;
 
 interface Program {
   program: WebGLProgram;
-  /** Sizes and locations of its inputs, as they are declared. */
+  /** Sizes and locations of the vertex inputs, in the order of their declaration. */
   fields: { size: number; at: number }[];
-  /** What sets each of them. */
+  /** Setter of each uniform. */
   uniforms: Record<string, (value: any) => void>;
 }
 
 interface Drawable {
   vao: WebGLVertexArrayObject;
-  /** Of its indices. */
+  /** Number of indices. */
   count: number;
   buffers: WebGLBuffer[];
 }
@@ -167,17 +167,17 @@ interface Mesh {
 
 /** A motion sensor on the real tree. */
 interface SensorStatus {
-  /** With its place. */
+  /** Its name and place. */
   name?: string;
   /** Whether the tree follows it. */
   in_use?: boolean;
-  /** Why not, and what to do. */
+  /** The reason if not, and the cure. */
   problem?: string;
-  /** What remains between it and the tree, over what is expected. */
+  /** Difference between sensor and tree, over the expected one. */
   residual?: number;
   /** Samples per second [Hz]. */
   rate?: number;
-  /** What was recognised, such as a unit. */
+  /** What the reader recognised, such as a unit. */
   notes?: string[];
 }
 
@@ -185,15 +185,15 @@ interface SensorStatus {
 interface MotionStatus {
   sensors?: SensorStatus[];
   explained?: number;
-  /** First frequency [Hz] that the sensors told, and the length of the motion behind it [h]. */
+  /** First frequency from the sensors [Hz], and the length of the motion that it was found from [h]. */
   learned?: { frequency: number; hours: number };
-  /** Frequencies of the sway over those of some hours [h] before, less 1 [%]. */
+  /** Change of the sway frequencies since some hours [h] ago [%]. */
   change?: { is_change: boolean; percent: number; hours: number };
-  /** Where 80 % of the trees are that the real one may be, less the motion of the highest tip [m]. */
+  /** Interval with a probability of 80 % for the real tip, from the model's [m]. */
   band?: number[];
 }
 
-/** What the wind is, and for a live one its newest reading. */
+/** Source of the wind, and the newest reading of a live one. */
 interface WindStatus {
   kind?: string;
   name?: string;
@@ -205,35 +205,35 @@ interface WindStatus {
   speed?: number;
   /** To east and north [m/s]. */
   wind?: number[];
-  /** Of the reading [s]. */
+  /** Age of the reading [s]. */
   age?: number;
   /** Whether gusts are simulated about it. */
   is_mean?: boolean;
   lacks_direction?: boolean;
 }
 
-/** How much of a kind is drawn. */
+/** Level of detail of a kind. */
 interface Level {
-  /** The first of its order. */
+  /** Number of branches, the first of the kind's order. */
   branches: number;
-  /** Of these. */
+  /** Their segments. */
   segments: number;
-  /** Of its leaves. */
+  /** Cards of leaves. */
   cards: number;
-  /** Height of a tree that it is shaped for. */
+  /** Height on the screen that its mesh is made for [px]. */
   pixels: number;
-  /** Height [px] from which on it is drawn. */
+  /** Height on the screen from which on it is used [px]. */
   from: number;
 }
 
 type Shape = ReturnType<typeof import("./drawing/mesh.js").shapeOf>;
 
-/** Trees of a kind that are drawn on one level. */
+/** The trees of a kind that are drawn at one level. */
 interface DrawnLevel {
   /** Rows of their first segments, and their numbers among all trees. */
   starts: number[];
   numbers: number[];
-  /** Parts, and what their programs are given; none of a picture. */
+  /** Meshes and the values of their uniforms; absent where a picture is drawn. */
   bark?: Drawable;
   skin?: Record<string, any>;
   leaf?: Drawable;
@@ -241,23 +241,23 @@ interface DrawnLevel {
   impostor?: import("./drawing/impostors.js").Impostor;
 }
 
-/** A kind with the levels that have been used. */
+/** A kind with the levels made so far. */
 type DrawnKind = Shape & { drawn: DrawnLevel[] };
 
-/** What is below the trees. */
+/** Ground below the trees. */
 interface Ground {
-  /** How it looks: 0 a terrace, 1 a meadow. */
+  /** 0 a terrace, 1 a meadow. */
   kind: number;
   /** Its height [m]. */
   ground: number;
-  /** One over how far one sees [1/m]. */
+  /** Inverse of the visual range [1/m]. */
   haze: number;
 }
 
 interface Daylight {
-  /** Towards the sun, of length 1. */
+  /** Unit vector towards the sun. */
   light: number[];
-  /** Colour of its light. */
+  /** Colour of sunlight. */
   sun: number[];
   /** Colour of the light of the sky. */
   sky: number[];
@@ -267,12 +267,12 @@ interface Daylight {
   dimmed: number;
 }
 
-/** How a species looks, see `Look` in tree_sway/core/tree/look.py. */
+/** Look of a species, see `Look` in tree_sway/core/tree/look.py. */
 interface Look {
-  /** Colours: red, green and blue from 0 to 1. Of a leaf, of the youngest. */
+  /** Colour of a leaf, and of a young one: red, green, blue from 0 to 1. */
   green: number[];
   fresh: number[];
-  /** Of a leaf before it falls; null of an evergreen. */
+  /** Colour of a leaf before it falls; null for evergreens. */
   autumn: number[] | null;
   bark: number[];
   twig: number[];
@@ -280,12 +280,12 @@ interface Look {
   form: "ovate" | "pointed" | "heart" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
   /** Width of a leaf over its length. */
   slenderness: number;
-  /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
+  /** Length of a leaf or leaflet, or of a shoot with needles [m]. */
   leaf_size: number;
   has_needles: boolean;
-  /** How far shoots hang down; 1 is half-way. */
+  /** How far shoots hang: 0 not at all, 1 half-way down. */
   droop?: number;
-  /** Whether one alone stands in a pot. */
+  /** Whether a single tree stands in a pot. */
   is_potted: boolean;
   spray: Spray;
 }
@@ -298,16 +298,16 @@ interface Spray {
   rolls: number[];
 }
 
-/** Where grass grows, and what blows over it. */
+/** The meadow, and the wind over it. */
 interface Meadow {
-  /** [m] */
+  /** Middle and extent of the trees [m]. */
   middle: number[];
   extent: number;
-  /** Of the trees [m]. */
+  /** Height of the trees [m]. */
   height: number;
-  /** Of the first tree, along the wind [m]. */
+  /** Place of the tree farthest upwind, along the wind [m]. */
   first: number;
-  /** Of the mean wind. */
+  /** Unit vector of the mean wind. */
   way: number[];
   /** Speed of the mean wind [m/s]. */
   mean: number;
@@ -315,24 +315,24 @@ interface Meadow {
   time: number;
 }
 
-/** Where leaves grow: a cluster, or what is drawn as one. */
+/** A shoot with leaves: a cluster of the description, or one that is only drawn. */
 interface Shoot {
   segment: number;
-  /** Middle and frame (x y z w) at rest, in the frame of the tree; [m]. */
+  /** Middle [m] and orientation (x y z w) at rest, in the frame of the tree. */
   at: number[];
   frame: number[];
   size: number;
-  /** Of the flutter [rad], [Hz]. */
+  /** Phase [rad] and frequency [Hz] of its flutter. */
   phase: number;
   frequency: number;
-  /** Of the cards of a cluster. */
+  /** Cards of it over those of a cluster. */
   share: number;
 }
 
-/** Shapes turned about the vertical. */
+/** A solid of revolution about the vertical. */
 interface Turned {
   sides: number;
-  /** One of it beside each [m]. */
+  /** Offsets of its copies to the side [m]. */
   middles: number[];
   /** Width over depth. */
   wide?: number;
@@ -348,23 +348,23 @@ interface Shade {
   towards: number[];
 }
 
-/** What a number is shown in. */
+/** Unit in which a number is shown. */
 interface Unit {
-  /** Values that it is for; all if left out. */
+  /** Upper end of the values that it is for; all if left out. */
   below?: number;
   factor: number;
   unit: string;
   digits: number;
 }
 
-/** What is loaded when it is asked for. */
+/** Modules that are loaded when they are first used. */
 interface Hands {
   drag: import("./drag.js").Drag | null;
   sound: import("./sound.js").Sound | null;
   headset: import("./headset.js").Headset | null;
 }
 
-/** What one eye sees. */
+/** View of one eye. */
 interface View {
   camera: {
     matrix: Float32Array;
@@ -373,29 +373,30 @@ interface View {
     update(): Float32Array;
   };
   target: WebGLFramebuffer | null;
-  /** Of the target: x, y, width, height [px]. */
+  /** Part of the target: x, y, width, height [px]. */
   area: number[];
 }
 
-/** A force at the root side of a segment, or a spring from it to a place. */
+/** Wind of the last minute on a server, so that gusts under way arrive here too. */
 interface Recent {
-  /** Of the frame that it was found at. */
+  /** Number of the frame that it belongs to. */
   sequence: number;
   /** Mean wind of the anemometer, and its span [m/s, m/s, s]. */
   mean: number[];
-  /** Of each tree [s]. */
+  /** Delay of each tree [s]. */
   delay: number[];
   /** Its means over `SPACING`, three numbers each [m/s]. */
   wind: number[];
 }
 
+/** A force on the root-side end of a segment, or a spring from there to a place. */
 interface Push {
-  /** Its number among those of all trees. */
+  /** Its number among the segments of all trees. */
   segment: number;
   /** [N] */
   force?: number[];
   /** [m] */
   to?: number[];
-  /** Of the spring [N/m]; 0 lets go. */
+  /** Of the spring [N/m]; 0 ends the pull. */
   stiffness?: number;
 }

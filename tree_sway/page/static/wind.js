@@ -1,28 +1,30 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Wind for a page that solves by itself: simulated turbulence, or a table of a recorded one. */
+/** Wind of a page without a server: simulated turbulence, or a recorded one from a table. */
 
 import { ProtocolError } from "./checks.js";
 
-/** Of wind along, across and up: relative standard deviation, scale [m] at 10 m (IEC 61400-1, Kaimal). */
+/** Standard deviation over that along the wind, and length scale at 10 m [m], along, across and up (IEC 61400-1,
+ * Kaimal). */
 const SPREAD = [1, 0.8, 0.5];
 const LENGTH = [56.7, 18.9, 4.6];
-/** Processes that make up a component; each is so much quicker than the one before. */
+/** Number of processes that make up a component, and the ratio of their time scales. */
 const PROCESSES = 4;
 const QUICKER = 4;
 const POWERS = Array.from({ length: PROCESSES }, (_, n) => QUICKER ** ((-2 / 3) * n));
 const WEIGHTS = POWERS.map((power) => Math.sqrt(power / POWERS.reduce((a, b) => a + b)));
+/** Least mean wind for the time scales [m/s]. */
 const SLOWEST = 0.5;
-/** Nothing faster is wind [m/s]. */
+/** Fastest wind that is read [m/s]. */
 const FASTEST = 150;
 
-/** A number of the standard normal distribution (Box and Muller 1958). */
+/** Draw from the standard normal distribution (Box and Muller 1958). */
 const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
 
 /** Turbulence whose mean may change: each component is a sum of first-order processes; variances that go with
  * their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov 1941). */
 export class Turbulence {
-  /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
+  /** Mean [m/s], turbulence intensity, and the direction it blows to, clockwise from north [rad].
    * @type {Record<string, number>} */
   values = { mean_speed: 6, intensity: 0.2, bearing_to: Math.PI / 2 };
   _state = SPREAD.map(() => Array.from({ length: PROCESSES }, normal));
@@ -45,9 +47,9 @@ export class Turbulence {
   }
 }
 
-/** A recorded wind, again from its beginning after its end. */
+/** A recorded wind, which starts again after its end. */
 export class Recorded {
-  /** After its beginning [s]. */
+  /** Time since the start of the record [s]. */
   time = 0;
   _row = 0;
 

@@ -6,7 +6,7 @@ import { textOf } from "./files.js";
 
 export const LANGUAGES = ["en", "de", "fr", "ja"];
 
-/** @type {Record<string, string[]>} a word in each language */
+/** Texts by key, in each language. @type {Record<string, string[]>} */
 const WORDS = JSON.parse(await textOf("words.json"));
 
 let chosen = 0;
@@ -24,18 +24,18 @@ export function setLanguage(language) {
 
 export const language = () => LANGUAGES[chosen];
 
-/** A word in the language that is chosen; the key where there is none. @param {string} key
+/** A text in the chosen language; the key if there is none. @param {string} key
  * @param {...(string | number)} values in place of {0}, {1} */
 export function word(key, ...values) {
   const text = WORDS[key]?.[chosen] ?? key;
   return text.replace(/\{(\d)\}/g, (_, i) => String(values[i]));
 }
 
-/** Whether there is a word of a key. @param {string} key */
+/** Whether a key has a text. @param {string} key */
 export const hasWord = (key) => key in WORDS;
 
-/** Direction that a wind comes from, the one convention of the page: its point, and degrees clockwise from
- * north; empty in calm. @param {Numbers} wind to east and north [m/s] */
+/** Direction that a wind comes from, as everywhere on the page: compass point, and degrees clockwise from north; empty in
+ * calm. @param {Numbers} wind to east and north [m/s] */
 export function windPoint([x, y]) {
   if (Math.hypot(x, y) < 0.05) return "";
   const degrees = Math.round(((Math.atan2(-x, -y) * 180) / Math.PI) + 360) % 360;
@@ -75,7 +75,7 @@ export function windSource(source = {}) {
   return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
 }
 
-/** What motion sensors on the real tree tell, a line for each. @param {MotionStatus} [motion] of a status */
+/** State of the motion sensors on the real tree, one line each. @param {MotionStatus} [motion] of a status */
 export function motionSensors(motion) {
   const { sensors, explained, learned, band, change } = motion ?? {};
   if (!Array.isArray(sensors)) return "";

@@ -79,11 +79,13 @@ class LiveMotion(LiveSource):
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()
         """What its first sample has."""
-        self._source, self._heard = source, heard
+        self._source = source
+        self._heard = heard
         self._clock = SenderClock(source.ticks)
         self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
         self._arrivals: deque[float] = deque(maxlen=_COUNTED)
-        self._sender, self._sent = '', -math.inf
+        self._sender = ''
+        self._sent = -math.inf
 
     def _is_live(self) -> bool:
         return time.monotonic() - self._sent < _SILENT

@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Live sensors that an observed tree follows: their samples, on the clock of its steps."""
+"""
+Live motion sensors of an observed tree: their samples, with times on the clock of its steps.
+
+Samples have times of `time.monotonic`. The difference to the time of the steps is averaged, as
+steps jitter, and taken anew where it jumps.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +18,9 @@ from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.sensors.motion.live_motion import LiveMotion
 
 _NEWEST = 0.02
+"""Weight of the newest difference of the clocks in their mean."""
 _JUMP = 0.1
-"""Difference [s] from which on both clocks are compared anew: the steps were paused or late."""
+"""Change of the difference [s] that is no jitter: the steps were paused or late."""
 
 
 class PlacedSensor(NamedTuple):
@@ -38,7 +44,7 @@ class MotionFeed:
     def __init__(self, sensors: Sequence[PlacedSensor] = ()) -> None:
         self.sensors = {f'{each.live.name} at {each.at}': each for each in sensors}
         """Sensors by their names; of two of one name and place, the last."""
-        self._ahead = math.nan
+        self._ahead = math.nan  # mean time of the steps less that of the clock [s]
 
     @property
     def places(self) -> dict[str, str]:
@@ -47,7 +53,7 @@ class MotionFeed:
 
     def feed(self, simulator: object, until: float) -> None:
         """
-        Offer the samples that came to an observed tree; to any other they are of no use.
+        Offer the samples that have come to an observed tree; drop them for any other.
 
         Parameters
         ----------

@@ -31,7 +31,9 @@ EXPECTS = (
 _KIND = 'JSON'
 _MOST = 500
 """Largest number of samples in one message."""
-_LONGEST, _MOST_NAMES, _DEEPEST = 40, 64, 2
+_LONGEST = 40
+_MOST_NAMES = 64
+_DEEPEST = 2
 _TIMES = frozenset({*map(folded, COLUMNS['time']['names']), 'millis', 'micros'})
 _UNITS_BEHIND = ('s', 'ms', 'us', 'ns')
 _WHOLES = {
@@ -60,7 +62,8 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     for name, value in _leaves(document):
         place = _place(name)
         if place == ('time', ''):
-            has_time, time = True, number(value)
+            has_time = True
+            time = number(value)
         elif place is not None:
             known = number(value)
             parts[place[0]][place[1]] = math.nan if known is None else known
@@ -92,7 +95,8 @@ def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, 
                     (f'{whole}.{axis}', each) for axis, each in zip(wanted, value, strict=True)
                 )
         elif whole and isinstance(value, Mapping):
-            yield from ((f'{whole}.{axis}', value[axis]) for axis in 'xyzw' if axis in value)
+            axes = {str(axis).lower(): each for axis, each in list(value.items())[:_MOST_NAMES]}
+            yield from ((f'{whole}.{axis}', axes[axis]) for axis in 'xyzw' if axis in axes)
         elif isinstance(value, Mapping):
             if depth < _DEEPEST:
                 yield from _leaves(value, depth + 1)

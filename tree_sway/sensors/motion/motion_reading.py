@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a message of a motion sensor says."""
+"""A sample of a motion sensor, and a live source of them."""
 
 from __future__ import annotations
 
@@ -57,13 +57,13 @@ class MotionSource:
     transport
         Way in which messages arrive.
     read
-        What they say.
+        Function that reads a message.
     name
         Short name for viewers, such as ``phyphox``.
     expects
-        What its messages should have, for the report of unknown ones.
+        Expected content of its messages, for the report of unknown ones.
     ticks
-        Ticks of the sender's clock in a second; None where they are found.
+        Ticks of the sender's clock per second; None to estimate them.
 
     """
 

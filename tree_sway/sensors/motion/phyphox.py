@@ -67,7 +67,8 @@ class PhyphoxPhone:
     """
 
     def __init__(self, url: str, every: float) -> None:
-        self.url, self._every = url, every
+        self.url = url
+        self._every = every
         self.silence = 10.0
         self._buffers: dict[str, Buffers] = {}
         self._waiting: dict[str, deque[Sample]] = {}
@@ -111,7 +112,8 @@ class PhyphoxPhone:
                 "'Acceleration (with g)' in phyphox, or one of your own with both"
             )
         self._waiting = {name: deque(maxlen=_WAITING) for name in self._buffers}
-        self._newest, self._heard = {}, set()
+        self._newest = {}
+        self._heard = set()
 
     async def _look(self, session: aiohttp.ClientSession) -> None:
         """Take the newest sample that is there now as the one to go on from."""

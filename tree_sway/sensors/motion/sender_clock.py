@@ -77,7 +77,8 @@ class SenderClock:
 
     def _find_ticks(self, stamp: float, arrival: float) -> bool:
         if self._first is None or stamp < self._first[0]:
-            self._first, self._count = (stamp, arrival), 0
+            self._first = (stamp, arrival)
+            self._count = 0
         self._count += 1
         passed = arrival - self._first[1]
         if passed < _FIRST or self._count < _LEAST:
@@ -91,12 +92,14 @@ class SenderClock:
             )
             self._first = None
             return False
-        self.ticks, self.problem = unit, ''
+        self.ticks = unit
+        self.problem = ''
         return True
 
     def _begin(self, difference: float, arrival: float) -> None:
         self._offset = self._low = self._low_before = difference
-        self._window_ends, self._arrival = arrival + _WINDOW, arrival
+        self._window_ends = arrival + _WINDOW
+        self._arrival = arrival
 
     def _is_set_anew(self, difference: float, arrival: float) -> bool:
         if self._jumped_at is None:
@@ -110,7 +113,8 @@ class SenderClock:
 
     def _follow(self, difference: float, arrival: float) -> None:
         if arrival > self._window_ends:
-            self._low_before, self._low = self._low, difference
+            self._low_before = self._low
+            self._low = difference
             self._window_ends = arrival + _WINDOW
         self._low = min(self._low, difference)
         wanted = min(self._low, self._low_before) - self._offset

@@ -1,6 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Lines of instruments of any maker: the first form that fits is read."""
+"""
+Lines of instruments of any maker, read by the first reader that recognises them.
+
+Sentences with a mark or a checksum come first, then JSON, then the makers' own lines; numbers and
+``name=value``, which many lines resemble, come last. A new reader is called in
+`InstrumentLines._read`.
+"""
 
 from __future__ import annotations
 
@@ -34,12 +40,14 @@ _PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z
 @dataclass
 class InstrumentLines:
     """
-    Reader of lines, which keeps to the first good kind: a change of reference would be a jump.
+    Reader of lines.
+
+    It keeps to the kind of the first good line, as others may measure from another direction.
 
     Parameters
     ----------
     sentence
-        Kind of `LINE_KINDS` to read; ``auto`` is the first good one.
+        One of `LINE_KINDS` to read; ``auto`` is the kind of the first good line.
     heading
         Bearing of the bow or the north mark, clockwise from true north [rad].
     declination
@@ -82,30 +90,34 @@ class InstrumentLines:
         return found
 
     def _read(self, line: str) -> Iterator[Reading]:
-        said = parse_nmea(line, self.heading, self.declination) or parse_sonic(line, self.heading)
-        if said is not None:
-            yield _of_sensor_line(said)
+        """Read a line; nothing if no reader recognises it."""
+        heading = self.heading
+        parsed = parse_nmea(line, heading, self.declination) or parse_sonic(line, heading)
+        if parsed is not None:
+            yield _of_sensor_line(parsed)
             return
         if line.lstrip().startswith(('{', '[')):
             document = parse_json(line.encode())
-            yield from self.names.read(document, 'JSON') if document is not None else ()
+            if document is not None:
+                yield from self.names.read(document, 'JSON')
             return
-        one = (
-            read_wxt(line, self.heading)
-            or read_young(line, self.heading, self.factor)
-            or read_numbers(line, self.columns, self.heading, self.factor)
+        reading = (
+            read_wxt(line, heading)
+            or read_young(line, heading, self.factor)
+            or read_numbers(line, self.columns, heading, self.factor)
         )
-        if one is not None:
-            yield one
+        if reading is not None:
+            yield reading
         elif pairs := _PAIR.findall(line):
             named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
             yield from self.names.read(named, 'name=value')
 
 
-def _of_sensor_line(said: SensorLine) -> Reading:
-    if said.velocity is None:
-        return Refusal(said.kind, said.refusal.split("'")[0].rstrip(': '))
-    return of_velocity(said.kind, said.velocity)
+def _of_sensor_line(line: SensorLine) -> Reading:
+    """Make a reading; the reason of a refusal leaves out the line's own text."""
+    if line.velocity is None:
+        return Refusal(line.kind, line.refusal.split("'")[0].rstrip(': '))
+    return of_velocity(line.kind, line.velocity)
 
 
 def lines_of(address: SourceAddress) -> InstrumentLines:

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Options of an address that say where the wind is among named values."""
+"""Options of an address for JSON and ``name=value``: paths of the values, and their unit."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from tree_sway.sensors.source_address import SourceAddress
 
 def names_of(address: SourceAddress, interval: float | None = None) -> WindNames:
     """
-    Read the options ``speed``, ``direction``, ``gust`` and ``unit``.
+    Read the paths ``speed``, ``direction`` and ``gust``, and ``unit``.
 
-    Raises a `ParameterError` for a path that is none.
+    Raises a `ParameterError` for text that is no path.
     """
     return WindNames(
         _path(address, 'speed'),
@@ -27,7 +27,7 @@ def names_of(address: SourceAddress, interval: float | None = None) -> WindNames
 
 
 def unit_factor(address: SourceAddress) -> float:
-    """Metres per second in the option ``unit``; a `ParameterError` for an unknown one."""
+    """Return the option ``unit`` in [m/s]; raises a `ParameterError` for an unknown one."""
     unit = address.text_of('unit', 'm/s')
     factor = speed_factor(unit)
     if factor is None:

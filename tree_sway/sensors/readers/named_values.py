@@ -54,9 +54,10 @@ class WindNames:
         name, speed = _found(document, leaves, self.speed, 'wind_speed')
         if speed is _ABSENT:
             return []
-        factor = self._factor(document, leaves, name, 'wind_speed')
+        unit = self._unit_of(document, leaves, name, 'wind_speed')
+        factor = speed_factor(unit)
         if factor is None:
-            return [Refusal(kind, f"unknown unit '{self._unit(document)[:20]}'")]
+            return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
         value = number(speed)
         if value is None or value < 0.0:
             return [Refusal(kind, f"speed is '{str(speed)[:20]}'")]
@@ -67,7 +68,7 @@ class WindNames:
             return [Refusal(kind, f"direction is '{str(direction)[:20]}'")]
         name, gust = _found(document, leaves, self.gust, 'gust')
         most = None if gust is _ABSENT else number(gust)
-        gust_factor = self._factor(document, leaves, name, 'gust')
+        gust_factor = speed_factor(self._unit_of(document, leaves, name, 'gust'))
         has_gust = most is not None and gust_factor is not None
         return [
             WindReading(
@@ -86,15 +87,11 @@ class WindNames:
         found = JsonPath(self.unit).find(document)
         return found if isinstance(found, str) else self.unit
 
-    def _factor(
-        self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str
-    ) -> float | None:
-        """Metres per second in the unit of a speed, None for an unknown one."""
-        if not name:
-            return speed_factor(self._unit(document))
-        beside = leaves.get(f'{name}_unit')
-        unit = beside if isinstance(beside, str) else unit_in_name(name, quantity)
-        return speed_factor(unit or self._unit(document))
+    def _unit_of(self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str) -> str:
+        """Return the unit of a speed: that beside it, in its name, or of all."""
+        beside = leaves.get(f'{name}_unit') if name else None
+        in_name = unit_in_name(name, quantity) if name else ''
+        return beside if isinstance(beside, str) else in_name or self._unit(document)
 
 
 _ABSENT = object()
@@ -108,10 +105,11 @@ def _found(
         found = path.find(document)
         return '', _ABSENT if found is None else found
     ranked = ((_rank(name, quantity), name) for name in leaves)
-    known = [(rank, name) for rank, name in ranked if rank is not None]
+    # A boat has a speed as well as a wind_speed.
+    known = [('wind' not in name.lower(), rank, name) for rank, name in ranked if rank is not None]
     if not known:
         return '', _ABSENT
-    name = min(known)[1]
+    name = min(known)[2]
     return name, leaves[name]
 
 
@@ -121,17 +119,33 @@ def _rank(name: str, quantity: str) -> int | None:
 
 
 def _leaves(document: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the values of a document by the last part of their name, inner levels first."""
+    """
+    Yield the values of a document by the last part of their name, inner levels first.
+
+    What is inside of ``wind`` is called so, as ``wind_deg``; an object with a ``value`` stands for
+    that value, with its unit beside it.
+    """
     level: list[tuple[str, Any]] = [('', document)]
     found = list[tuple[str, Any]]()
     while level and len(found) < _MOST:
         inner: list[tuple[str, Any]] = []
         for key, value in level[:_MOST]:
             if isinstance(value, Mapping):
-                inner += [(str(each), value[each]) for each in value]
+                inner += _inside(key, value)
             elif isinstance(value, list):
                 inner += [(key, each) for each in value if isinstance(each, Mapping | list)]
             else:
                 found.append((key, value))
         level = inner
     return reversed(found)
+
+
+def _inside(key: str, value: Mapping[Any, Any]) -> list[tuple[str, Any]]:
+    """Return the values inside of an object, by their names."""
+    if 'value' in value and not isinstance(value['value'], Mapping | list):
+        unit = value.get('unit', value.get('unitCode'))
+        return [(key, value['value']), (f'{key}_unit', unit)]
+    names = [str(each) for each in value]
+    if key.lower() == 'wind':
+        names = [name if 'wind' in name.lower() else f'wind_{name}' for name in names]
+    return list(zip(names, value.values(), strict=True))

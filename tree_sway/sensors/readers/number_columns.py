@@ -22,7 +22,8 @@ from tree_sway.sensors.reading import of_velocity, Reading, Refusal, WindReading
 
 COLUMNS = ('speed', 'direction', 'gust', 'u', 'v', 'w', '-')
 """Meanings of a column; components point east, north and up, the way the air goes."""
-KIND_PLAIN, KIND_SDI12 = 'numbers', 'SDI-12'
+KIND_PLAIN = 'numbers'
+KIND_SDI12 = 'SDI-12'
 _SDI12 = re.compile(r'\w((?:[+-]\d+(?:\.\d*)?){2,})(?:[@-\x7f]{3})?')
 _SIGNED = re.compile(r'[+-]\d+(?:\.\d*)?')
 _GAP = re.compile(r'[,;\s]+')
@@ -79,8 +80,10 @@ def _reading(kind: str, values: dict[str, float], heading: float, factor: float)
         # U is from south to north of the instrument, V from east to west.
         values['u'], values['v'] = -values['gill_v'], values['gill_u']
     if {'u', 'v'} <= set(values):
-        east, north = factor * values['u'], factor * values['v']
-        cosine, sine = math.cos(heading), math.sin(heading)
+        east = factor * values['u']
+        north = factor * values['v']
+        cosine = math.cos(heading)
+        sine = math.sin(heading)
         turned = cosine * east + sine * north, cosine * north - sine * east
         return of_velocity(kind, (*turned, factor * values.get('w', 0.0)))
     speed = values['speed']

@@ -31,7 +31,8 @@ def read_wxt(line: str, heading: float) -> Reading | None:
     if f'S{chosen}' not in fields:
         return None
     text, unit = fields[f'S{chosen}']
-    speed, factor = finite(text), _UNITS.get(unit)
+    speed = finite(text)
+    factor = _UNITS.get(unit)
     if speed is None or factor is None or speed < 0.0:
         return Refusal(KIND, f"speed is '{text}{unit}'")
     bearing = None
@@ -43,7 +44,8 @@ def read_wxt(line: str, heading: float) -> Reading | None:
             return Refusal(KIND, f"direction is '{text}{unit}'")
         bearing += heading
     most, most_unit = fields.get('Sx', ('', ''))
-    gust, gust_factor = finite(most), _UNITS.get(most_unit)
+    gust = finite(most)
+    gust_factor = _UNITS.get(most_unit)
     return WindReading(
         KIND,
         speed * factor,

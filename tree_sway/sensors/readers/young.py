@@ -20,7 +20,8 @@ from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.units import degrees_to_bearing
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
 
-KIND_81000, KIND_85000 = 'Young 81000', 'Young 85000'
+KIND_81000 = 'Young 81000'
+KIND_85000 = 'Young 85000'
 _POLAR = re.compile(r'(\w) +(\d+\.\d+) +(\d{1,3}(?:\.\d)?) +(\w\w)\*([0-9A-Fa-f]{2})')
 _SOUND = (300.0, 360.0)
 """Speeds of sound that the instrument reports [m/s]."""
@@ -43,7 +44,8 @@ def read_young(line: str, heading: float, factor: float) -> Reading | None:
     if bearing is None or speed < 0.0:
         return Refusal(KIND_81000, f'speed is {speed:g}, azimuth {azimuth:g}')
     rise = math.radians(elevation)
-    level, up = speed * math.cos(rise), speed * math.sin(rise)
+    level = speed * math.cos(rise)
+    up = speed * math.sin(rise)
     return WindReading(KIND_81000, level, bearing + heading, up, interval=0.0)
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Kinds of sources, one file each: how its address is read, its transport, what its messages mean.
+Kinds of sources, one file each: options of its address, its transport and its reader.
 
 Each module has one `SourceKind` or more as ``SOURCES``, which the registry finds.
 """

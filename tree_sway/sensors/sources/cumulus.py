@@ -21,7 +21,8 @@ from tree_sway.sensors.source_kind import Source, SourceKind
 from tree_sway.sensors.transports.http_poll import HttpPoll
 from tree_sway.sensors.transports.transport import Message
 
-_EVERY, _INTERVAL = 60.0, 600.0
+_EVERY = 60.0
+_INTERVAL = 600.0
 _KIND = 'Cumulus'
 
 

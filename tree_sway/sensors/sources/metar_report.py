@@ -24,7 +24,8 @@ from tree_sway.sensors.transports.http_poll import HttpPoll
 from tree_sway.sensors.transports.transport import Message
 
 _SERVER = 'https://aviationweather.gov/api/data/metar'
-_EVERY, _INTERVAL = 300.0, 600.0
+_EVERY = 300.0
+_INTERVAL = 600.0
 _LASTS = 9000.0
 """Time for which a report is used [s]: airports report every hour at least."""
 _ICAO = re.compile(r'[A-Z][A-Z0-9]{3}')

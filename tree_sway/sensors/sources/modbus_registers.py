@@ -23,7 +23,8 @@ from tree_sway.sensors.transports.transport import Message
 
 _PLACE = re.compile(r'(/[^\s:]+|COM\d+|[^/\s:]+)(?::(\d{1,7}))?')
 _KIND = 'Modbus'
-_LARGEST, _MOST = 65_535, 60
+_LARGEST = 65_535
+_MOST = 60
 _BAUD = 9600
 _NO_DIRECTION = -1
 
@@ -44,7 +45,8 @@ def open_modbus(address: SourceAddress) -> Source:
     heading = address.angle('heading_degrees')
     kind = address.text_of('kind', KINDS[0])
     registers = [speed, direction] if direction != _NO_DIRECTION else [speed]
-    first, count = min(registers), max(registers) - min(registers) + 1
+    first = min(registers)
+    count = max(registers) - min(registers) + 1
     if kind not in KINDS or count > _MOST:
         raise address.error(
             f'kind is {kind}, {count} registers', f'use {" or ".join(KINDS)}, up to {_MOST} apart'

@@ -25,7 +25,8 @@ from tree_sway.sensors.transports.http_poll import HttpPoll
 from tree_sway.sensors.transports.transport import Message
 
 _SERVER = 'https://api.open-meteo.com/v1/forecast'
-_EVERY, _INTERVAL = 300.0, 900.0
+_EVERY = 300.0
+_INTERVAL = 900.0
 _PLACE = re.compile(r'([-+]?\d+(?:\.\d+)?),\s*([-+]?\d+(?:\.\d+)?)')
 _KIND = 'open-meteo'
 _NAMES = WindNames(

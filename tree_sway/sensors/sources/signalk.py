@@ -27,7 +27,8 @@ from tree_sway.sensors.transports.transport import Message
 from tree_sway.sensors.transports.websocket import WebSocket
 
 _PORT = 3000
-_WIND, _HEADING = 'environment.wind.', 'navigation.headingTrue'
+_WIND = 'environment.wind.'
+_HEADING = 'navigation.headingTrue'
 _PAIRS = (
     ('speedOverGround', 'directionTrue', False),
     ('speedTrue', 'directionTrue', False),

@@ -23,7 +23,8 @@ class Lines:
         """Add bytes, whose end ends a line if they are a datagram; return the complete lines."""
         *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
         if is_whole:
-            whole, begun = [*whole, begun], b''
+            whole = [*whole, begun]
+            begun = b''
         for line in whole:
             if self._is_too_long or len(line) > self._longest:
                 self.dropped += 1
@@ -31,5 +32,6 @@ class Lines:
             elif line:
                 yield line
         if len(begun) > self._longest:
-            begun, self._is_too_long = b'', True
+            begun = b''
+            self._is_too_long = True
         self._begun = begun

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 import time
 
-from tree_sway.errors import shown
+from tree_sway.sensors.transports.link_failure import failure_text
 from tree_sway.sensors.transports.transport import Message, Transport
 from tree_sway.worker import Worker
 
@@ -51,7 +51,8 @@ class Link(Worker):
     def opened(self) -> None:
         """Note that the connection is made."""
         self._latest = time.monotonic()
-        self.is_up, self.failure = True, ''
+        self.is_up = True
+        self.failure = ''
         self.connections += 1
         self.log(f'listening to {self.transport}')
 
@@ -80,14 +81,12 @@ class Link(Worker):
             try:
                 self.transport.listen(self)
                 why = f'nothing for {self._limit:g} s' if self._is_silent else 'it ended'
-            except ConnectionError as error:
-                why = str(error) or type(error).__name__
             except Exception as error:  # an instrument may fail in any way
-                why = f'{type(error).__name__}: {error}'
-            why = shown(why, 200)
+                why = failure_text(error)
             if not self._stopping.is_set() and (self.is_up or why != self.failure):
                 self.log(f'{self.transport}: {why}; trying again')
-            self.is_up, self.failure = False, why
+            self.is_up = False
+            self.failure = why
             has_data = self.messages > before
             pause = self.first_pause if has_data else min(2.0 * pause, self.longest_pause)
             self._stopping.wait(pause)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 import importlib
+import logging
 import struct
 from typing import Any
 
@@ -54,6 +55,8 @@ class Modbus:
 
     def listen(self, receiver: Receiver) -> None:
         """Read the registers again and again."""
+        # Its log is about each attempt; without a handler Python would print it.
+        logging.getLogger('pymodbus').addHandler(logging.NullHandler())
         module: Any = importlib.import_module('pymodbus.client')
         if self.baud:
             options = {'baudrate': self.baud, 'timeout': _TIMEOUT, 'retries': 1}
@@ -63,7 +66,8 @@ class Modbus:
             client = module.ModbusTcpClient(self.place, **options)
         try:
             if not client.connect():
-                raise ConnectionError('no connection')
+                which = 'device and baud rate' if self.baud else 'host and port'
+                raise ConnectionError(f'no connection: is it plugged in, and are {which} right?')
             receiver.opened()
             read = getattr(client, f'read_{self.kind}_registers')
             while not receiver.is_over:

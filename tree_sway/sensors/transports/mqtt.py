@@ -71,7 +71,8 @@ class Mqtt:
             if len(message.payload) <= _LARGEST:
                 receiver.deliver(Message(bytes(message.payload), message.topic))
 
-        client.on_connect, client.on_message = on_connect, on_message
+        client.on_connect = on_connect
+        client.on_message = on_message
         client.on_subscribe = on_subscribe
         if self.user:
             client.username_pw_set(self.user, self.password or None)

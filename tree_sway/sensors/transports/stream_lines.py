@@ -24,7 +24,7 @@ class Question:
 
 
 NO_QUESTION = Question()
-"""Of an instrument that sends by itself."""
+"""For an instrument that sends by itself."""
 
 
 def deliver_lines(
@@ -38,7 +38,8 @@ def deliver_lines(
 
     ``read`` returns what has come within `READ_FOR`, maybe nothing.
     """
-    lines, due = Lines(), time.monotonic()
+    lines = Lines()
+    due = time.monotonic()
     while not receiver.is_over:
         if question.text and time.monotonic() >= due:
             write(question.text)

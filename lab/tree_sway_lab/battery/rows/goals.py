@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the default integrator is meant to reach, in figures."""
+"""Goals of the default integrator, in figures."""
 
 from __future__ import annotations
 

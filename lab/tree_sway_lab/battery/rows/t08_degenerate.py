@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""T8: twelve bodies with something missing."""
+"""T8: twelve bodies without inertia, damping or stiffness, or with extreme ones."""
 
 from __future__ import annotations
 

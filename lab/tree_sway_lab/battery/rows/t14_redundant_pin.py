@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""T14: the same pin twice."""
+"""T14: a redundant constraint, the same pin stated twice: regularised solve against plain LU."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""T16: coefficients against 80 digits, and a clock of 30 days."""
+"""T16: coefficients of the propagator against 80 digits, and the clock after 30 days."""
 
 from __future__ import annotations
 

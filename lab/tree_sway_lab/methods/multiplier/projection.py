@@ -39,7 +39,7 @@ class Projection(MultiplierMethod):
     Parameters
     ----------
     position, velocity
-        What to project.
+        Whether to project each of them.
 
     """
 

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What is measured, a subject per file.
+Sections of the validation, one subject per file.
 
 Each has one function ``measure`` that returns a `Section`.
 

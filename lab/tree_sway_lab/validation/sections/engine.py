@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""MuJoCo as a second judge: an engine that nobody here wrote, with weight, twist and wind."""
+"""The models against MuJoCo, an independent engine, with weight, twist and wind."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ JUDGED = (
 )  # fmt: skip
 LIVE = ('crooked 1', 'palm')
 TOLERANCES = (0.005, 0.001)
-"""Of `auto` in [m]."""
+"""Tolerances of `auto` in [m]."""
 
 RECORD = 'wind/sonic_20hz_1245.toa5.dat'
-"""Of a sonic anemometer, in the folder of data."""
+"""Record of a sonic anemometer, in the folder of data."""
 
 _SPELLS, _SPELL = (4.0, 9.0, 4.0), 20.0
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees of another making: error, roughness and the first frame after a step, all winds."""
+"""Kinds of trees from another generator: error, roughness and the first frame after a step."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tree_sway_lab.validation.trial import judged_simulator, SECONDS, Trial, tri
 from tree_sway_lab.validation.truth import FINE, Fineness, QUICK, true_frequencies
 
 SPEEDS = ('3', '9', '15')
-"""Of turbulence in [m/s]."""
+"""Mean speeds of turbulence in [m/s]."""
 
 WINDS = (*SPEEDS, 'seconds', 'step', 'up', 'reversal')
 GALE = '80'

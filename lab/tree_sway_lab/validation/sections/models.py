@@ -13,10 +13,10 @@ from tree_sway_lab.validation.trial import SECONDS, Trial, tried
 from tree_sway_lab.validation.truth import FINE
 
 SEEDS = (1, 8, 16, 18, 20)
-"""Of the crooked trees: small ones of the first twenty, so that it does not take long."""
+"""Seeds of the crooked trees: small ones of the first twenty, to save time."""
 
 UNTRIED_SEEDS = (32, 35, 43)
-"""Of crooked trees that no model was made with."""
+"""Seeds of crooked trees that no model was developed on."""
 
 MORE_UNTRIED = tuple(range(30, 60))
 """Thirty in a row that no model was made with, ten of each habit, for a full run."""

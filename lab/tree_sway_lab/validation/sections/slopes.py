@@ -14,7 +14,7 @@ from tree_sway_lab.validation.section import Check, Effort, markdown_table, Sect
 
 STEEPEST, FLATTEST = -6.2, -2.0
 SEEDS = (1, 2, 3, 4)
-"""Of the trees of a species, each in a wind of its own."""
+"""Seeds of the trees of a species, each in a wind of its own."""
 
 
 def measure(effort: Effort) -> Section:

@@ -22,7 +22,8 @@ RATE = 10.0
 """Largest rate of the wind in [Hz]."""
 LEAST_INTERVAL = 20.0
 """Interval [s] from which samples are means; at shorter ones they are the wind itself."""
-_MOST, _LEAST_RATE = 4_000_000, 2.0
+_MOST = 4_000_000
+_LEAST_RATE = 2.0
 _BLOCK, _FADE = 131_072, 8_192
 """Samples of turbulence that are drawn at a time, and those over which one passes to the next."""
 _GUST = 3.0
@@ -101,7 +102,8 @@ def turbulence_about_means(
         deviation = np.where(np.isfinite(gust), above, deviation)
     drawn *= np.interp(fine, time, deviation)[:, None]
     heading = np.arctan2(between[:, 1], between[:, 0])
-    cosine, sine = np.cos(heading), np.sin(heading)
+    cosine = np.cos(heading)
+    sine = np.sin(heading)
     between[:, 0] += cosine * drawn[:, 0] - sine * drawn[:, 1]
     between[:, 1] += sine * drawn[:, 0] + cosine * drawn[:, 1]
     between[:, 2] += drawn[:, 2]

@@ -25,7 +25,8 @@ PASSING = 20.0
 """Longest time in which one mean passes into the next [s]."""
 _SAMPLES = 2**15
 """Samples of a period: 55 minutes."""
-_SLOWEST, _FASTEST = 1.0, 40.0
+_SLOWEST = 1.0
+_FASTEST = 40.0
 _NEAR = 1.5
 """Factor of the mean speed from which the turbulence, whose scales follow it, is drawn anew."""
 
@@ -47,9 +48,11 @@ class GustsAboutMean:
         self._drawn_for = (0.0, 0.0)  # mean speed [m/s] and interval [s] of the turbulence
         self._gusts = np.zeros((1, 3))
         self._largest = 1.0
-        self._before, self._mean = np.zeros(3), np.zeros(3)
+        self._before = np.zeros(3)
+        self._mean = np.zeros(3)
         self._deviation = 0.0
-        self._since, self._passing = -math.inf, PASSING
+        self._since = -math.inf
+        self._passing = PASSING
 
     def set(  # noqa: A003
         self, time: float, mean: Floats, interval: float, gust: float | None = None
@@ -73,7 +76,8 @@ class GustsAboutMean:
         self._draw(min(max(level, _SLOWEST), _FASTEST), interval)
         is_first = self._since == -math.inf
         self._before = np.array(mean) if is_first else self._level(time)
-        self._mean, self._since = np.array(mean), time
+        self._mean = np.array(mean)
+        self._since = time
         self._passing = min(interval, PASSING)
         if gust is None:
             self._deviation = float(usual_deviation(np.array(level)))

@@ -83,7 +83,8 @@ class SensorFaults:
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
         """Yield the samples sent for one at a time [s], of a stamp [ns] and wind [m/s]."""
-        fault, before = self.at(time), self._before
+        fault = self.at(time)
+        before = self._before
         self._before = fault
         if fault not in ('delay', 'reorder'):
             yield from self._delayed

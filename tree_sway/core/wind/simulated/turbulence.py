@@ -173,7 +173,8 @@ def along_bearing(record: Floats, bearing_to: float) -> Floats:
 
     The mean wind blows to a bearing clockwise from north in [rad]: a westerly has pi/2.
     """
-    sine, cosine = np.sin(bearing_to), np.cos(bearing_to)
+    sine = np.sin(bearing_to)
+    cosine = np.cos(bearing_to)
     enu_from_wind = np.array([[sine, -cosine, 0.0], [cosine, sine, 0.0], [0.0, 0.0, 1.0]])
     return np.asarray(record @ enu_from_wind.T)
 

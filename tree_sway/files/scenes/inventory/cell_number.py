@@ -11,6 +11,10 @@ from tree_sway.files.column_names import unit_factor
 from tree_sway.files.text_file import finite
 
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)?')
+_GROUPED = re.compile(
+    r'(?<![\d.,])(?:(\d{1,3}(?:\.\d{3})+),(\d+)|(\d{1,3}(?:[,’\']\d{3})+)\.(\d+))(?![\d.,])'
+)
+"""A number of thousands with a fraction, ``1.234,5`` or ``1,234.5``."""
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
 _SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
@@ -25,12 +29,12 @@ def cell_number(text: str) -> tuple[float, str] | None:
 
     The unit is empty unless it is one of lengths. A cell with other words is no number.
     """
-    plain = finite(text)
+    plain = finite(_GROUPED.sub(_without_groups, text))
     if plain is not None:
         return plain, ''
     if _SEVERAL.search(text):
         return None
-    text = _CLASS.sub('', text)
+    text = _GROUPED.sub(_without_groups, _CLASS.sub('', text))
     numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None
@@ -40,6 +44,11 @@ def cell_number(text: str) -> tuple[float, str] | None:
     if any(word not in _WORDS and unit_factor('length', word) is None for word in words):
         return None
     return sum(numbers) / len(numbers), unit
+
+
+def _without_groups(found: re.Match[str]) -> str:
+    whole = re.sub(r'\D', '', found[1] or found[3])
+    return f'{whole}.{found[2] or found[4]}'
 
 
 def stems_number(text: str) -> tuple[float, str] | None:

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import rank_of, unit_factor, unit_known
 from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.table_file import Column, TextTable
 
@@ -80,21 +81,43 @@ class InventoryColumns:
         self.used.add(index)
         return self.table.cells(index, range(self.n_rows))
 
-    def numbers(self, index: int, *, stems: bool = False) -> tuple[Floats, str]:
+    def numbers(self, index: int, *, stems: bool = False, unit: str = '') -> tuple[Floats, str]:
         """
-        Numbers of a column, NaN where a cell has none, and the unit within cells, if any.
+        Numbers of a column, NaN where a cell has none, and their unit, if one is known.
 
-        A cell may have several ``stems``, which count as one of their whole section.
+        It is the ``unit`` of the header if given, else that of most cells. Numbers of cells with
+        another one are converted to it; where only a few cells have one, they are turned into
+        metres. A cell may have several ``stems``, which count as one of their whole section.
         """
-        values, units = np.full(self.n_rows, np.nan), Counter[str]()
+        values = np.full(self.n_rows, np.nan)
+        units = [''] * self.n_rows
         n_ranges = 0
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)
             if found is None:
                 continue
-            values[row], unit = found
-            units[unit] += 1
+            values[row], units[row] = found
             n_ranges += not text.strip().replace('.', '').isdigit() and '-' in text.strip()[1:]
         if n_ranges:
             self.note(f'{n_ranges} cells of {self.table.columns[index]} are ranges: their middles')
-        return values, next((unit for unit, _ in units.most_common() if unit), '')
+        return values, self._in_one_unit(values, units, index, unit)
+
+    def _in_one_unit(self, values: Floats, units: Sequence[str], index: int, header: str) -> str:
+        """Convert numbers of cells with a unit of their own to that of all, and return it."""
+        counts = Counter(unit for unit in units if unit)
+        if not counts:
+            return header
+        unit = header if unit_known('length', header) else counts.most_common(1)[0][0]
+        n_without = int(np.isfinite(values).sum()) - counts.total()
+        name = self.table.columns[index]
+        if unit != header and counts.total() < n_without:
+            self.note(f'{counts.total()} cells of {name} have a unit of their own')
+            unit = ''
+        elif unit != header and n_without:
+            self.note(f'{n_without} cells of {name} without a unit are taken as {unit}')
+        of_all = unit_factor('length', unit) if unit else 1.0
+        for row, own in enumerate(units):
+            factor = unit_factor('length', own) if own else None
+            if factor is not None and of_all is not None:
+                values[row] *= factor / of_all
+        return unit

@@ -21,7 +21,8 @@ _EARTH_RADIUS = 6.371e6
 _FAR = 1e5
 """Coordinates beyond which a map's origin is moved to the trees [m]."""
 
-_MOST_LONGITUDE, _MOST_LATITUDE = 180.0, 90.0
+_MOST_LONGITUDE = 180.0
+_MOST_LATITUDE = 90.0
 
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
@@ -151,5 +152,6 @@ def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
         return Places(x, y)
     east = float(np.floor(np.nanmin(x)))
     north = float(np.floor(np.nanmin(y)))
-    columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
+    if east or north:
+        columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
     return Places(x - east, y - north)

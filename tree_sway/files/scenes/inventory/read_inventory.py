@@ -60,7 +60,7 @@ class Inventory:
     exposures
         Exposure of each tree to the wind, a kind of `EXPOSURES`; None if none is given.
     notes
-        What was assumed, one sentence each.
+        Assumptions, one sentence each.
 
     """
 
@@ -165,7 +165,8 @@ def _exposures(columns: InventoryColumns) -> list[str | None]:
     texts = [text.strip().lower() for text in columns.texts(column.index)]
     unknown = [text for text in texts if text and text not in EXPOSURES]
     if unknown:
-        name, known = columns.table.columns[column.index], ', '.join(EXPOSURES)
+        name = columns.table.columns[column.index]
+        known = ', '.join(EXPOSURES)
         first = unknown[0][:40]
         columns.note(f"{len(unknown)} cells of {name} do not count: '{first}' is none of {known}")
     return [text if text in EXPOSURES else None for text in texts]
@@ -192,7 +193,8 @@ def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
     """Names of trees, each once: a further one of a name gets its number."""
     column = columns.table.find('tree_name')
     texts = columns.texts(column.index) if column else [''] * columns.n_rows
-    names, n_changed = list[str](), 0
+    names = list[str]()
+    n_changed = 0
     counts: dict[str, int] = {}
     for row in kept:
         name = texts[row].replace('/', '-') or f'tree{row + 1}'

@@ -27,7 +27,10 @@ _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
 _MIDDLING = 45.0
 """Usual height over diameter of a tree of a city."""
-_INCH, _FOOT, _CM, _MM = 0.0254, 0.3048, 0.01, 0.001
+_INCH = 0.0254
+_FOOT = 0.3048
+_CM = 0.01
+_MM = 0.001
 _SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
 
 
@@ -38,8 +41,8 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         index = columns.index_of(quantity)
         if index is None:
             continue
-        values, in_cells = columns.numbers(index, stems=True)
-        unit = columns.table.unit_of(index, quantity) or in_cells
+        in_header = columns.table.unit_of(index, quantity)
+        values, unit = columns.numbers(index, stems=True, unit=in_header)
         factor = unit_factor('length', unit) if unit else None
         if factor is None:
             factor, why = _stem_unit(values / over, columns, is_in_states)
@@ -67,8 +70,7 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     index = _height_column(columns)
     if index is None:
         return _CM, ''
-    height, in_cells = columns.numbers(index)
-    unit = columns.table.unit_of(index, 'height') or in_cells
+    height, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
     factor = unit_factor('length', unit) if unit else None
     if factor == _FOOT:
         return _INCH, ', as heights are in feet'
@@ -102,8 +104,7 @@ def heights_of(
     index = _height_column(columns)
     if index is None:
         return None
-    values, in_cells = columns.numbers(index)
-    unit = columns.table.unit_of(index, 'height') or in_cells
+    values, unit = columns.numbers(index, unit=columns.table.unit_of(index, 'height'))
     factor = unit_factor('length', unit) if unit else None
     name = columns.table.columns[index]
     if factor is None:
@@ -145,7 +146,8 @@ def fill_heights(
         by_stem[key, stem] = height_of_stem(key, stem)
     for row in np.flatnonzero(is_found).tolist():
         height[row] = by_stem[keys[row], float(stems[row])]
-    n_found, n_kept = int(is_found.sum()), int(columns.is_kept.sum())
+    n_found = int(is_found.sum())
+    n_kept = int(columns.is_kept.sum())
     if n_found:
         which = 'heights' if n_found == n_kept else f'{n_found} of {n_kept} heights'
         columns.note(
@@ -164,7 +166,8 @@ def _unread_height(columns: InventoryColumns, rows: list[int]) -> str:
     for row in rows:
         text = columns.table.cells(index, [row])[0]
         if np.isnan(numbers[row]) and any(map(str.isdigit, text)):
-            name, line = columns.table.columns[index], columns.table.numbers[row]
+            name = columns.table.columns[index]
+            line = columns.table.numbers[row]
             return f" that can be read; {columns.table.row_name} {line}: {name} is '{text[:40]}'"
     return ''
 

@@ -18,7 +18,8 @@ import re
 from tree_sway.files.column_names import folded
 from tree_sway.tables import table_beside
 
-FIA, ICP = 'fia', 'icp'
+FIA = 'fia'
+ICP = 'icp'
 TITLES = {FIA: 'FIA', ICP: 'ICP Forests'}
 
 _FIA_COLUMN = re.compile(r'spcd|fia')

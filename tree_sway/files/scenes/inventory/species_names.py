@@ -38,7 +38,8 @@ def species_of_rows(
         _decoded(columns, index, given, is_in_states=is_in_states)
         for index in columns.find_all('species')
     ]
-    genus, epithet = columns.table.find('genus'), columns.table.find('epithet')
+    genus = columns.table.find('genus')
+    epithet = columns.table.find('epithet')
     if genus is not None:
         first = columns.texts(genus.index)
         second = columns.texts(epithet.index) if epithet else [''] * len(first)

@@ -33,7 +33,8 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     Raises a `TreeError` for an impossible one: no root, a cycle, several trees, values that are
     not finite.
     """
-    source, notes = str(path), list(cylinders.notes)
+    source = str(path)
+    notes = list(cylinders.notes)
     species = species_named('broadleaf')
     if len(cylinders.start) == 0:
         raise FormatError('no cylinders', where=source)

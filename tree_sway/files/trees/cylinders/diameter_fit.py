@@ -35,5 +35,6 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
         seen = np.interp(diameter, [end, trusted_diameter], [twig_diameter, trusted_diameter])
         return np.where(diameter < trusted_diameter, np.minimum(seen, diameter), diameter)
 
-    base, tip = thinned(tree.base_diameter), thinned(tree.tip_diameter)
+    base = thinned(tree.base_diameter)
+    tip = thinned(tree.tip_diameter)
     return replace(tree, base_diameter=base, tip_diameter=tip)

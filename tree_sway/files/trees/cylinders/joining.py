@@ -51,7 +51,8 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
         cure = 'give each tree its own file, or this cylinder a parent'
         raise TreeError(what, where=cylinders.labels[largest], cure=cure)
     on_stem = np.flatnonzero(root_of == stem)
-    joined, farthest = parent.copy(), 0.0
+    joined = parent.copy()
+    farthest = 0.0
     for index in loose:
         nearest, distance = nearest_axis(
             cylinders.start[on_stem], cylinders.end[on_stem], cylinders.start[index]

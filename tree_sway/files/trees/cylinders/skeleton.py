@@ -44,7 +44,8 @@ def cylinders_of_nodes(
     inner = parent[outer]
     number = np.full(len(parent), -1, dtype=np.int64)
     number[outer] = np.arange(len(outer))
-    base, above = diameter[inner] if cones else diameter[outer], number[inner]
+    base = diameter[inner] if cones else diameter[outer]
+    above = number[inner]
     roots = np.flatnonzero(above < 0)
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem

@@ -72,7 +72,8 @@ def _is_text(head: str) -> bool:
 
 def _are_cylinders(table: Floats) -> bool:
     """Whether the columns of an array, (n, 9 to 15), are those of cylinders."""
-    radius, length = table[:, 0], table[:, 1]
+    radius = table[:, 0]
+    length = table[:, 1]
     axis_length = np.linalg.norm(table[:, 5:8], axis=1)
     parent = table[:, 8]
     is_unit = np.abs(axis_length - 1.0) < _UNIT_ERROR

@@ -47,11 +47,15 @@ def branch_segments(document: YamlDocument) -> Values:
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
     placed: dict[int, _Placed] = {}
-    parent, owner, labels = list[int](), list[int](), list[str]()
+    parent = list[int]()
+    owner = list[int]()
+    labels = list[str]()
     for number in checked_order(parents, where).tolist():
-        branch, its_parent = branches[number], placed.get(parents[number])
+        branch = branches[number]
+        its_parent = placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
-        sits_on, origin = -1, np.zeros(3)
+        sits_on = -1
+        origin = np.zeros(3)
         if its_parent is not None:
             sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
         first = len(parent)

@@ -55,7 +55,8 @@ def read_yaml_tree(path: Path) -> TreeFile:
 def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree') -> TreeFile:
     """Read a tree from YAML text; see `read_yaml_tree`."""
     document = read_yaml(text, source, tree_schema())
-    values, species = document.values, species_of(document)
+    values = document.values
+    species = species_of(document)
     name = values.get('name', default_name)
     tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
     learned = LearnedTree(**values['learned']) if 'learned' in values else None

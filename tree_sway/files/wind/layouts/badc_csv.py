@@ -16,13 +16,17 @@ from tree_sway.files.table_file import parse_table, split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'conventions,g,badc-csv'
-_BEGIN, _END = 'data', 'end data'
+_BEGIN = 'data'
+_END = 'end data'
 _UNIT = 3
 """Field of a line ``long_name`` with the unit."""
 
 
 def _is_badc(lines: Sequence[str]) -> bool:
-    return bool(lines) and lines[0].replace(' ', '').lower().startswith(_FIRST)
+    if not lines:
+        return False
+    first = lines[0].replace(' ', '').lower()
+    return first.startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -36,7 +40,8 @@ def _read(lines: list[str], source: str) -> TextTable:
             units[fields[1]] = fields[_UNIT]
     blank = [''] * begin  # keeps the numbers of the lines
     table = parse_table(blank + lines[begin:end], source)
-    return replace(table, units=tuple(units.get(column, '') for column in table.columns))
+    units_of_columns = [units.get(column, '') for column in table.columns]
+    return replace(table, units=tuple(units_of_columns))
 
 
 BADC_CSV = Layout('badc-csv', _is_badc, _read)

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 import re
 
-from tree_sway.files.cell_table import NumberedRow, table_of_lines
+from tree_sway.files.cell_table import numbered, NumberedRow, table_of_lines
 from tree_sway.files.column_names import unit_known
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
@@ -40,9 +40,13 @@ def _is_log(lines: Sequence[str]) -> bool:
 
 
 def _read_log(lines: list[str], source: str) -> TextTable:
-    numbered = enumerate(lines, start=1)
-    rows = [(number, _row_of_log(line.strip())) for number, line in numbered if line.strip()]
-    return table_of_lines(_LOG_NAMES, rows, source)
+    return table_of_lines(_LOG_NAMES, _rows_of_log(lines), source)
+
+
+def _rows_of_log(lines: Sequence[str]) -> Iterator[NumberedRow]:
+    for number, line in numbered(lines):
+        if line.strip():
+            yield number, _row_of_log(line.strip())
 
 
 def _row_of_log(line: str) -> list[str]:
@@ -51,7 +55,8 @@ def _row_of_log(line: str) -> list[str]:
     if found is None:
         return [''] * len(_LOG_NAMES)
     date, clock, *cells = line.split(found[1])
-    return ['', _stamp(date, clock), *(cell.replace(',', '.') for cell in cells[3:6])]
+    wind = [cell.replace(',', '.') for cell in cells[3:6]]
+    return ['', _stamp(date, clock), *wind]
 
 
 def _stamp(date: str, clock: str) -> str:
@@ -73,7 +78,7 @@ def _read_realtime(lines: list[str], source: str) -> TextTable:
 
 
 def _rows_of_realtime(lines: Sequence[str]) -> Iterator[NumberedRow]:
-    for number, line in enumerate(lines, start=1):
+    for number, line in numbered(lines):
         fields = fields_of_realtime(line)
         if fields is not None:
             stamp = _stamp(fields[0], fields[1])

@@ -13,14 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tree_sway.files.cell_table import NumberedRow, table_of_lines
+from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = ('time', 'wind direction', 'wind speed')
 _UNITS = ('', 'deg', 'm/s')
 _HEADER = 8
-_DIRECTION, _SPEED = 20, 21
+_DIRECTION = 20
+_SPEED = 21
 _MISSING = '999'
 
 
@@ -33,15 +34,18 @@ def _read(lines: list[str], source: str) -> TextTable:
 
 
 def _rows(lines: Sequence[str]) -> Iterator[NumberedRow]:
-    year = lines[_HEADER].partition(',')[0].strip()
-    for number, line in enumerate(lines[_HEADER:], start=_HEADER + 1):
-        cells = [cell.strip() for cell in line.split(',')]
+    year = cell_at(lines[_HEADER].split(','), 0)
+    for number, line in numbered(lines, _HEADER):
+        cells = line.split(',')
         if len(cells) > _SPEED:
-            month, day, hour = (cell.zfill(2) for cell in cells[1:4])
+            month, day, hour = (cell.strip().zfill(2) for cell in cells[1:4])
             stamp = f'{year}-{month}-{day} {hour}:00'
-            direction = '' if cells[_DIRECTION] == _MISSING else cells[_DIRECTION]
-            speed = '' if cells[_SPEED] == _MISSING else cells[_SPEED]
-            yield number, [stamp, direction, speed]
+            yield number, [stamp, _known(cells, _DIRECTION), _known(cells, _SPEED)]
+
+
+def _known(cells: Sequence[str], place: int) -> str:
+    cell = cell_at(cells, place)
+    return '' if cell == _MISSING else cell
 
 
 EPW = Layout('epw', _is_epw, _read)

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 import re
 
-from tree_sway.files.cell_table import NumberedRow, table_of_lines
+from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
 from tree_sway.files.table_file import split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -27,8 +27,10 @@ _WRONG = ('3', '7')
 
 
 def _has_wnd(lines: Sequence[str]) -> bool:
-    names = set(lines[0].replace('"', '').split(',')) if lines else set()
-    return {'STATION', 'DATE', 'WND'} <= names
+    if not lines:
+        return False
+    names = lines[0].replace('"', '').split(',')
+    return {'STATION', 'DATE', 'WND'} <= set(names)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -39,20 +41,21 @@ def _rows(lines: Sequence[str]) -> Iterator[NumberedRow]:
     names = list(split_row(lines[0], ','))
     date = names.index('DATE')
     wind = names.index('WND')
-    gust = names.index('OC1') if 'OC1' in names else len(names)
-    for number, line in enumerate(lines[1:], start=2):
+    gust = names.index('OC1') if 'OC1' in names else None
+    for number, line in numbered(lines, 1):
         cells = split_row(line, ',')
         if len(cells) > max(date, wind):
             speed, direction = _wind(cells[wind])
-            gust_cell = cells[gust] if gust < len(cells) else ''
-            gust_speed = _known(gust_cell.partition(',')[0], '9999')
-            yield number, [cells[date], speed, direction, gust_speed]
+            gust_speed, _, _ = cell_at(cells, gust).partition(',')
+            yield number, [cells[date], speed, direction, _known(gust_speed, '9999')]
 
 
 def _wind(cell: str) -> tuple[str, str]:
     """Speed and direction of the five fields of a wind; empty where missing or wrong."""
-    fields = [*cell.split(','), '', '', '', '', ''][:5]
-    direction, good_direction, kind, speed, good_speed = fields
+    fields = cell.split(',')
+    direction, good_direction, kind, speed, good_speed = (
+        cell_at(fields, place) for place in range(5)
+    )
     if good_speed in _WRONG:
         return '', ''
     if kind == _CALM:
@@ -66,7 +69,8 @@ def _known(text: str, missing: str) -> str:
 
 
 def _is_lite(lines: Sequence[str]) -> bool:
-    return len(lines) > 1 and all(_LITE.fullmatch(line) for line in lines[:2])
+    first_two = lines[:2]
+    return len(first_two) == 2 and all(map(_LITE.fullmatch, first_two))
 
 
 def _read_lite(lines: list[str], source: str) -> TextTable:
@@ -74,7 +78,7 @@ def _read_lite(lines: list[str], source: str) -> TextTable:
 
 
 def _rows_of_lite(lines: Sequence[str]) -> Iterator[NumberedRow]:
-    for number, line in enumerate(lines, start=1):
+    for number, line in numbered(lines):
         cells = line.split()
         if len(cells) == 12:
             year, month, day, hour = cells[:4]

@@ -11,19 +11,23 @@ those of Japan, directions points of the compass (JMA, "format of the CSV file")
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import re
 
 from tree_sway.errors import FormatError
-from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'ダウンロードした時刻'
-_SPEED, _GUST, _DIRECTION, _QUALITY = '風速(m/s)', '最大瞬間風速(m/s)', '風向', '品質情報'
+_SPEED = '風速(m/s)'
+_GUST = '最大瞬間風速(m/s)'
+_DIRECTION = '風向'
+_QUALITY = '品質情報'
 _MEANS = (_SPEED, '平均風速(m/s)')
 """Elements that are a mean wind speed: of ten minutes or of a day."""
-_STATIONS, _ELEMENTS = 2, 3
+_STATIONS = 2
+_ELEMENTS = 3
 _ROW = re.compile(r'\d{4}/\d{1,2}/\d{1,2}')
 _NAMES = ('time (Asia/Tokyo)', 'wind speed', 'wind direction', 'gust')
 _UNITS = ('', 'm/s', '', 'm/s')
@@ -35,44 +39,41 @@ def _is_jma(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    cells = [line.split(',') for line in lines]
-    first = next((k for k, row in enumerate(cells) if _ROW.match(row[0])), len(cells))
+    first = next((number for number, line in enumerate(lines) if _ROW.match(line)), 0)
     if first <= _ELEMENTS:
         raise FormatError('a file of JMA without rows', where=source)
-    stations = {name for name in cells[_STATIONS] if name.strip()}
+    head = [line.split(',') for line in lines[:first]]
+    stations = {name for name in head[_STATIONS] if name.strip()}
     if len(stations) > 1:
         what = f'several stations: {", ".join(sorted(stations)[:5])}'
         raise FormatError(what, where=source, cure='download one at a time')
-    elements, labels = cells[_ELEMENTS], cells[_ELEMENTS + 1 : first]
-    mean = next((each for each in _MEANS if each in elements), _SPEED)
-    columns = [
-        _column(elements, labels, mean, ()),
-        _column(elements, labels, mean, (_DIRECTION,)),
-        _column(elements, labels, _GUST, ()),
-        _column(elements, labels, mean, (_QUALITY,)),
-    ]
-    rows = []
-    for number, row in enumerate(cells[first:], start=first + 1):
-        if _ROW.match(row[0]):
-            speed, direction, gust, quality = (_cell(row, column) for column in columns)
-            known_speed = '' if quality in _DOUBTFUL else speed
-            rows.append((number, [row[0], known_speed, direction, gust]))
+    rows = _rows(lines, first, head[_ELEMENTS:])
     return table_of_lines(_NAMES, rows, source, _UNITS)
 
 
-def _column(
-    elements: Sequence[str], labels: Sequence[Sequence[str]], element: str, wanted: Sequence[str]
-) -> int | None:
+def _rows(lines: Sequence[str], first: int, head: Sequence[list[str]]) -> Iterator[NumberedRow]:
+    """Yield the rows from a line on; the head has the elements, and the labels below them."""
+    mean = next((each for each in _MEANS if each in head[0]), _SPEED)
+    speed = _column(head, mean, [])
+    direction = _column(head, mean, [_DIRECTION])
+    gust = _column(head, _GUST, [])
+    quality = _column(head, mean, [_QUALITY])
+    for number, line in numbered(lines, first):
+        if _ROW.match(line):
+            cells = line.split(',')
+            is_doubtful = cell_at(cells, quality) in _DOUBTFUL
+            known_speed = '' if is_doubtful else cell_at(cells, speed)
+            yield number, [cells[0], known_speed, cell_at(cells, direction), cell_at(cells, gust)]
+
+
+def _column(head: Sequence[list[str]], element: str, labels: list[str]) -> int | None:
     """Place of the column of an element with labels below it; None without one."""
-    for column, name in enumerate(elements):
-        below = [row[column] for row in labels if column < len(row) and row[column]]
-        if name == element and below == list(wanted):
-            return column
+    elements, *below = head
+    for place, name in enumerate(elements):
+        found = [cell_at(row, place) for row in below]
+        if name == element and list(filter(None, found)) == labels:
+            return place
     return None
-
-
-def _cell(row: Sequence[str], column: int | None) -> str:
-    return row[column].strip() if column is not None and column < len(row) else ''
 
 
 JMA = Layout('jma', _is_jma, _read)

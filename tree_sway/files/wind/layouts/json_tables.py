@@ -34,8 +34,9 @@ class _Quantity(NamedTuple):
 
 
 def _is_json(lines: Sequence[str]) -> bool:
-    first = next((line.strip() for line in lines if line.strip()), '')
-    return first[:1] in ('{', '[') and first[:2] != '[0'
+    filled = filter(None, map(str.strip, lines))
+    first = next(filled, '')
+    return first.startswith(('{', '[')) and not first.startswith('[0')
 
 
 def read_json_table(lines: list[str], source: str) -> TextTable:
@@ -86,31 +87,34 @@ def _said_units(node: dict[str, Any]) -> Cells:
 
 def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
     """Return the table of the lists in a node, if they are columns."""
-    columns = {name: each for name, each in node.items() if isinstance(each, list)}
-    lengths = set(map(len, columns.values()))
+    names = [name for name, each in node.items() if isinstance(each, list)]
+    columns = [node[name] for name in names]
+    lengths = set(map(len, columns))
     if len(columns) < 2 or len(lengths) != 1 or 0 in lengths:
         return None
-    if any(isinstance(column[0], dict | list) for column in columns.values()):
+    if any(isinstance(column[0], dict | list) for column in columns):
         return None
-    cells = [list(map(_text, column)) for column in columns.values()]
+    cells = [map(_text, column) for column in columns]
     rows = list(zip(*cells, strict=True))
-    units_of_columns = [_unit(units.get(name)) for name in columns]
-    return table_of_cells(list(columns), rows, source, units=units_of_columns)
+    units_of_columns = [_unit(units.get(name)) for name in names]
+    return table_of_cells(names, rows, source, units=units_of_columns)
 
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
-    records = [dict(_flat(each, '', 0)) for each in node]
     system = units.get('*')
-    if system:
-        for record in records:
+    records = []
+    empty: Cells = {}
+    for each in node:
+        record = dict(_flat(each, '', 0))
+        if system:
             record['units'] = system
-    names: Cells = {}
-    for record in records:
-        names |= dict.fromkeys(record, '')
+        records.append(record)
+        empty |= dict.fromkeys(record, '')
+    names = list(empty)
     units_of_columns = [_unit(_unit_beside(records[0], name)) for name in names]
-    rows = [[record.get(name, '') for name in names] for record in records]
-    return table_of_cells(list(names), rows, source, units=units_of_columns)
+    rows = [list((empty | record).values()) for record in records]
+    return table_of_cells(names, rows, source, units=units_of_columns)
 
 
 def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, str]]:
@@ -150,14 +154,15 @@ def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
     for time in sorted(times):
         values = [_text(each.by_time.get(time)) for each in quantities]
         rows.append([time, *values])
-    names = ['time', *(each.name for each in quantities)]
-    units = ['', *(each.unit for each in quantities)]
-    return table_of_cells(names, rows, source, units=units)
+    names = [each.name for each in quantities]
+    units = [each.unit for each in quantities]
+    return table_of_cells(['time', *names], rows, source, units=['', *units])
 
 
 def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
     """Return those elements of a list that are lists of states of Home Assistant."""
-    return [each for each in node if isinstance(each, list) and each and all(map(_is_state, each))]
+    lists = [each for each in node if each and isinstance(each, list)]
+    return [each for each in lists if all(map(_is_state, each))]
 
 
 def _is_state(node: Any) -> bool:

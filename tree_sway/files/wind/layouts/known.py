@@ -37,4 +37,6 @@ def looks_like_wind(head: str) -> bool:
     """Whether the beginning of a file is that of a table of wind."""
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
     found = layout_of(lines[:200])
-    return found is not None and (found is not JSON or 'wind' in head.lower() or 'wd' in head)
+    if found is JSON:
+        return 'wind' in head.lower() or 'wd' in head
+    return found is not None

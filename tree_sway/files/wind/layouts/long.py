@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
+from itertools import chain
 import re
 
 from tree_sway.files.cell_table import table_of_cells
@@ -43,25 +44,29 @@ def wide_table(
         by_time.setdefault(time, {})[name] = value
         lines.setdefault(time, line)
     times = sorted(by_time)
-    names = list(dict.fromkeys(name for each in by_time.values() for name in each))
-    newest: dict[str, str] = {}
+    names = list(dict.fromkeys(chain.from_iterable(by_time.values())))
+    newest = dict.fromkeys(names, '')
     rows = []
     for time in times:
         newest.update(by_time[time])
-        rows.append([time, *(newest.get(name, '') for name in names)])
+        rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
     short = [_STATION.sub('', name, count=1) for name in names]
-    columns = short if len(set(short)) == len(short) else names
+    is_clear = len(set(short)) == len(short)
+    columns = short if is_clear else names
     numbers = [lines[time] for time in times]
-    units = ['', *((unit_of or {}).get(name, '') for name in names)]
-    return table_of_cells([clock, *columns], rows, source, numbers, units)
+    known_units = unit_of or {}
+    units = [known_units.get(name, '') for name in names]
+    return table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
 
 
 def _split(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, list[int]] | None:
     """Line of the header, and the places of the wanted columns in it."""
     for number, line in enumerate(lines[:10]):
-        cells = list(split_row(line, ',')) if not line.startswith('#') else []
-        if all(name in cells for name in wanted):
+        if line.startswith('#'):
+            continue
+        cells = list(split_row(line, ','))
+        if set(wanted) <= set(cells):
             return number, [cells.index(name) for name in wanted]
     return None
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.cell_table import cell_at, numbered, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -38,18 +38,22 @@ def _is_meteoblue(lines: Sequence[str]) -> bool:
 def _read(lines: list[str], source: str) -> TextTable:
     header = _header(lines) or 0
     names = lines[header].split(',')
-    units = next((line.split(',') for line in lines[:header] if line.startswith('unit,')), [])
-    places, columns = [0], ['time']
+    above = [line.split(',') for line in lines[:header] if line.startswith('unit,')]
+    units = above[0] if above else []
+    places = [0]
+    columns = ['time']
     for quantity, ending in _QUANTITIES.items():
         found = [place for place, name in enumerate(names) if name.endswith(ending)]
         places += found[:1]
         columns += [quantity] * len(found[:1])
     rows = []
-    for number, line in enumerate(lines[header + 1 :], start=header + 2):
+    for number, line in numbered(lines, header + 1):
         cells = line.split(',')
         if len(cells) == len(names):
-            rows.append((number, [cells[place].strip() for place in places]))
-    found_units = ['', *(units[place] if place < len(units) else '' for place in places[1:])]
+            row = [cell_at(cells, place) for place in places]
+            rows.append((number, row))
+    found_units = [cell_at(units, place) for place in places]
+    found_units[0] = ''  # of the time, which has the word itself
     return table_of_lines(columns, rows, source, found_units)
 
 

@@ -17,6 +17,7 @@ from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _HEAD = 40
+_MOST_COLUMNS = 200
 _CELL = re.compile(r'[,;\t](?=(?:[^"]*"[^"]*")*[^"]*$)')
 _NUMBER = re.compile(r'[-+\d.,:]+')
 _PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
@@ -29,12 +30,19 @@ def header_line(lines: Sequence[str]) -> int | None:
 
     A comment is one only where no other line is, and with names of both.
     """
-    head = list(enumerate(lines[:_HEAD]))
-    timed = [number for number, line in head if not line.startswith('#') and _has_time(line)]
-    windy = [number for number in timed if _has_wind(lines[number])]
-    comments = [(number, line.lstrip('# ')) for number, line in head if line.startswith('#')]
-    hashed = [number for number, line in comments if _has_time(line) and _has_wind(line)]
-    return next(iter(windy or timed or hashed), None)
+    timed: list[int] = []
+    windy: list[int] = []
+    hashed: list[int] = []
+    for number, line in enumerate(lines[:_HEAD]):
+        if not _has_time(line.lstrip('# ')):
+            continue
+        is_comment = line.startswith('#')
+        if not is_comment:
+            timed.append(number)
+        if _has_wind(line.lstrip('# ')):
+            (hashed if is_comment else windy).append(number)
+    found = windy or timed or hashed
+    return found[0] if found else None
 
 
 def _cells(line: str) -> list[str]:
@@ -47,13 +55,14 @@ def _has_time(line: str) -> bool:
         return False
     return any(
         rank_of(cell, 'time') is not None or cell.strip().lower() in _PARTS
-        for cell in cells[:200]
+        for cell in cells[:_MOST_COLUMNS]
         if cell and _NUMBER.fullmatch(cell) is None
     )
 
 
 def _has_wind(line: str) -> bool:
-    return any(rank_of(cell, each) is not None for cell in _cells(line)[:200] for each in _WIND)
+    cells = _cells(line)[:_MOST_COLUMNS]
+    return any(rank_of(cell, each) is not None for cell in cells for each in _WIND)
 
 
 def _is_table(lines: Sequence[str]) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import re
 
-from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.cell_table import numbered, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -31,23 +31,27 @@ def _has_names(lines: Sequence[str]) -> bool:
 
 def _cells(line: str) -> list[str]:
     text = line.lstrip('#').strip()
-    return [cell.strip() for cell in text.split(',')] if ',' in text else text.split()
+    if ',' not in text:
+        return text.split()
+    return [cell.strip() for cell in text.split(',')]
 
 
 def _read(lines: list[str], source: str) -> TextTable:
     begin = _find_names(lines) or 0
     columns = _cells(lines[begin])
     below = lines[begin + 1] if begin + 1 < len(lines) else ''
-    units = _cells(below) if below.startswith('#') and len(below) > 2 else []
+    has_units = below.startswith('#') and len(below) > 2
+    units = _cells(below) if has_units else []
     rows = [
         (number, _cells(line))
-        for number, line in enumerate(lines[begin + 1 :], start=begin + 2)
+        for number, line in numbered(lines, begin + 1)
         if line.strip() and not line.startswith('#')
     ]
     # Of NDBC's two columns mm and MM one is the minute; units of the time are its parts.
     names = ['minute' if name == 'mm' else name for name in columns]
-    units = ['' if name in _CLOCK else unit for name, unit in zip(names, units, strict=False)]
-    return table_of_lines(names, rows, source, units)
+    pairs = zip(names, units, strict=False)
+    known_units = ['' if name in _CLOCK else unit for name, unit in pairs]
+    return table_of_lines(names, rows, source, known_units)
 
 
 SPACED = Layout('spaced', _has_names, _read)

@@ -20,7 +20,9 @@ _HEADER = 4
 
 
 def _is_toa5(lines: Sequence[str]) -> bool:
-    return len(lines) >= _HEADER and lines[0].lstrip('"').startswith('TOA5')
+    if len(lines) < _HEADER:
+        return False
+    return lines[0].lstrip('"').startswith('TOA5')
 
 
 def _read(lines: list[str], source: str) -> TextTable:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from itertools import zip_longest
 import re
 
-from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.cell_table import numbered, table_of_lines
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -23,18 +23,22 @@ _WIND = ('Date', 'Time', 'Wind Speed', 'Wind Dir', 'Hi Speed')
 
 
 def _has_two_lines(lines: Sequence[str]) -> bool:
-    return len(lines) > 2 and 'Wind' in lines[0] and _NAMES.match(lines[1]) is not None
+    if len(lines) < 3 or 'Wind' not in lines[0]:
+        return False
+    return _NAMES.match(lines[1]) is not None
 
 
 def _read(lines: list[str], source: str) -> TextTable:
     names = _names(lines[0], lines[1])
     wanted = [column for column, name in enumerate(names) if name in _WIND]
     rows = []
-    for number, line in enumerate(lines[2:], start=3):
+    for number, line in numbered(lines, 2):
         cells = line.split('\t') if '\t' in line else line.split()
         if len(cells) == len(names):
-            rows.append((number, [cells[column].strip() for column in wanted]))
-    return table_of_lines([names[column] for column in wanted], rows, source)
+            row = [cells[column].strip() for column in wanted]
+            rows.append((number, row))
+    columns = [names[column] for column in wanted]
+    return table_of_lines(columns, rows, source)
 
 
 def _names(above: str, below: str) -> list[str]:

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Sky, hills, haze and ground: painted when the camera moves, copied when it does not, which costs less. */
+/** Sky, hills, haze and ground. They are painted when the camera moves and copied otherwise, which costs less. */
 
 import { textOf } from "../files.js";
 import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
@@ -9,19 +9,19 @@ import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 
 export class Backdrop {
-  /** @param {GL} gl @param {boolean} isPlain whether the shadow is kept, too, as every pixel costs much */
+  /** @param {GL} gl @param {boolean} isPlain whether to keep the shadow too, as every pixel costs much */
   constructor(gl, isPlain) {
     this.gl = gl;
     this._program = program(gl, "backdrop");
     this._copying = program(gl, "copy");
     this._whole = drawable(gl, this._program, { values: [-1, -1, 3, -1, -1, 3], indices: [0, 1, 2] });
     this._isPlain = isPlain;
-    /** Without the shadow, and with it. */
+    /** Pictures without and with the shadow. */
     this._pictures = /** @type {ReturnType<typeof canvasTexture>[]} */ ([]);
     this._paintedFor = "";
   }
 
-  /** Paint into what is bound. @param {Camera} camera @param {Daylight} day @param {Ground} under */
+  /** Paint into the bound target. @param {Camera} camera @param {Daylight} day @param {Ground} under */
   paint(camera, day, under) {
     this.gl.disable(this.gl.DEPTH_TEST);
     use(this.gl, this._program, { ...day, ...camera.axes(), ...under, eye: camera.eye });
@@ -29,7 +29,7 @@ export class Backdrop {
   }
 
   /** Show it on the canvas. @param {Camera} camera @param {Daylight} day @param {Ground} under
-   * @param {() => void} drawShadow on the ground @param {boolean} isNew whether it is another than before */
+   * @param {() => void} drawShadow on the ground @param {boolean} isNew whether the shadow has changed */
   show(camera, day, under, drawShadow, isNew) {
     const { gl } = this;
     const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];

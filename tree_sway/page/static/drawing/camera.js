@@ -1,10 +1,10 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** A camera that turns about a point: mouse, touch and keys, and the matrix it makes. z is up. */
+/** A camera that orbits a point, moved by mouse, touch and keys. z is up. */
 
-/** Half of the height of the picture over how far it is away. */
+/** Half of the height of the picture over its distance. */
 const HALF = Math.tan((16 * Math.PI) / 180);
-/** Height from which on a tree is looked up at [m]. */
+/** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
 
 export class Camera {
@@ -15,28 +15,28 @@ export class Camera {
   aspect = 1;
   matrix = new Float32Array(16);
   eye = /** @type {Vector} */ ([0, 0, 0]);
-  /** Where nothing lies over the picture: left, top, right and bottom, shares of it. @type {() => number[]} */
+  /** Part of the picture that nothing covers: left, top, right and bottom, 0 to 1. @type {() => number[]} */
   room = () => [0, 0, 1, 1];
-  /** Whether it sees all of the scene, as nobody has moved it. */
+  /** Whether it shows all of the scene, as nobody has moved it. */
   isHome = true;
   _size = 1;
   _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
 
-  /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
+  /** Take the view of a link. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
     this.isHome = false;
     [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
     this.target = [x, y, z];
   }
 
-  /** See all of a scene. @param {number[][]} box its lowest and its highest corner */
+  /** Show all of a scene. @param {number[][]} box its lowest and its highest corner */
   home([low, high] = this._box) {
     this._box = [low, high];
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const tall = high[2] - low[2];
     this._size = Math.hypot(wide, tall);
     this.azimuth = -0.6;
-    // A tree is seen from the ground, against the sky; what is small or much wider than high from higher up.
+    // A tree is seen from the ground, against the sky; a plant or a stand from higher up.
     const isTree = tall > TALL && wide < 2 * tall;
     this.elevation = isTree ? -0.07 : Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
     this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
@@ -72,7 +72,7 @@ export class Camera {
     this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
   }
 
-  /** How the picture lies in the scene, one from the eye: half its width, half its height, and back to the eye. */
+  /** Axes of the picture at distance 1 from the eye: half its width, half its height, and the direction to the eye. */
   axes() {
     const [[ca, sa], [ce, se]] = [this.azimuth, this.elevation].map((angle) => [Math.cos(angle), Math.sin(angle)]);
     const right = [-sa, ca, 0].map((each) => HALF * this.aspect * each);
@@ -80,9 +80,9 @@ export class Camera {
     return { right, up, back: [ce * ca, ce * sa, se] };
   }
 
-  /** @returns {Float32Array} from the scene to clip space, column by column */
+  /** Find the matrix from the scene to clip space. @returns {Float32Array} column by column */
   update() {
-    // It does not go below the ground.
+    // The camera stays above the ground.
     const above = this.target[2] - this._box[0][2] - 0.01 * this._size;
     this.elevation = Math.max(this.elevation, -Math.asin(Math.min(1, Math.max(-0.9, above / this.distance))));
     const { right, up, back } = this.axes();
@@ -99,20 +99,20 @@ export class Camera {
     return this.matrix;
   }
 
-  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p */
+  /** Place of a point in the picture, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p */
   project(p) {
     const m = this.matrix;
     const [x, y, w] = [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
     return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
   }
 
-  /** From the eye to a place of the picture, one deep. @param {number[]} at 0 to 1 from left and top */
+  /** Ray from the eye through a place of the picture, of depth 1. @param {number[]} at 0 to 1 from left and top */
   ray([x, y]) {
     const { right, up, back } = this.axes();
     return right.map((each, c) => (2 * x - 1) * each + (1 - 2 * y) * up[c] - back[c]);
   }
 
-  /** The point under a place of the picture as deep as another. @param {number[]} at @param {number[]} p */
+  /** Point under a place of the picture at the depth of another point. @param {number[]} at @param {number[]} p */
   under(at, p) {
     const { back } = this.axes();
     const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);

@@ -1,21 +1,21 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** How much of each tree is placed and drawn: a small one is a picture of its kind, a larger one has its
- * thickest branches, one out of sight nothing; all within a budget. */
+/** Chooses the level of detail of each tree within a budget: a small tree is a picture of its kind, a larger one has its
+ * thickest branches, one out of sight is not drawn. */
 
-/** Area of the screen [px^2] that a segment is worth. */
+/** Area on the screen per segment [px^2]. */
 const AREA = 80;
-/** Height [px] that the finest level is shaped for. */
+/** Height for which the finest level is made, at least [px]. */
 const NEAR = 800;
 const FEWEST_CARDS = 40;
-/** As small as a tree may be drawn, over its own size, before the far ones lose more than the near ones. */
+/** Least size for which levels are chosen, over the real one; a smaller budget is spent on near trees only. */
 const SMALLEST = 0.2;
 
-/** Levels of a kind: its picture, of which the top alone is placed; then each of about twice the segments
- * of the one before. @param {import("../placing.js").KindPlacer} placer @param {number} highest segment,
- * which is of every other level @param {{segments: number, cards: number, near: number, far: number}} most segments,
- * cards of leaves; and the heights [px] from which it has all of them, and below which it is drawn as a
- * picture @returns {Level[]} */
+/** Levels of a kind. The first is its picture, of which only the top is placed; each further one has about twice the
+ * segments of the one before. @param {import("../placing.js").KindPlacer} placer @param {number} highest segment,
+ * which all of these have @param {{segments: number, cards: number, near: number, far: number}} most segments and
+ * cards, the height from which on a tree has all of them, and below which it is a picture [px]
+ * @returns {Level[]} */
 export function levelsOf({ reached, order, slots }, highest, most) {
   let branches = 0;
   while (reached[branches] <= slots[highest]) branches++;
@@ -36,9 +36,9 @@ export function levelsOf({ reached, order, slots }, highest, most) {
 }
 
 export class Detail {
-  /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of a ball about
-   * the middle of each kind [m] @param {number} watched tree that is always placed
-   * @param {number} [card] what a card costs over what a segment does */
+  /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of the
+   * bounding sphere of each kind [m] @param {number} watched tree that is always placed
+   * @param {number} [card] cost of a card over that of a segment */
   constructor(trees, levels, radii, watched, card = 1) {
     this.trees = trees;
     this.levels = levels;
@@ -47,15 +47,15 @@ export class Detail {
     this.watched = watched;
     /** Trees, the largest on the screen first. */
     this.order = Uint32Array.from(trees, (_, t) => t);
-    /** Level of each tree; -1 of one that is out of sight. */
+    /** Level of each tree; -1 out of sight. */
     this.level = new Int8Array(trees.length).fill(-1);
     /** Row of its first segment. */
     this.start = new Uint32Array(trees.length);
-    /** Segments of all trees that are placed. */
+    /** Number of segments that are placed. */
     this.segments = 0;
   }
 
-  /** Choose again: where the budget is too small, all trees are drawn as if they were smaller.
+  /** Choose the levels; if the budget is too small, all trees are treated as smaller.
    * @param {Float32Array} camera matrix from the scene to clip space @param {number} height of the picture
    * [px] @param {number} budget segments and cards beyond those of far trees */
   choose(camera, height, budget) {
@@ -64,9 +64,9 @@ export class Detail {
     for (let size = 1; this._spend(pixels, size, budget) && size > SMALLEST; size *= 0.85);
   }
 
-  /** Give trees their levels, the nearest first. @param {number[]} pixels height of each @param {number} size
-   * that they are drawn for, over their own @param {number} budget
-   * @returns {boolean} whether any has a lower one than it should */
+  /** Set the level of each tree, the nearest first. @param {number[]} pixels height of each @param {number} size
+   * for which they are chosen, over the real one @param {number} budget
+   * @returns {boolean} whether the budget lowered any */
   _spend(pixels, size, budget) {
     let spent = 0;
     let isSpent = false;
@@ -86,7 +86,7 @@ export class Detail {
     return isSpent;
   }
 
-  /** The level of a tree; none of one that is out of sight. @param {number} tree its number */
+  /** Level of a tree; undefined out of sight. @param {number} tree its number */
   levelOf(tree) {
     return this.levels[this.trees[tree].kind][this.level[tree]];
   }

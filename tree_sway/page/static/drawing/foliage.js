@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The leaves of a kind at rest: cards with pictures of leaves. Each vertex hangs on a segment, whose row is
- * its first number, and moves with it. */
+/** The leaves of a kind at rest: cards with pictures of leaves. Every vertex belongs to a segment, whose pose the
+ * vertex shader looks up and applies. */
 
 import { STRIDE } from "../placing.js";
 import { multiply, turned } from "../quaternions.js";
@@ -9,81 +9,80 @@ import { lookOf, seeded } from "./looks.js";
 import { leafPlace } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
-/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
+/** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
 const LARGEST_CARDS = 2.5;
-/** Length of a small card with a tuft over that of another; and how far from its shoot it is, over the same. */
+/** Length of a small card with a tuft, and its distance from its shoot, over those of other small cards. */
 const [TUFTS, TUFTS_BESIDE] = [1.25, 0.7];
-/** Length of a small card over that of one of full size, by how many there are, and the least of it. */
+/** Length of a small card over that of a full one: this power of how many more there are, and its least value. */
 const [SMALLER, LEAST_CARD] = [0.57, 0.08];
-/** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
+/** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
-/** Different small cards. */
+/** Number of different small cards. */
 const VARIETY = 200;
-/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
- * drawn there over that of a cluster, and at most [m]. */
+/** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
+ * that of a cluster, and at most [m]. */
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
-/** Length of a limb below the crown that is dead, at most, over that of the longest. */
+/** Length below which a limb under the crown is dead, over that of the longest. */
 const DEAD = 0.1;
-/** Length of a dead stub over the size of what is drawn on thin wood. */
+/** Length below which a branch without leaves stays bare, over the size of a shoot. */
 const STUB = 4;
-/** From which droop a tree weeps: the same wood of it, whose boughs a curtain hides, down to the ground. */
+/** Droop from which on a tree weeps, and its THIN, as a curtain of leaves hides the boughs. */
 const [WEEPS, THIN_WEEPING] = [0.8, 8];
-/** The frame of a shoot that hangs straight down. */
+/** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
-/** Length of a candle of flowers over that of a leaf, its width over its length; how open to the sky the leaves
- * are that it stands over, and how many cards there are to one. */
+/** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
+ * least, and the number of cards per candle. */
 const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.5, 17];
-/** Height up to which nothing is in leaf [m], and that of a curtain, below which no leaf hangs. */
+/** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
-/** Numbers of a corner of a card. */
-const PER_CORNER = 19;
+/** Numbers per vertex of a card. */
+const PER_VERTEX = 19;
 const ORIGIN = [0, 0, 0];
-/** Corners of a picture, along it and across from its middle; and of a triangle of the same area that has most of a shoot. */
+/** Corners of a picture, along and across from its middle; and of a triangle of the same area that shows most of it. */
 const SQUARE = [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]];
 const TRIANGLE = [[-0.3, 0], [1, -0.77], [1, 0.77]];
-/** How low a card ends over its length. */
+/** How far a card bends down at its end, over its length. */
 const BOW = 0.1;
 
-/** Leaves: each cluster is up to three cards that cross each other about its shoot, and show leaves in a
- * picture; or many small ones that fan out from its twig. They come in a mixed order, so that any first part
- * of them is a thinner crown. Per vertex: place (3), how it moves with the flutter (3), normal (3), where
- * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
+/** Mesh of the leaves on some branches. A cluster is up to three large cards that cross each other about its shoot, or
+ * many small ones about its twig. Cards come in a mixed order, so that any first part of them is a thinner crown.
+ * A vertex has the row of its segment, then place (3), motion with the flutter (3), normal (3), direction of the light
+ * (3), frequency and phase of the flutter (2), openness, tint, and place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
  * cards of the whole crown, whose area fewer have as well @param {boolean} isFlowering
  * @param {boolean} [isPlain] whether a large card is one triangle, as each costs much without a graphics unit
- * @returns {{mesh: Mesh, along: number, isSpread: boolean}} and how many leaves the picture is long, and whether
- * its cards are small ones */
-export function leafMesh({ kind, placer, rest, high, highest, shade }, branches, cards, most, isFlowering, isPlain = false) {
+ * @returns {{mesh: Mesh, along: number, isSpread: boolean}} with the number of leaves along the picture, and whether
+ * cards are small ones */
+export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = false) {
+  const { kind, placer, rest, high, highest, shade } = shape;
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1, isSpread: false };
   const random = seeded();
-  const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
+  const meanSize = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
   const look = lookOf(kind);
-  const { each, along, spray, isSpread } = cardsOf(look, mean, carrier.length, cards, most);
+  const { each, along, spray, isSpread } = cardsOf(look, meanSize, carrier.length, cards, most);
   const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
-  if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, mean));
+  if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, meanSize));
   const dead = look.has_needles ? deadWood(kind, rest, highest) : new Set();
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  const share = leafShare(look, along, isFlowering);
+  const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
   const uneven = look.has_needles ? 0.07 : 0.14;
   const candle = candleCorners(CANDLE * wholeLeaf(look));
-  // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
-  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
-  const lowest = look.is_potted ? -Infinity : rest[2] + browsed;
-  const soil = look.is_potted ? -Infinity : rest[2] + 0.6 * browsed;
+  const { lowest, soil } = lowestLeaves(look, rest[2], high[2]);
   const values = /** @type {number[]} */ ([]);
   const faces = /** @type {number[][]} */ ([]);
   for (const shoot of shoots) {
     if (dead.has(shoot.segment)) continue;
-    const p = STRIDE * hung[shoot.segment];
-    const slot = placer.slots[hung[shoot.segment]];
-    const back = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
+    // All of a clump or none of it: a few of its leaves would float in the air.
+    if (isSpread && shoot.at[2] < lowest) continue;
+    const row = placer.slots[hung[shoot.segment]];
+    const o = STRIDE * hung[shoot.segment];
+    const origin = rest.subarray(o, o + 3);
+    const back = [-rest[o + 4], -rest[o + 5], -rest[o + 6], rest[o + 7]]; // from the tree's frame to the segment's
     const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(shoot.frame, axis));
     const own = axes.map((axis) => turned(back, axis));
-    // All of a clump or none of it: a few of its leaves would hang in the air.
-    if (isSpread && shoot.at[2] < lowest) continue;
-    const centre = turned(back, shoot.at.map((a, c) => a - rest[p + c]));
+    const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
     for (let card = 0; card < shoot.share * each; card++) {
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? TRIANGLE : SQUARE);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
@@ -92,31 +91,36 @@ export function leafMesh({ kind, placer, rest, high, highest, shade }, branches,
       const light = turned(back, towards);
       const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
-      faces.push(facesFrom(values.length / PER_CORNER, corners.length));
+      faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
-        values.push(slot);
-        values.push(...inFrame(own, place, shoot.size, centre));
-        values.push(...inFrame(own, swing, shoot.size));
-        values.push(...inFrame(own, normal, 1));
-        values.push(...light, ...flutter, open, tint, share * u, v);
+        values.push(row, ...inFrame(own, place, shoot.size, centre), ...inFrame(own, swing, shoot.size));
+        values.push(...inFrame(own, normal, 1), ...light, ...flutter, open, tint, leaves * u, v);
       }
-      if (share === 1 || open < CANDLE_OPEN || card % PER_CANDLE) continue;
-      // It stands upright, whatever the shoot does.
-      faces.push(...[0, 4].map((more) => facesFrom(values.length / PER_CORNER + more, 4)));
-      const foot = end.map((each, c) => each - rest[p + c]);
+      if (leaves === 1 || open < CANDLE_OPEN || card % PER_CANDLE) continue;
+      // A candle stands upright, whatever the direction of its shoot.
+      for (const quad of [0, 4]) faces.push(facesFrom(values.length / PER_VERTEX + quad, 4));
+      const foot = end.map((each, c) => each - origin[c]);
       for (const { place, normal, u, v } of candle) {
-        values.push(slot, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
-        values.push(...turned(back, normal), ...light, ...flutter, open, 1, share + (1 - share) * v, u);
+        values.push(row, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
+        values.push(...turned(back, normal), ...light, ...flutter, open, 1, leaves + (1 - leaves) * v, u);
       }
     }
   }
   return { mesh: { values, indices: mixed(faces, random).flat() }, along, isSpread };
 }
 
+/** Heights below which there is no clump of leaves, and no leaf of one [m]; a tree in a pot has no such limit.
+ * @param {Look} look @param {number} foot height of the foot of the tree @param {number} top */
+function lowestLeaves(look, foot, top) {
+  if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
+  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (top - foot));
+  return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
+}
+
 /** Triangles of a card from its first vertex. @param {number} v @param {number} corners */
 const facesFrom = (v, corners) => (corners === 3 ? [v, v + 1, v + 2] : [v, v + 1, v + 2, v, v + 2, v + 3]);
 
-/** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes
+/** A scaled vector of a frame, added to a place. @param {number[][]} axes
  * @param {number[]} vector @param {number} scale @param {number[]} [from] */
 function inFrame([a, b, c], vector, scale, from = ORIGIN) {
   const x = scale * vector[0];
@@ -126,8 +130,7 @@ function inFrame([a, b, c], vector, scale, from = ORIGIN) {
     from[2] + x * a[2] + y * b[2] + z * c[2]];
 }
 
-/** A cluster of the description: its segment, its middle and frame at rest, its size [m], its flutter, and
- * the share of the cards of a cluster that it has. @param {Kind} kind @param {Float32Array} rest
+/** A cluster of the description as a shoot. @param {Kind} kind @param {Float32Array} rest
  * @param {number} i number of the cluster @returns {Shoot} */
 function leafyShoot(kind, rest, i) {
   const { leaf_segment: carrier, leaf_orientation: orientation, leaf_size: sizes, leaf_phase: phases,
@@ -139,8 +142,8 @@ function leafyShoot(kind, rest, i) {
   return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
-/** Segments of the stubs that a conifer's crown has left below it on the stem, which bear no needles: limbs that are
- * lower than the longest and much shorter, with what grows on them. @param {Kind} kind @param {Float32Array} rest
+/** Segments of a conifer's dead stubs, which bear no needles: limbs below the longest one and much shorter, with
+ * their branches. @param {Kind} kind @param {Float32Array} rest
  * @param {number} highest segment, up to which the stem goes */
 export function deadWood({ arrays, nBranches }, rest, highest) {
   const { branch_first: first, branch_parent: parents, segment_length: length } = arrays;
@@ -162,7 +165,7 @@ export function deadWood({ arrays, nBranches }, rest, highest) {
   return segments;
 }
 
-/** Shoots at the end of each branch, and along thin wood that has no cluster: none of it is bare.
+/** Shoots at the end of each branch and along thin wood without a cluster, so that none of it is bare.
  * @param {Kind} kind @param {Look} look @param {Float32Array} rest @param {Int32Array} branches that are drawn
  * @param {number} mean size of clusters [m] @returns {Shoot[]} */
 function bareShoots({ arrays }, look, rest, branches, mean) {
@@ -186,7 +189,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   };
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
-    // A dead stub stays bare: the few leaves of it would hang in the air.
+    // A short stub stays bare: its few leaves would float in the air.
     const reach = Array.from(length.subarray(first[branch], end + 1)).reduce((sum, each) => sum + each, 0);
     if (reach > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
@@ -198,8 +201,8 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   return shoots;
 }
 
-/** The cards of each cluster of a level: how many, of what size, the leaves along their picture, and whether
- * they are spread over the cluster. @param {Look} look @param {number} mean size of clusters [m]
+/** Cards of each cluster at a level: how many, their size, the leaves along their picture, and whether they are small
+ * ones spread over the cluster. @param {Look} look @param {number} mean size of clusters [m]
  * @param {number} clusters how many there are @param {number} cards of the level @param {number} most */
 function cardsOf(look, mean, clusters, cards, most) {
   const { rolls, length, width } = look.spray;
@@ -208,7 +211,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   const leaf = wholeLeaf(look);
   const alone = { rolls, width: pictureWidth(look, 1), length: Math.min(length, (1.4 * leaf) / mean) };
   if (each <= rolls.length) {
-    // Their area is that of as many of full size.
+    // As much area as all cards of full size have.
     const whole = clusters * Math.min(rolls.length, perCluster(most));
     const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (Math.min(clusters, cards) * each)));
     const along = leavesAlong(look, larger * length * mean);
@@ -240,8 +243,8 @@ function cardCorners({ length, width, rolls }, phase, card, outline) {
   }, outline);
 }
 
-/** The same of a small card, anywhere in the cluster: it points away from where the shoot leaves its twig, and
- * flutters about its own stalk.
+/** Corners of a small card anywhere in a cluster: it points away from the foot of the shoot, and flutters about its
+ * own stalk.
  * @param {Look} look @param {Spray} spray the card's own @param {() => number} random */
 function spreadCorners(look, { length, width }, random) {
   const whole = look.spray.length;
@@ -265,8 +268,8 @@ function spreadCorners(look, { length, width }, random) {
   }));
 }
 
-/** Corners of two crossed cards with a candle of flowers, which stands on 0 and goes down the picture from its
- * tip. @param {number} long [m] */
+/** Corners of two crossed cards with a candle of flowers, whose foot is at 0; the picture goes from its tip down.
+ * @param {number} long [m] */
 function candleCorners(long) {
   const wide = CANDLE_WIDE * long;
   return [[1, 0], [0, 1]].flatMap(([x, y]) => cornersOf((down, across) => ({
@@ -279,7 +282,7 @@ function cornersOf(at, outline = SQUARE) {
   return outline.map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
 }
 
-/** From where the shoot leaves its twig, and lower. @param {number[]} place @param {number} low */
+/** A place from the foot of the shoot, and lower. @param {number[]} place @param {number} low */
 const hanging = ([x, y, z], low) => [x - 0.5, y, z - low];
 
 /** @param {number[]} v */

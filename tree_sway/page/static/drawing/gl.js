@@ -1,16 +1,16 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The graphics unit: the programs of shaders.glsl, vertex arrays, textures. */
+/** Wrappers of WebGL: programs of shaders.glsl, vertex arrays, textures. */
 
 import { textOf } from "../files.js";
 import { PLACES } from "./gusts.js";
 import { seeded } from "./looks.js";
 
-/** Size of a picture up to which it has no rim, which would be much of it [px]. */
+/** Size of a picture below which it has no empty rim, which would be much of it [px]. */
 const SMALLEST_RIM = 32;
-/** Texels in a row of poses. */
+/** Texels per row of the texture of poses. */
 const TEXTURE_WIDTH = 1024;
-/** Directions that an impostor is baked from: round the tree, and elevations [rad]. */
+/** Directions from which an impostor is painted: number around the tree, and elevations [rad]. */
 export const ROUND = 8;
 export const ELEVATIONS = [0.08, 0.5];
 
@@ -27,13 +27,13 @@ const parts = (await textOf("drawing/shaders.glsl")).split("\n#part ").slice(1).
   return { name, base, text: lines.join("\n") };
 });
 
-/** A part after those that it builds on. @param {string | undefined} wanted @returns {string} */
+/** Source of a part, after the parts that it builds on. @param {string | undefined} wanted @returns {string} */
 function source(wanted) {
   const part = parts.find(({ name }) => name === wanted);
   return part ? source(part.base) + part.text : "";
 }
 
-/** A context of a canvas, and whether it draws on the processor. @param {HTMLCanvasElement} canvas */
+/** WebGL context of a canvas, and whether the processor draws. @param {HTMLCanvasElement} canvas */
 export function contextOf(canvas) {
   const probe = document.createElement("canvas").getContext("webgl2");
   const info = probe?.getExtension("WEBGL_debug_renderer_info");
@@ -45,7 +45,7 @@ export function contextOf(canvas) {
   return { gl, isSoftware };
 }
 
-/** @param {GL} gl @param {string} name among the parts @returns {Program} */
+/** Compile a program and find its inputs. @param {GL} gl @param {string} name of its part @returns {Program} */
 export function program(gl, name) {
   const made = gl.createProgram();
   for (const [kind, stage] of /** @type {const} */ ([[gl.VERTEX_SHADER, "vertex"], [gl.FRAGMENT_SHADER, "fragment"]])) {
@@ -84,14 +84,14 @@ export function program(gl, name) {
   return { program: made, fields, uniforms };
 }
 
-/** Set what a program has of values: numbers, vectors and matrices; of a texture, its unit and itself.
+/** Use a program and set those of the uniforms that it has; a texture is a pair of its unit and itself.
  * @param {GL} gl @param {Program} used @param {Record<string, any>} values */
 export function use(gl, used, values) {
   gl.useProgram(used.program);
   for (const [name, value] of Object.entries(values)) used.uniforms[name]?.(value);
 }
 
-/** A vertex array: vertex after vertex, each with the inputs of the program in its order. @param {GL} gl
+/** Make a vertex array; each vertex has the inputs of the program in the order of their declaration. @param {GL} gl
  * @param {Program} used @param {Record<"values" | "indices", ArrayLike<number>>} mesh @returns {Drawable} */
 export function drawable(gl, { fields }, { values, indices }) {
   const vao = gl.createVertexArray();
@@ -127,7 +127,7 @@ export function drawPart(gl, part, share = 1) {
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
-/** A texture, now bound. @param {GL} gl @param {number} less filter where it is small @param {number} more */
+/** Make and bind a texture. @param {GL} gl @param {number} less filter where it is smaller @param {number} more larger */
 export function textureOf(gl, less, more) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -137,9 +137,9 @@ export function textureOf(gl, less, more) {
   return texture;
 }
 
-/** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
- * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up
- * @param {boolean} [isTile] whether it goes on beyond its edges */
+/** Texture of a picture with premultiplied alpha, so that leaves have no rim of the background.
+ * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain read one point only
+ * @param {boolean} [isTile] whether it repeats beyond its edges */
 export function pictureTexture(gl, picture, isPlain, isTile = false) {
   gl.activeTexture(gl.TEXTURE2);
   const texture = isPlain ? textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST)
@@ -152,9 +152,9 @@ export function pictureTexture(gl, picture, isPlain, isTile = false) {
   return texture;
 }
 
-/** A picture of leaves whose points are drawn or left out by their alpha alone, a quarter or more: at each size
- * it has the chance by which `leaf.fragment` decides, and colours that are not times alpha. Cards may reach beyond
- * it: nothing is on its rim.
+/** Texture of leaves for drawing without a graphics unit: a point is drawn if its alpha is a quarter or more. The random
+ * threshold of `leaf.fragment` is applied here, once for each size, and colours are not premultiplied. The rim is empty,
+ * since cards reach beyond the picture.
  * @param {GL} gl @param {HTMLCanvasElement} picture, a square */
 export function chosenTexture(gl, picture) {
   const random = seeded(5);
@@ -186,7 +186,7 @@ export function chosenTexture(gl, picture) {
   return texture;
 }
 
-/** A square picture of four numbers a point at half its size. @param {Float32Array} points
+/** A square RGBA picture at half its size. @param {Float32Array} points
  * @param {number} size of it */
 function halved(points, size) {
   const half = size >> 1;
@@ -200,13 +200,13 @@ function halved(points, size) {
   return smaller;
 }
 
-/** Rows of a texture with the poses of segments, of two texels each. @param {number} segments */
+/** Rows of the texture of poses, two texels per segment. @param {number} segments */
 const rowsOf = (segments) => Math.ceil((2 * segments) / TEXTURE_WIDTH);
 
-/** Room for poses. @param {number} segments */
+/** Make an array for poses. @param {number} segments */
 export const texelsOf = (segments) => new Float32Array(4 * TEXTURE_WIDTH * rowsOf(segments));
 
-/** Put poses into a texture. @param {GL} gl @param {WebGLTexture} texture
+/** Upload poses. @param {GL} gl @param {WebGLTexture} texture
  * @param {Float32Array} texels @param {number} segments the first of them */
 export function uploadPoses(gl, texture, texels, segments) {
   gl.activeTexture(gl.TEXTURE0);
@@ -214,7 +214,7 @@ export function uploadPoses(gl, texture, texels, segments) {
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, TEXTURE_WIDTH, rowsOf(segments), 0, gl.RGBA, gl.FLOAT, texels);
 }
 
-/** Depths that lookups are compared with, as of a shadow; every lookup is nearer until they are drawn.
+/** Make a depth texture for a shadow map.
  * @param {GL} gl @param {number} size */
 export function depthTexture(gl, size) {
   const texture = textureOf(gl, gl.LINEAR, gl.LINEAR);
@@ -224,7 +224,7 @@ export function depthTexture(gl, size) {
   return texture;
 }
 
-/** What is drawn into a texture. @param {GL} gl @param {number} width
+/** Make a texture to draw into. @param {GL} gl @param {number} width
  * @param {number} height @param {number} format such as R8 @param {boolean} hasDepth */
 export function canvasTexture(gl, width, height, format, hasDepth = false) {
   const texture = textureOf(gl, gl.LINEAR, gl.LINEAR);

@@ -1,14 +1,14 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Grass about trees, that bends with the gusts that come over it: a triangle a blade. */
+/** Grass around the trees, which bends in the gusts that pass over it; a blade is a triangle. */
 
 import { discard, drawable, drawPart, use } from "./gl.js";
 import { Gusts } from "./gusts.js";
 import { seeded } from "./looks.js";
 
-/** Blades with and without a graphics unit. */
+/** Number of blades with and without a graphics unit. */
 const [BLADES, FEW_BLADES] = [26000, 2500];
-/** How far it grows over the size of the scene, and its height over that of the trees. */
+/** Radius over the size of the scene, and height over that of the trees. */
 const [REACH, TALL] = [2, 0.03];
 /** Lowest and highest grass [m]. */
 const [LOWEST, HIGHEST] = [0.12, 0.6];
@@ -30,14 +30,14 @@ export class Grass {
     this._part = drawable(gl, used, mesh);
   }
 
-  /** Draw it, by a program that has the values of the scene. @param {Meadow} meadow */
+  /** Draw it; the uniforms of the scene are set. @param {Meadow} meadow */
   draw({ middle: [x, y], extent, height, first, way, mean, time }) {
     const reach = REACH * extent;
     const tall = Math.min(HIGHEST, Math.max(LOWEST, TALL * height));
     this.gusts.spread(time, mean, 2 * reach);
     const field = [x, y, reach, tall];
     use(this.gl, this._program, { field, downwind: [...way, first, 2 * reach], time: time % 1000, "gusts[0]": this.gusts.speeds });
-    // About a small tree blades are large in the picture: fewer of them cover as much of it.
+    // Around a small tree blades are large in the picture, and fewer of them cover it.
     const share = Math.min(1, ((TALL * height) / tall) ** 2);
     drawPart(this.gl, this._part, share);
   }

@@ -1,10 +1,11 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Gusts over the ground: turbulence is carried by the mean wind (Taylor 1938), so that what is felt at the
- * trees was upwind before and is downwind later. What is to come is known of a simulated or recorded wind. */
+/** Gusts over the ground. The mean wind carries turbulence (Taylor 1938), so a gust at the trees was upwind before and is
+ * downwind later. For a simulated or recorded wind the gusts to come are known. */
 
-/** Places along the wind; how often and how long speeds are kept, and how long they stand for others [s]. */
+/** Number of places along the wind. */
 export const PLACES = 48;
+/** Interval and length of the record of speeds [s]. */
 const [EVERY, KEPT] = [0.1, 30];
 const SLOTS = KEPT / EVERY;
 
@@ -13,7 +14,7 @@ export class Gusts {
   speeds = new Float32Array(PLACES);
   _past = new Float32Array(SLOTS);
   _newest = 0;
-  /** Of the first of those to come [s]. */
+  /** Speeds to come: time of the first [s], spacing [s], speeds [m/s]. */
   _from = 0;
   _spacing = 1;
   _coming = /** @type {number[]} */ ([]);
@@ -26,13 +27,13 @@ export class Gusts {
     this._past[now % SLOTS] = speed;
   }
 
-  /** Take what is to come. @param {number} time of the first speed [s] @param {{every: number,
-   * speeds: number[]}} [ahead] spacing [s], and speeds [m/s]; none of a wind that is measured */
+  /** Take the speeds to come. @param {number} time of the first speed [s] @param {{every: number,
+   * speeds: number[]}} [ahead] spacing [s] and speeds [m/s]; absent for a measured wind */
   foresee(time, { every, speeds } = { every: 1, speeds: [] }) {
     [this._from, this._spacing, this._coming] = [time, every, speeds];
   }
 
-  /** Speed at the trees at a time; what nobody knows is the mean. @param {number} time [s]
+  /** Speed at the trees at a time; the mean where it is not known. @param {number} time [s]
    * @param {number} mean [m/s] */
   at(time, mean) {
     const slot = Math.floor(time / EVERY);

@@ -1,42 +1,45 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Far trees: each kind is painted once from all sides, then drawn as pictures that lean. */
+/** Pictures of far trees: each kind is painted once from several sides, then drawn as a picture that leans. */
 
 import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
 import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } from "./gl.js";
 
+/** Size of a picture [px]. */
 const TILE = 128;
-/** Numbers of each corner of a picture. */
-const PER_CORNER = 13;
-/** Alpha from which a point of the picture is drawn, of 255; and how much wider its upper end may be than its lower one. */
-const [SEEN, SLOPES] = [0.35 * 255, [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9]];
+/** Numbers per vertex. */
+const PER_VERTEX = 13;
+/** Alpha from which on a point of the picture is drawn, 0 to 255. */
+const SEEN = 0.35 * 255;
+/** Slopes of the sides of the trapezium about a tree that are tried. */
+const SLOPES = [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9];
 
 export class Impostor {
   /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
-   * how many trees @param {boolean} isPlain the nearest point alone is looked up, which costs less */
+   * number of trees @param {boolean} isPlain whether to read the nearest point only, which costs less */
   constructor(gl, used, shape, most, isPlain) {
     const { kind, low, high, rest, highest } = shape;
     const leaf = Math.max(0, ...(kind.arrays.leaf_size ?? []));
     const tall = high[2] + 0.7 * leaf;
     this.gl = gl;
-    /** Half its width, its middle height over the root, its height [m]. */
+    /** Half width, height of the middle over the root, height [m]. */
     this.box = { wide: leaf + Math.max(...[0, 1].map((c) => Math.max(-low[c], high[c]))), middle: 0.5 * tall, tall };
-    /** The highest node at rest, and how each coordinate moves it. */
+    /** Highest node at rest, and its displacement per unit of each coordinate. */
     this.tip = Array.from(rest.subarray(STRIDE * highest, STRIDE * highest + 3));
     this._moves = movesOf(shape, this.tip);
     this.count = 0;
     this._corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    this._values = new Float32Array(4 * PER_CORNER * most);
+    this._values = new Float32Array(4 * PER_VERTEX * most);
     const square = [0, 1, 2, 1, 3, 2];
     const indices = Array.from({ length: 6 * most }, (_, i) => 4 * Math.floor(i / 6) + square[i % 6]);
-    // Not as instances: without a graphics unit each of them costs as much as a whole picture.
+    // Not as instances, each of which costs as much as a picture without a graphics unit.
     this._part = drawable(gl, used, { values: this._values, indices });
   }
 
   /** Paint the kind from every side. @param {(camera: Float32Array, eye: number[]) => void} paint
-   * @param {number[]} color of its leaves, which the cut edges have */
+   * @param {number[]} color of its leaves, for the edges */
   bake(paint, color) {
     const { gl } = this;
     const { wide, middle, tall } = this.box;
@@ -64,18 +67,18 @@ export class Impostor {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Draw a tree, too. @param {number[]} place @param {number} row of its top @param {number} number
-   * @param {number[]} paint its colour, and the share of it */
+  /** Add a tree to draw. @param {number[]} place @param {number} row of its top @param {number} number
+   * @param {number[]} paint its colour and opacity */
   add(place, row, number, paint) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
     const corners = this._corners.flatMap((at) => [...at, ...place, row, tint, ...paint]);
-    this._values.set(corners, 4 * PER_CORNER * this.count++);
+    this._values.set(corners, 4 * PER_VERTEX * this.count++);
   }
 
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_CORNER * this.count);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_VERTEX * this.count);
   }
 
   /** Place the top of a far tree, linear in its coordinates. @param {ArrayLike<number>} coordinates
@@ -102,7 +105,7 @@ export class Impostor {
   }
 }
 
-/** The smallest trapezium in a picture that has the tree from every side: nothing beside it costs time.
+/** The smallest trapezium that contains the tree in all pictures, so that little of the empty rest is drawn.
  * @param {Uint8Array} points of the pictures of all sides @returns {number[][]} its corners, -1 to 1 */
 export function cornersAbout(points) {
   const widest = new Float32Array(TILE);
@@ -122,7 +125,7 @@ export function cornersAbout(points) {
   return [low, high].flatMap((y) => [-1, 1].map((side) => [side * (middle + slope * y), y]));
 }
 
-/** How the top moves per unit of coordinates, by three numbers. @param {Shape} shape @param {number[]} tip */
+/** Displacement of the top per unit of each coordinate, three numbers each. @param {Shape} shape @param {number[]} tip */
 function movesOf({ kind, placer, highest }, tip) {
   const row = STRIDE * placer.slots[highest];
   const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);

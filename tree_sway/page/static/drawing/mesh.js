@@ -1,24 +1,32 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** A kind at rest, and the mesh of its bark. Each vertex hangs on a segment, whose row is its first number,
- * and moves with it. A branch is one tube: a ring between two segments is of both. */
+/** The shape of a kind of tree at rest, and the mesh of its bark: a tube for each branch. Every vertex belongs to
+ * a segment, whose pose the vertex shader looks up and applies. */
 
 import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, turned } from "../quaternions.js";
 import { crownShade } from "./shade.js";
 
-/** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
-const [RING_SPACING, BARK_TILE] = [6, 0.6];
+/** Least spacing of the rings of a tube [points of the picture]. */
+const RING_SPACING = 6;
+/** Least radius of wood on the screen [px]. */
+const LEAST_RADIUS = 0.56;
+/** Height of the picture of bark on a stem [m]. */
+const BARK_TILE = 0.6;
+/** Numbers per vertex of bark. */
+const PER_VERTEX = 8;
+/** Sides of what is drawn as a flat ribbon: twigs. */
+const RIBBON = 2;
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
-/** Radius of wood that shows the bark of the stem, over the height of the tree. */
+/** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
 const BARKED = 0.005;
 
 /** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
 export const boxOf = (points) => [Math.min, Math.max].map((of) =>
   [0, 1, 2].map((c) => points.reduce((most, each) => of(most, each[c]), points[0][c])));
 
-/** A kind at rest: its poses, its box, its highest segment, how open its crown is. @param {Kind} kind */
+/** A kind at rest: poses, bounding box, highest segment, light in the crown. @param {Kind} kind */
 export function shapeOf(kind) {
   const rest = new Float32Array(STRIDE * kind.nSegments);
   const still = new Float32Array(kind.nCoordinates);
@@ -33,80 +41,99 @@ export function shapeOf(kind) {
   return { kind, placer, rest, low, high, highest, shade };
 }
 
-/** Branches by what they cover of a picture, parents before their children; what carries the highest
- * segment comes first. @param {Kind} kind @param {number} highest */
+/** Branches, those that cover most of a picture first, and none before its parent; the chain that carries the
+ * highest segment leads. @param {Kind} kind @param {number} highest segment */
 function branchOrder({ arrays, nBranches }, highest) {
   const { branch_first: first, branch_parent: parents } = arrays;
   const isTop = new Uint8Array(nBranches);
   for (let top = first.findIndex((from) => from > highest) - 1; top >= 0; top = parents[top]) isTop[top] = 1;
-  const weight = new Float64Array(nBranches);
+  const area = new Float64Array(nBranches);
   for (let b = 0; b < nBranches; b++) {
     const length = Array.from(arrays.segment_length.subarray(first[b], first[b + 1])).reduce((a, c) => a + c);
     const own = isTop[b] ? Infinity : length * arrays.segment_radius[2 * first[b]];
-    weight[b] = parents[b] < 0 ? Infinity : Math.min(own, weight[parents[b]]);
+    area[b] = parents[b] < 0 ? Infinity : Math.min(own, area[parents[b]]);
   }
-  return Int32Array.from(parents, (_, b) => b).sort((a, b) => weight[b] - weight[a] || a - b);
+  return Int32Array.from(parents, (_, b) => b).sort((a, b) => area[b] - area[a] || a - b);
 }
 
-/** Where a cluster of leaves is at rest. @param {Kind} kind @param {Float32Array} rest @param {number} i */
+/** Place of a cluster of leaves at rest [m]. @param {Kind} kind @param {Float32Array} rest @param {number} i */
 export function leafPlace({ arrays }, rest, i) {
   const o = STRIDE * arrays.leaf_segment[i];
   const offset = Array.from(arrays.leaf_offset.subarray(3 * i, 3 * i + 3));
   return turned(rest, offset, o + 4).map((each, c) => each + rest[o + c]);
 }
 
-/** The bark: rings of [along, across cosine, across sine, thickness], joined to tubes; of twigs two edges
- * of a ribbon, [along, across, 0, thickness - 2]; then [place on the bark (2), openness].
+/** Mesh of the bark of some branches. A vertex has the row of its segment, its place in the frame of that
+ * segment (along, and two across), its thickness over that of a stem, its place on the picture of bark (2) and
+ * how open the crown is there. In a ribbon its thickness is less by 2, by which the shader knows it.
  * @param {Shape} shape @param {Int32Array} branches @param {number} pixels height of the tree on the
  * screen @param {number} [fineness] of the picture, points per pixel @returns {Mesh} */
-export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pixels, fineness = 1) {
-  const { branch_first: first, branch_parent: parents, segment_radius: radius, segment_length: length } = kind.arrays;
-  const size = Math.max(high[2] - low[2], 0.1);
-  const pixel = size / pixels;
-  const point = pixel / fineness;
-  const tile = Math.min(BARK_TILE, 0.06 * size);
-  const values = /** @type {number[]} */ ([]);
-  const indices = /** @type {number[]} */ ([]);
-  for (const branch of branches) {
-    const [from, end] = [first[branch], first[branch + 1]];
-    const thick = radius[2 * from];
-    const sides = thick > 4.8 * point ? 12 : thick > 2 * point ? 6 : 2;
-    const corners = sides === 2 ? 2 : sides + 1;
-    const thickness = Math.min(1, thick / (BARKED * size));
-    const around = Math.max(1, Math.round((2 * Math.PI * thick) / tile));
-    let [turn, risen, drawn] = [0, 0, 0];
-    for (let s = from; s <= end; s++) {
-      const segment = Math.min(s, end - 1);
-      const isLast = s === end;
-      if (s > from) risen += length[s - 1];
-      if (s > from && !isLast) {
-        const twist = between(rest, STRIDE * (s - 1) + 4, rest, STRIDE * s + 4);
-        turn += 2 * Math.atan2(twist[0], twist[3]);
-        if (risen - drawn < RING_SPACING * point) continue;
-      }
-      drawn = risen;
-      // At a joint both segments agree on the thickness: no steps in the bark.
-      const joined = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : thick;
-      let r = Math.max(isLast ? radius[2 * segment + 1] : joined, 0.56 * pixel);
-      // The foot of the stem spreads into roots.
-      const foot = parents[branch] < 0 ? Math.exp(-risen / (1.3 * thick)) : 0;
-      r *= 1 + 0.7 * foot;
-      const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
-      const up = (risen * around) / (2 * Math.PI * thick);
-      for (let k = 0; k < corners; k++) {
-        const angle = (2 * Math.PI * k) / sides - turn;
-        const round = r * (1 + 0.2 * foot * Math.cos(ROOTS * angle));
-        const ring = sides === 2 ? [k ? -r : r, 0, thickness - 2]
-          : [round * Math.cos(angle), round * Math.sin(angle), thickness];
-        values.push(placer.slots[segment], isLast ? length[segment] : 0, ...ring, (around * k) / sides, up, open);
-      }
-      if (s === from) continue;
-      const ring = values.length / 8 - corners;
-      for (let k = 0; k < corners - 1; k++) {
-        const a = ring - corners + k;
-        indices.push(a, a + 1, ring + k, a + 1, ring + k + 1, ring + k);
-      }
+export function barkMesh(shape, branches, pixels, fineness = 1) {
+  const height = Math.max(shape.high[2] - shape.low[2], 0.1);
+  const pixel = height / pixels;
+  const mesh = { values: [], indices: [] };
+  for (const branch of branches) addTube(mesh, shape, branch, height, pixel, pixel / fineness);
+  return mesh;
+}
+
+/** Add a branch: rings of vertices, each joined to the one before.
+ * @param {Mesh} mesh @param {Shape} shape @param {number} branch @param {number} height of the tree [m]
+ * @param {number} pixel size of a pixel at the tree [m] @param {number} point size of a point drawn there [m] */
+function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade }, branch, height, pixel, point) {
+  const { branch_first: first, branch_parent: parents, segment_radius: radius, segment_length: length } = arrays;
+  const from = first[branch];
+  const end = first[branch + 1];
+  const baseRadius = radius[2 * from];
+  const isStem = parents[branch] < 0;
+  const sides = sidesOf(baseRadius / point);
+  const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
+  const thickness = Math.min(1, baseRadius / (BARKED * height));
+  const tile = Math.min(BARK_TILE, 0.06 * height);
+  const tilesAround = Math.max(1, Math.round((2 * Math.PI * baseRadius) / tile));
+  let twist = 0; // of the segment about the branch, which the rings undo
+  let climbed = 0; // length from the base of the branch
+  let ringAt = 0; // the same of the last ring
+  for (let s = from; s <= end; s++) {
+    const isTip = s === end;
+    const segment = Math.min(s, end - 1);
+    if (s > from) climbed += length[s - 1];
+    if (s > from && !isTip) {
+      const bend = between(rest, STRIDE * (s - 1) + 4, rest, STRIDE * s + 4);
+      twist += 2 * Math.atan2(bend[0], bend[3]);
+      if (climbed - ringAt < RING_SPACING * point) continue;
     }
+    ringAt = climbed;
+    // At a joint both segments agree on the radius: no steps in the bark.
+    const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
+    const flare = isStem ? Math.exp(-climbed / (1.3 * baseRadius)) : 0;
+    const ringRadius = Math.max(isTip ? radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.7 * flare);
+    const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
+    const tilesUp = (climbed * tilesAround) / (2 * Math.PI * baseRadius);
+    for (let k = 0; k < corners; k++) {
+      const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
+        : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];
+      values.push(placer.slots[segment], isTip ? length[segment] : 0, ...corner, (tilesAround * k) / sides, tilesUp, open);
+    }
+    if (s > from) joinRings(indices, values.length / PER_VERTEX - corners, corners);
   }
-  return { values, indices };
+}
+
+/** Corners of a ring about a branch. @param {number} points radius of the branch on the picture */
+const sidesOf = (points) => (points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
+
+/** Place of a corner across the branch; at the foot of a stem rings bulge into roots.
+ * @param {number} radius [m] @param {number} flare 1 at the foot, 0 above it @param {number} angle */
+function tubeCorner(radius, flare, angle) {
+  const bulged = radius * (1 + 0.2 * flare * Math.cos(ROOTS * angle));
+  return [bulged * Math.cos(angle), bulged * Math.sin(angle)];
+}
+
+/** Two triangles between each pair of corners of a ring and of the one before.
+ * @param {number[]} indices @param {number} ring its first vertex @param {number} corners of each ring */
+function joinRings(indices, ring, corners) {
+  for (let k = 0; k < corners - 1; k++) {
+    const below = ring - corners + k;
+    const above = ring + k;
+    indices.push(below, below + 1, above, below + 1, above + 1, above);
+  }
 }

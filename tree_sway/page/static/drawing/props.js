@@ -1,13 +1,13 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What is beside a tree: its pot, a person of 1.75 m for scale, the arrow of the wind. */
+/** Things beside a tree: its pot, a person of 1.75 m for scale, the arrow of the wind. */
 
 import { textOf } from "../files.js";
 
 /** @type {{colours: Record<string, number[]>, arrow: Mesh, pot: Turned[], person: Turned[]}} */
 export const { arrow, colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
 
-/** A pot of height 1 below the root, or somebody 1.75 m tall. @param {"pot" | "person"} name */
+/** Mesh of a pot of height 1 below the root, or of a person 1.75 m tall. @param {"pot" | "person"} name */
 export function propMesh(name) {
   /** @type {Mesh} */
   const { values, indices } = { values: [], indices: [] };
@@ -30,5 +30,5 @@ export function propMesh(name) {
   return { values, indices };
 }
 
-/** Length of the wind's arrow: never more than a quarter of the tree. @param {number} height @param {number} speed */
+/** Length of the wind's arrow, at most a quarter of the tree. @param {number} height @param {number} speed */
 export const arrowLength = (height, speed) => 0.24 * height * Math.tanh(speed / 7);

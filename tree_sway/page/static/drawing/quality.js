@@ -1,15 +1,16 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What is left out without a graphics unit: first pixels, then frames, then grass, then leaves; none grows
- * instead. */
+/** Quality of the drawing without a graphics unit. As the frame rate falls, first pixels are saved, then grass, then
+ * leaves. */
 
-/** Frames per second from which more pixels are tried, those that they must leave, those that fewer are drawn for,
- * and those that leaves are left out for. */
+/** Frames per second: above the first more pixels are tried, and kept if the second remains; below the third fewer are
+ * drawn, below the last grass and leaves are left out. */
 const [WANTED, KEPT, FEW, LEAST] = [58.5, 57, 50, 24];
-/** Until more pixels are tried, and at most after they cost frames [ms]. */
+/** Wait before more pixels are tried, doubled with each failure up to LONGEST [ms]. */
 const [PATIENCE, LONGEST] = [8000, 120000];
-/** Pixels per pixel of the page each way, and the share of leaves, that are drawn at least. */
+/** Fewest pixels per pixel of the page, each way. */
 export const COARSEST = 0.5;
+/** Smallest share of the leaves. */
 const THINNEST = 0.4;
 
 export class Quality {
@@ -62,7 +63,7 @@ export class Quality {
     }
   }
 
-  /** What is left out, for people: shares of pixels and leaves in percent; null if nothing. */
+  /** Percentage of pixels and leaves that are drawn; null if all are. */
   get leftOut() {
     if (this.fineness > 0.99 && this.density > 0.99) return null;
     return { pixels: Math.round(100 * this.fineness ** 2), leaves: Math.round(100 * this.density) };

@@ -1,6 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
+/** Draws a described scene: places its trees, then draws bark, leaves, pot and person, ground and sky. A kind of tree
+ * has several levels of detail (`Detail`); far trees are pictures (`Impostor`). */
 
 import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
 import { between, distance } from "../quaternions.js";
@@ -20,43 +21,44 @@ import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
 import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 
-/** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
+/** Without a graphics unit: frames from one shadow to the next, and the share of the leaves that cast it. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
+/** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
-/** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
- * has all of its cards and of one that is a picture [px]. */
+/** Largest number of segments and of cards of leaves per tree, and of both in all trees; height on the screen from
+ * which on a tree has all of its cards, and below which it is a picture [px]. */
 const MOST = { segments: 40000, cards: 64000, all: 200000, near: 700, far: 90 };
-/** What a card costs over what a segment does: that one is placed for each frame, which a graphics unit does for a card. */
+/** Cost of a card over that of a segment, which the processor places for each frame. */
 const CARD = 0.35;
-/** Of a crowd, whose kinds take memory. */
+/** The same for a crowd, whose many kinds take memory. */
 const MOST_MANY = { ...MOST, cards: 16000 };
-/** Without a graphics unit: of a few trees, and of a crowd. */
+/** The same without a graphics unit, for a few trees and for a crowd. */
 const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
 const MOST_CROWD = { ...MOST_SLOW, segments: 5000, cards: 1800, all: 8000, far: 220 };
-/** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
+/** Frames from one choice of levels to the next while the camera moves. */
 const CHOOSE_EVERY = 6;
-/** A branch is near that is within this angle of where one points [rad]. */
+/** Largest angle between a branch and the pointer that picks it [rad]. */
 const REACH = 0.017;
-/** Height of a pot over that of its tree, and that of a tree with a person beside it [m]. */
+/** Height of a pot over that of its tree; height of a tree from which on a person stands beside it [m]. */
 const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
-/** The arrow follows the mean of the wind over this time [s]. */
+/** Time over which the arrow averages the wind [s]. */
 const CALM = 4;
-/** Height that the picture of a far tree is painted for [px]. */
+/** Height for which the picture of a far tree is painted [px]. */
 const PAINTED = 260;
-/** Light that leathery leaves of evergreens throw back like a mirror; and a card of many, which face all ways. */
+/** Specular reflection of a leathery evergreen leaf, and of a card of many leaves, which face all ways. */
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
-/** Rows that no branch has. */
+/** First and last row of no branch. */
 const NONE = [-2, -2];
-/** When a horse chestnut flowers, in months from 1. */
+/** Months in which a horse chestnut flowers, from 1. */
 const FLOWERING = [5.2, 6.2];
-/** Of a tree in its own colours. */
+/** Paint of a tree in its own colours. */
 const UNPAINTED = [0, 0, 0, 0];
 
 export class Scene {
-  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] nothing is left out, however slow that is */
+  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] leave nothing out, even if it is slow */
   constructor(canvas, isFine = false) {
     const { gl, isSoftware } = contextOf(canvas);
-    /** Without a graphics unit: fewer points, fewer shadows. */
+    /** Whether to save points and shadows, without a graphics unit. */
     this.isSlow = isSoftware && !isFine;
     this.gl = gl;
     this.canvas = canvas;
@@ -69,11 +71,11 @@ export class Scene {
     this.hasPerson = true;
     /** Whether an arrow shows the wind. */
     this.hasArrow = true;
-    /** Whether leaves flutter; not where people ask for less motion. */
+    /** Whether leaves flutter; off if the browser asks for reduced motion. */
     this.flutters = true;
-    /** Colour of each tree and its share, by its number. @type {number[][]} */
+    /** Colour of each tree and its opacity, by the number of the tree. @type {number[][]} */
     this._paints = [];
-    /** Branch of the watched tree that is shown in another colour; none if -1. */
+    /** Branch of the watched tree that is highlighted; none if -1. */
     this.picked = -1;
     /** @type {Vector} */
     this.wind = [0, 0, 0];
@@ -90,12 +92,12 @@ export class Scene {
       Object.fromEntries(names.map((name) => [name, program(gl, this.isSlow && name === "leaf" ? "plainleaf" : name)])));
     this.grass = new Grass(gl, this._programs.grass, this.isSlow);
     this._backdrop = new Backdrop(gl, this.isSlow);
-    /** Of leaves, painted when they are first used. */
+    /** Textures of leaves and bark, painted when they are first used. */
     this._pictures = /** @type {Map<string, WebGLTexture>} */ (new Map());
     this._texture = textureOf(gl, gl.NEAREST, gl.NEAREST);
-    /** Where the shaders look poses up. */
+    /** Texture from which the shaders read poses. */
     this._poses = this._texture;
-    /** Poses of the segments that are drawn, tree after tree. */
+    /** Poses of the drawn segments, tree after tree. */
     this._texels = new Float32Array(0);
     this._coordinates = /** @type {Float32Array} */ (new Float32Array(0));
     const square = { values: [-1, -1, 1, -1, 1, 1, -1, 1], indices: [0, 1, 2, 0, 2, 3] };
@@ -104,16 +106,16 @@ export class Scene {
     this._parts = { arrow: drawable(gl, solid, arrow), pot, person, shadow: drawable(gl, shadow, square) };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
-    /** How near to the sun what casts the shadow is: trees shade themselves by it. */
+    /** Depths as seen from the sun, by which trees shade themselves. */
     this._sunMap = depthTexture(gl, size);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this._sunMap, 0);
-    /** Of no shadow, while the other is drawn. */
+    /** The same without any shadow, used while the real one is drawn. */
     this._noMap = depthTexture(gl, 1);
     const bare = canvasTexture(gl, 1, 1, gl.R8);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this._noMap, 0);
     gl.clear(gl.DEPTH_BUFFER_BIT);
     bare.release();
-    /** Where it falls: middle x, y, and half its size [m]. */
+    /** Ground that the shadow covers: middle x, y and half its size [m]. */
     this._shadowArea = [0, 0, 1];
     /** Height of the ground [m], and of the highest tree. */
     this.ground = 0;
@@ -129,14 +131,14 @@ export class Scene {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
   }
 
-  /** @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves whether they are drawn, and whether those
-   * that fall have the colours of autumn; far trees and pictures of leaves are painted again */
+  /** Show or hide leaves, and change their season; all pictures are painted again.
+   * @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves */
   dress(leaves) {
     Object.assign(this, leaves);
     if (this.description) this.describe(this.description);
   }
 
-  /** Put flowers on what flowers in a month. @param {number} month from 1, with its part that has passed */
+  /** Show the flowers of a month. @param {number} month from 1, with its fraction */
   flower(month) {
     const isFlowering = month >= FLOWERING[0] && month < FLOWERING[1];
     if (isFlowering === this.isFlowering) return;
@@ -144,7 +146,7 @@ export class Scene {
     this.dress({});
   }
 
-  /** Take another tree. @param {Description} description */
+  /** Take another description. @param {Description} description */
   describe(description) {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
@@ -188,26 +190,26 @@ export class Scene {
     this._place();
   }
 
-  /** Paint whole trees. @param {number[][]} paints colour of each tree, and its share; none leaves all as they are */
+  /** Paint whole trees. @param {number[][]} paints colour and opacity of each tree; empty for their own colours */
   paint(paints) {
     this._paints = paints;
     this._chosenFor = "";
     this._frame = 0;
   }
 
-  /** The tree that is followed, the highest: its number, where it is, and its kind, once there is one. */
+  /** The tree that is followed: its number, place and kind; empty before the first description. */
   get watched() {
     const { trees, watched: number } = this.detail;
     return { ...trees[number], ...this._kinds[trees[number]?.kind], number };
   }
 
-  /** Where the root-side node of a segment of the watched tree is at rest. @param {number} segment */
+  /** Place of the root-side end of a segment of the watched tree at rest. @param {number} segment */
   restPosition(segment = this.followed) {
     const { rest, place } = this.watched;
     return placed(place, rest.subarray(STRIDE * segment));
   }
 
-  /** Where it is now, if it is drawn. @param {number} segment */
+  /** The same now, if it is drawn. @param {number} segment */
   position(segment = this.followed) {
     const from = STRIDE * this._row(segment);
     return Array.from(this._texels.subarray(from, from + 3));
@@ -218,13 +220,13 @@ export class Scene {
     return this.detail.start[this.detail.watched] + this.watched.placer.slots[segment];
   }
 
-  /** Where a pointer is in the picture, 0 to 1 from the left and from the top. @param {MouseEvent} event */
+  /** Place of a pointer in the picture, 0 to 1 from the left and from the top. @param {MouseEvent} event */
   placeOf({ clientX, clientY }) {
     return [clientX / this.canvas.clientWidth, clientY / this.canvas.clientHeight];
   }
 
-  /** The branch of the watched tree nearest to a ray, its segment and how far away that is [m]; -1 if none
-   * is near. @param {number[]} from @param {number[]} along @param {number} [most] angle [rad] */
+  /** Branch of the watched tree nearest to a ray, its segment and their distance from the eye [m]; -1 if none is
+   * near. @param {number[]} from @param {number[]} along @param {number} [most] angle [rad] */
   nearest(from, along, most = REACH) {
     let [best, found] = [Math.cos(most) * Math.hypot(...along), { branch: -1, segment: -1, far: 0 }];
     const { placer: { order }, number, kind: { arrays: { branch_first: first } } } = this.watched;
@@ -244,15 +246,15 @@ export class Scene {
     return this.nearest(this.camera.eye, this.camera.ray(this.placeOf(event)));
   }
 
-  /** The last segment of the branch that is picked, if it is drawn, or the highest. */
+  /** The last segment of the picked branch if it is drawn, else the highest segment. */
   get followed() {
     const { kind, highest, number, placer: { slots } } = this.watched;
     const last = kind.arrays.branch_first[this.picked + 1] - 1;
     return this.picked >= 0 && slots[last] < this.detail.levelOf(number).segments ? last : highest;
   }
 
-  /** At the base of the branch that is picked, or of the stem: further strain of the outer wood, and
-   * further bending moment [N m], by the bend between the first two segments. */
+  /** Strain of the outer wood and bending moment [N m] at the base of the picked branch or the stem, beyond those at
+   * rest, from the bend between its first two segments. */
   load() {
     const { kind, rest, place } = this.watched;
     const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
@@ -269,7 +271,7 @@ export class Scene {
     return { strain, moment: 0.25 * Math.PI * (kind.modulus ?? 0) * (place[4] * thick) ** 3 * strain };
   }
 
-  /** Choose what of each tree is drawn, where the camera or the picture is another than before. */
+  /** Choose the level of each tree if the camera or the size of the picture has changed. */
   _chooseDetail() {
     const { detail, camera, canvas: { clientHeight: high } } = this;
     const wanted = [...camera.update(), high].join();
@@ -280,7 +282,7 @@ export class Scene {
       starts.length = numbers.length = 0;
       if (impostor) impostor.count = 0;
     }
-    // Near trees first: what they hide costs less then.
+    // Near trees first, since what they hide then costs less.
     for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
       const { kind, place } = detail.trees[t];
@@ -293,7 +295,7 @@ export class Scene {
     if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
   }
 
-  /** A level of a kind, when it is first used. @param {number} number of the kind @param {number} level
+  /** Make a level of a kind. @param {number} number of the kind @param {number} level
    * @returns {DrawnLevel} */
   _drawnLevel(number, level) {
     const { gl, _programs: programs, _pictures: pictures, detail: { levels: { [number]: levels } } } = this;
@@ -326,7 +328,7 @@ export class Scene {
     };
   }
 
-  /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
+  /** Paint the picture that stands for far trees of a kind: a tree at rest in diffuse light.
    * @param {number} number of the kind */
   _bake(number) {
     const { gl, detail: { levels: { [number]: levels }, trees } } = this;
@@ -371,9 +373,8 @@ export class Scene {
     if (isNarrow !== camera.aspect < 1) camera.home();
   }
 
-  /** Draw. @param {Float32Array | null} coordinates the state; the poses stay as they are if null
-   * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then
-   * @param {View[]} [views] of a headset, in place of the picture's own */
+  /** Draw a state. @param {Float32Array | null} coordinates the last ones again if null @param {number} time [s]
+   * @param {boolean} isPaused whether the picture stands still @param {View[]} [views] of a headset */
   draw(coordinates, time, isPaused, views) {
     const { gl, camera: own, canvas, detail: { segments } } = this;
     if (views) this.camera = /** @type {Camera} */ (views[0].camera);
@@ -385,11 +386,11 @@ export class Scene {
     const passed = Math.min(0.1, Math.abs(time - this._time));
     this._time = time;
     for (const c of [0, 1]) this._calmWind[c] += (passed / CALM) * (this.wind[c] - this._calmWind[c]);
-    // The eye takes a shadow that is some frames old for one that is not.
+    // A shadow that is some frames old is not noticed.
     const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     const isShadowNew = this._frame % every === 0;
     if (isShadowNew) this._castShadow();
-    // Whether so many trees are drawn with leaves that some may be left out; far ones are pictures.
+    // In a crowd most trees are pictures, whose leaves cannot be thinned.
     const hasCards = !this.isCrowd || this.detail.level.filter((level) => level > 0).length > 1;
     const mayThin = this.hasLeaves && this.leavesShown && hasCards;
     this.grass.gusts.add(time, Math.hypot(...this.wind));
@@ -400,8 +401,8 @@ export class Scene {
     this.camera = own;
   }
 
-  /** Draw what one eye sees. @param {View} view @param {boolean} isOwn whether it may be still
-   * @param {boolean} isShadowNew whether the shadow is another than before */
+  /** Draw one view. @param {View} view @param {boolean} isOwn whether it is the canvas, whose backdrop is kept
+   * @param {boolean} isShadowNew whether the shadow has changed */
   _paint({ camera, target, area: [x, y, width, height] }, isOwn, isShadowNew) {
     const { gl } = this;
     this.camera = /** @type {Camera} */ (camera);
@@ -419,10 +420,10 @@ export class Scene {
     this._drawGrass();
   }
 
+  /** Draw the shadow on the ground and the depths as seen from the sun, with room to sway. */
   _castShadow() {
     const { gl, _shadow: { target, width, height } } = this;
     const { day: { light }, _low: low, _high: high } = this;
-    // Where it falls, with room to sway.
     const room = 0.06 * this._extent;
     const ends = [0, 1].map((c) => {
       const lean = (-light[c] / light[2]) * (high[2] - this.ground);
@@ -439,7 +440,7 @@ export class Scene {
     this._drawSolids(true);
   }
 
-  /** Grass on the ground of what stands in no pot. */
+  /** Draw grass, unless the tree stands in a pot. */
   _drawGrass() {
     const { height, _low: low, _high: high, _time: time, _programs: { grass } } = this;
     if (this._potSize || !this.quality.hasGrass) return;
@@ -451,7 +452,8 @@ export class Scene {
     this.grass.draw({ middle, extent: this._extent, height, first: Math.min(...alongs), way, mean, time });
   }
 
-  /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] beside the usual */
+  /** Set the uniforms that programs share. @param {Program} used @param {boolean} isShadow whether it casts the shadow
+   * @param {Record<string, any>} [own] further uniforms */
   _begin(used, isShadow, own = {}) {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
     const lit = { ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow) };
@@ -476,12 +478,12 @@ export class Scene {
     for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9);
   }
 
-  /** The levels that are drawn of all kinds. */
+  /** The levels of all kinds made so far. */
   get _levels() {
     return this._kinds.flatMap(({ drawn }) => drawn.flat());
   }
 
-  /** Bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow
+  /** Draw bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow
    * @param {Record<string, any>} own values of their programs @param {number} density share of the leaves */
   _drawMeshes(levels, isShadow, own, density) {
     const { gl, _programs: { bark, leaf } } = this;
@@ -494,7 +496,7 @@ export class Scene {
     for (const level of levels) this._drawEach(level.leaf, leaf, level, level.foliage, density);
   }
 
-  /** A part of each tree of a level. @param {Drawable | undefined} part @param {Program} used
+  /** Draw a mesh for each tree of a level. @param {Drawable | undefined} part @param {Program} used
    * @param {DrawnLevel} level @param {Record<string, any>} values @param {number} share of its triangles */
   _drawEach(part, used, { starts, numbers }, values = {}, share) {
     if (!part) return;
@@ -506,7 +508,7 @@ export class Scene {
     });
   }
 
-  /** The pot, somebody beside the tree, and the arrow of the wind. @param {boolean} isShadow */
+  /** Draw the pot, the person beside the tree, and the arrow of the wind. @param {boolean} isShadow */
   _drawSolids(isShadow) {
     const { gl, height, ground, _low: low, _high: high, _parts: parts, _programs: { solid } } = this;
     const [x, y, z] = this.detail.trees[0]?.place ?? AT_ORIGIN;
@@ -518,7 +520,7 @@ export class Scene {
     };
     if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize], [1, 0]);
     if (this.hasPerson && height > WITH_PERSON && !this._potSize) {
-      // Beside it, as the camera first sees it.
+      // To the side, as the camera first looks.
       const away = 0.5 * Math.max(high[0] - low[0], high[1] - low[1]) + 0.5;
       const at = this.isCrowd ? [high[0] + 3, low[1] - 3] : [x + 0.8 * away, y + 0.66 * away];
       draw(parts.person, [...at, ground, 1], [Math.cos(-0.9), Math.sin(-0.9)]);

@@ -1,20 +1,22 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Shade within a crown, found once at rest: how open each place is to the sky, and towards where. The
- * light weakens by the leaf area on its way, exp(-A / 2) for leaves in every direction. */
+/** Shade within a crown, computed once at rest: how open each place is to the sky, and in which direction. Light is
+ * attenuated by the leaf area on its path (Beer's law). */
 
+/** Cells along each side of the crown's box. */
 const CELLS = 14;
-/** Of the light that a leaf stops; it lets some through. */
+/** Attenuation per leaf area: 1/2 for opaque leaves in all directions, less as they let some light through. */
 const EXTINCTION = 0.3;
-/** Directions of light: most of the sky is above; what comes from below is light off the ground. */
+/** Directions of light: mostly from the sky, some from the ground. */
 const WAYS = Array.from({ length: 16 }, (_, i) => {
   const z = 1 - (1.45 * (i + 0.5)) / 16;
   const flat = Math.sqrt(1 - z * z);
   return [flat * Math.cos(2.399963 * i), flat * Math.sin(2.399963 * i), z];
 });
 
-/** @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2] @param {number[]} low
- * corner of the box of the tree @param {number[]} high @returns {(place: ArrayLike<number>) => Shade} */
+/** Make a function from places to their shade. @param {number[][]} places of leaves [m]
+ * @param {number[]} areas of theirs [m^2] @param {number[]} low corner of the box of the tree @param {number[]} high
+ * @returns {(place: ArrayLike<number>) => Shade} */
 export function crownShade(places, areas, low, high) {
   if (!places.length) return () => ({ open: 1, towards: [0, 0, 0] });
   const step = low.map((l, c) => (Math.max(high[c] - l, 0.1) * 1.02) / CELLS);

@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-// Programs of the graphics unit, in parts: `#part NAME BASE` begins one, which has its base before it.
-// Poses lie in a texture, two texels per segment.
+// Shaders in parts: `#part NAME BASE` begins one, which `gl.js` compiles after its base. Poses come from a
+// texture, two texels per segment.
 
 #part seen
 precision highp float;
@@ -12,11 +12,11 @@ uniform vec3 light; // towards the sun
 uniform vec3 sun; // colours
 uniform vec3 sky;
 uniform vec3 eye;
-uniform float haze; // one over how far one sees [1/m]
+uniform float haze; // inverse of the visual range [1/m]
 uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
-uniform float shadowTop; // one over the height of what casts it [1/m]
+uniform float shadowTop; // inverse of the height of the trees [1/m]
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
-// Where the shadow of a point falls in its picture, and how near to the sun the point is.
+// Place of a point's shadow in the shadow map, and the depth of the point from the sun.
 vec3 fallen(vec3 p) {
   vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
   return vec3((flat_ - shadowArea.xy) * shadowArea.z, 1.0 - 2.0 * clamp((p.z - ground) * shadowTop, 0.0, 1.0));
@@ -29,8 +29,7 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-// Share of the sun that reaches a point past what is some way above it, softly; round the point it is asked
-// for at four places, turned by an angle.
+// Share of sunlight that reaches a point, filtered over four places around it, which are turned by an angle.
 float sunlight(vec3 p, float soft, float turn) {
   vec3 at = 0.5 + 0.5 * fallen(p);
   float low = at.z - 0.35 * shadowTop * sqrt(1.0 / shadowTop);
@@ -42,7 +41,7 @@ float sunlight(vec3 p, float soft, float turn) {
 float sunlight(vec3 p) { return sunlight(p, 0.0038, 0.38); }
 
 #part hung sunlit
-// What hangs on a segment: its pose, and the scale of its tree.
+// Vertices that belong to a segment: its pose, and the scale of its tree.
 uniform highp sampler2D poses;
 uniform float start; // row of the first segment of its tree
 in float segment; // of its tree
@@ -56,7 +55,7 @@ float hash(vec2 p) {
   uint n = (q.x ^ q.y) * 1597334673u;
   return float(n >> 8) / 16777216.0;
 }
-// Smooth, 0 to 1; it repeats after a number of cells each way.
+// Smooth noise, 0 to 1; it repeats after a number of cells each way.
 float tiled(vec2 p, vec2 cells) {
   vec2 i = mod(floor(p), cells);
   vec2 j = mod(i + 1.0, cells);
@@ -65,14 +64,14 @@ float tiled(vec2 p, vec2 cells) {
   return mix(mix(hash(i), hash(vec2(j.x, i.y)), f.x), mix(hash(vec2(i.x, j.y)), hash(j), f.x), f.y);
 }
 float noise(vec2 p) { return tiled(p, vec2(65536.0)); }
-// Noise of a cell size [m], that vanishes where a pixel is larger.
+// Noise of a cell size [m], which fades out where a pixel is larger.
 float grain(vec2 p, float size, float pixel) {
   float shown = 1.0 - smoothstep(0.25, 0.8, pixel / size);
   return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
 }
 
 #part lit noise
-// What is lit; the shadow is its outline.
+// Lit surfaces; for the shadow only their outline is drawn.
 uniform float isShadow;
 uniform vec3 horizon;
 out vec4 color;
@@ -80,13 +79,13 @@ out vec4 color;
 #part bark.vertex hung
 in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
 in vec3 skin; // place on the bark, how open to the sky
-uniform vec2 picked; // rows of the first and the last segment of a branch to show
+uniform vec2 picked; // rows of the first and last segment of the highlighted branch
 out vec3 normal;
 out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
 out float sunny;
-out float high; // over the ground, 1 at the top of the scene
+out float high; // height over the ground, 1 at the top of the scene
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -96,7 +95,7 @@ void main() {
   p += root.w * ring.x * axis;
   float thickness = ring.w;
   if (ring.w < -0.5) {
-    // What is too thin to be seen round faces whoever looks, the sun for the shadow.
+    // A ribbon faces the eye, or the sun for the shadow.
     vec3 back = normalize(shadowArea.w < 0.5 ? eye - p : light);
     vec3 across = normalize(cross(back, axis) + vec3(0.0, 0.0, 1e-6));
     p += root.w * ring.y * across;
@@ -127,11 +126,11 @@ uniform vec3 light;
 uniform vec3 sun;
 uniform vec3 sky;
 uniform vec3 barkColor;
-uniform vec3 footColor; // of the bark of the stem's foot
-uniform float footHeight; // that it reaches, 1 at the top of the scene
+uniform vec3 footColor; // colour of the bark at the foot of the stem
+uniform float footHeight; // its height, 1 at the top of the scene
 uniform vec3 twigColor;
-uniform vec4 paint; // colour of the whole tree, and its share
-uniform sampler2D relief; // shares of the colour of the bark, twice as high as wide
+uniform vec4 paint; // colour of the whole tree, and its opacity
+uniform sampler2D relief; // factor of the colour of the bark, twice as high as wide
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
@@ -156,9 +155,9 @@ void main() {
 
 #part leaf.vertex hung
 in vec3 place;
-in vec3 swing; // how it moves per unit of its flutter
+in vec3 swing; // displacement per unit of its flutter
 in vec3 facing;
-in vec3 towards; // where most light comes from, in the shade of the crown
+in vec3 towards; // direction of most of the light within the crown
 in vec4 flutter; // frequency, phase, openness, tint
 in vec2 corner;
 uniform float time;
@@ -166,13 +165,13 @@ uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
 uniform vec3 unturned; // colour of a leaf before autumn over that of the picture
-uniform float gloss; // light thrown back like a mirror, 0 of a dull leaf
+uniform float gloss; // specular reflection, 0 for a dull leaf
 uniform vec3 horizon;
-uniform vec4 paint; // colour of the whole tree, and its share
+uniform vec4 paint; // colour of the whole tree, and its opacity
 out vec2 at;
-out vec3 lit; // what the colour of the leaf is multiplied by
-flat out vec3 veil; // what is added: haze, paint, light that is thrown back like a mirror
-flat out float edge; // share of the picture that is seen; a card that is seen along itself would be a blade
+out vec3 lit; // factor of the colour of the leaf
+flat out vec3 veil; // added colour: haze, paint, specular reflection
+flat out float edge; // share of the card that is drawn: less where it is seen edge-on, as a line
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -180,7 +179,7 @@ void main() {
   edge = 1.0;
   lit = vec3(0.0);
   veil = vec3(1.0);
-  // Nearly the hyperbolic tangent of the law, for less.
+  // A cheap approximation of the hyperbolic tangent in the law.
   float wild = law.x * speed * speed / (flutter.x * law.y);
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
   vec3 p = root.xyz + root.w * turned(q, place + a * swing);
@@ -189,20 +188,20 @@ void main() {
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
-  // The crown is round: its leaves are lit as its surface is, more than as each lies.
+  // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
   vec3 n = normalize(0.8 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
   edge = min(1.0, 0.3 + 3.0 * abs(dot(flat_, back)));
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
-  // Each leaf asks at places of its own: the border of a shadow is a mixture of light and dark leaves.
+  // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.5 + 0.5 * open);
   vec3 up = sky * (0.2 + 0.8 * open) * (0.8 + 0.2 * n.z * side);
-  // A leaf with the sun behind it shines yellow.
+  // Light through a leaf is yellow.
   vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
-  // No two leaves have the same green. In autumn those in the shade of the crown, and some others, turn last.
+  // Greens vary. In autumn shaded leaves, and some others, turn last.
   vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
@@ -223,8 +222,8 @@ uniform sampler2D leaves;
 out vec4 color;
 void main() {
   vec4 leaf = texture(leaves, at);
-  // Further away a point of the picture holds leaves and the gaps between them: it is drawn or left out by
-  // chance, so that no card is seen as one large leaf.
+  // From afar a point of the picture covers leaves and gaps: it is drawn at random, so that no card looks like one
+  // large leaf.
   float small = length(fwidth(at));
   float cells = exp2(floor(0.5 - log2(small)));
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
@@ -237,7 +236,7 @@ void main() {
 #part plainleaf.vertex leaf.vertex
 
 #part plainleaf.fragment
-// The same of a picture that has been made for it (`chosenTexture`): every operation counts on a processor.
+// The same without a graphics unit, where every operation counts; `chosenTexture` has made the random choice.
 precision mediump float;
 in vec2 at;
 in vec3 lit;
@@ -252,7 +251,7 @@ void main() {
 }
 
 #part impostor.vertex seen
-// A far tree: a picture of its kind, turned to whoever looks, that leans as its top does.
+// A far tree: a picture of its kind that faces the eye and leans with the top of the tree.
 uniform highp sampler2D poses;
 uniform vec4 box; // half its width, middle height and full height [m], shade at the foot
 uniform vec3 restTip;
@@ -262,9 +261,9 @@ in vec4 stand; // x, y, z, yaw
 in vec3 tree; // scale, row of the top, tint
 in vec4 paint;
 out vec2 at;
-out vec3 lit; // what the picture is multiplied by
+out vec3 lit; // factor of the picture's colour
 flat out vec3 veil; // the haze that is added
-flat out vec3 painted; // colour of paint, which has the light and shade of the picture
+flat out vec3 painted; // colour of paint, shaded as the picture is
 void main() {
   float scale = tree.x;
   vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
@@ -333,10 +332,10 @@ void main() {
 }
 
 #part grass.vertex sunlit
-in vec4 blade; // place and height over the size of the meadow, what makes it its own
+in vec4 blade; // place and height over the size of the meadow, a random number
 in float corner; // left, right, or 0 at the tip
-uniform vec4 field; // middle, how far it grows, height
-uniform vec4 downwind; // way of the wind, the first tree and the last place along it [m]
+uniform vec4 field; // middle, radius, height of the grass
+uniform vec4 downwind; // direction of the wind, the first tree and the last place along it [m]
 uniform float gusts[PLACES];
 uniform float time;
 uniform float dimmed;
@@ -345,7 +344,7 @@ void main() {
   vec2 foot = field.xy + field.z * blade.xy;
   float tall = field.w * blade.z;
   float own = 6.2831853 * blade.w;
-  // Fronts are not straight across the wind.
+  // Gust fronts are curved.
   float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
   float far = dot(foot, downwind.xy) - downwind.z + 0.06 * field.z * (sin(7.0 * cross_) + sin(17.0 * cross_ + 2.0));
   float place = (0.5 + 0.5 * clamp(far / downwind.w, -1.0, 1.0)) * float(PLACES - 1);
@@ -358,7 +357,7 @@ void main() {
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
   vec3 tint = mix(vec3(0.33, 0.45, 0.18), vec3(0.46, 0.53, 0.26), blade.w);
-  // A blade that lies down shows its pale side.
+  // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.15 : 0.9) + 0.8 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
   base = vec4(tint * (0.5 + 0.5 * sunlight(vec3(foot, ground))), clearness(p));

@@ -1,43 +1,43 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Pictures painted by code: sprays of leaves, cut out by their alpha. */
+/** Pictures painted by code: leaves, alone or in sprays, cut out by their alpha; and bark. */
 
 import { outlineOf, seeded } from "./looks.js";
 
-/** Leaves along a picture: a leaf alone, sprays of more and more. */
+/** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
 const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
-/** Share of a picture beside a candle. */
+/** Width of the leaf beside a candle of flowers, over that of the picture. */
 const LEAF_SHARE = 0.75;
-/** Leaves along a picture from which it is one of a clump rather than of a shoot, whatever the cards; and how many
- * times they would cover it. */
+/** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
+ * the picture. */
 export const [CLUMP, CLUMP_FILLED] = [12, 1.3];
-/** Length of a leaf of a large card over its own. */
+/** Length of a leaf on a large card over its real one, at most. */
 const LARGER = 1.4;
-/** Width of a small card of short needles over that of another. */
+/** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
-/** Length of a shoot that is clad in long needles, over theirs. */
+/** Length of the part of a shoot that long needles clothe, over their length. */
 const BRUSH = 1.9;
-/** Layers that leaves are painted in, the lowest in the shade of the others. */
+/** Number of layers of leaves; the lowest is shaded by the others. */
 const LAYERS = 3;
 
 /** Length of a leaf with all its leaflets [m]. @param {Look} look */
 export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
 
-/** Width of a picture over its length: that of a spray, of a twig clad in short needles, or of a leaf alone.
+/** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
   along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
-/** Share of the width of a picture that leaves have; the flowers of a horse chestnut stand beside them.
+/** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
 export const leafShare = ({ form }, along, isFlowering) =>
   (isFlowering && form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
-/** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
+/** Number of leaves along the picture for cards of a length, so that none is drawn much larger than it is.
  * @param {Look} look @param {number} long length of a card [m] @param {boolean} [isSpread] of small cards */
 export function leavesAlong(look, long, isSpread = false) {
   const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
@@ -63,84 +63,122 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   return brush.context.canvas;
 }
 
-/** Width of a picture of bark [px], which is twice as high and goes on beyond its edges. */
+/** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
 const BARK_WIDE = 128;
+
+/** Brightness of the ground of each pattern of bark, and the function that paints marks on it.
+ * @type {Record<string, {ground: number, paint: (brush: BarkBrush) => void}>} */
+const BARKS = {
+  furrows: { ground: 0.5, paint: paintRidges },
+  plates: { ground: 0.4, paint: paintPlates },
+  scales: { ground: 0.4, paint: paintPlates },
+  dashes: { ground: 0.98, paint: paintDashes },
+  smooth: { ground: 0.94, paint: (brush) => paintSpots(brush, true) },
+  flakes: { ground: 0.85, paint: (brush) => paintSpots(brush, false) },
+};
+const OTHER_BARK = { ground: 0.8, paint: BARKS.flakes.paint };
 
 /** Paint bark as shares of its colour. @param {string} pattern @returns {HTMLCanvasElement} */
 export function barkPicture(pattern) {
-  const [wide, high] = [BARK_WIDE, 2 * BARK_WIDE];
-  const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: high });
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const random = seeded(61);
-  const grey = (/** @type {number} */ light) => css([1, 1, 1], light);
-  /** @param {number} light @param {(context: CanvasRenderingContext2D) => void} trace */
-  const shape = (light, trace) => {
-    const [x, y] = [wide * random(), high * random()];
-    context.fillStyle = context.strokeStyle = grey(light);
-    // At every place where it is seen again.
-    for (const [dx, dy] of [[0, 0], [-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]]) {
-      context.setTransform(1, 0, 0, 1, x + dx * wide, y + dy * high);
-      context.beginPath();
-      trace(context);
-    }
-  };
-  const ellipse = (/** @type {number} */ light, /** @type {number} */ across, /** @type {number} */ tall) => {
-    const lean = 0.3 * (random() - 0.5);
-    shape(light, (on) => {
-      on.ellipse(0, 0, across, tall, lean, 0, 7);
-      on.fill();
-    });
-  };
-  const ground = { furrows: 0.5, plates: 0.4, scales: 0.4, smooth: 0.94, dashes: 0.98, flakes: 0.85 }[pattern] ?? 0.8;
-  context.fillStyle = grey(ground);
-  context.fillRect(0, 0, wide, high);
-  if (pattern === "furrows") {
-    for (let i = 0; i < 260; i++) {
-      const [bend, long, light] = [8 * (random() - 0.5), 18 + 40 * random(), 0.62 + 0.5 * random()];
-      context.lineWidth = 2.5 + 4.5 * random();
-      context.lineCap = "round";
-      shape(light, (on) => {
-        on.moveTo(0, 0);
-        on.quadraticCurveTo(bend, 0.5 * long, 0.6 * bend, long);
-        on.stroke();
-      });
-    }
-  } else if (pattern === "plates" || pattern === "scales") {
-    for (let i = 0; i < 130; i++) {
-      const [across, tall, light] = [5 + 6 * random(), 9 + 12 * random(), 0.75 + 0.4 * random()];
-      const corners = Array.from({ length: 9 }, (_, k) => [0.7, 0.45].map(() => 0.75 + 0.35 * random()).concat(0.7 * k));
-      shape(light, (on) => {
-        for (const [a, b, turn] of corners) on.lineTo(a * across * Math.cos(turn), b * tall * Math.sin(turn));
-        on.fill();
-      });
-    }
-  } else if (pattern === "dashes") {
-    for (let i = 0; i < 60; i++) ellipse(0.88 + 0.1 * random(), 14 + 20 * random(), 2 + 5 * random());
-    for (let i = 0; i < 46; i++) ellipse(0.25 + 0.3 * random(), 3 + 9 * random(), 0.8 + 0.9 * random());
-    for (let i = 0; i < 9; i++) {
-      // Black rifts, wide in the middle.
-      const [across, tall] = [10 + 14 * random(), 3 + 5 * random()];
-      shape(0.1 + 0.08 * random(), (on) => {
-        on.moveTo(-across, 0.4 * tall);
-        on.quadraticCurveTo(-0.2 * across, -1.4 * tall, across, -0.2 * tall);
-        on.quadraticCurveTo(0.1 * across, 1.7 * tall, -across, 0.4 * tall);
-        on.fill();
-      });
-    }
-  } else {
-    const isSmooth = pattern === "smooth";
-    for (let i = 0; i < 170; i++) {
-      const light = isSmooth ? 0.86 + 0.16 * random() : 0.6 + 0.5 * random();
-      ellipse(light, (isSmooth ? 9 : 4) + 9 * random(), (isSmooth ? 1.5 : 4) + (isSmooth ? 3 : 9) * random());
-    }
-  }
-  return canvas;
+  const { ground, paint } = BARKS[pattern] ?? OTHER_BARK;
+  const brush = new BarkBrush(ground);
+  paint(brush);
+  return brush.context.canvas;
 }
 
 /** @param {number[]} color @param {number} light */
 const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, light * c))).join(" ")})`;
 
-/** Paints a shoot from the middle of the left side of the picture on, which is one long and as wide as the
+/** Paints marks at random places of a picture that repeats. */
+class BarkBrush {
+  random = seeded(61);
+
+  /** @param {number} ground brightness */
+  constructor(ground) {
+    const canvas = Object.assign(document.createElement("canvas"), { width: BARK_WIDE, height: 2 * BARK_WIDE });
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+    this.context.fillStyle = css([1, 1, 1], ground);
+    this.context.fillRect(0, 0, canvas.width, canvas.height);
+  }
+
+  /** Paint a mark, and its parts beyond the edges on the other side.
+   * @param {number} light @param {(context: CanvasRenderingContext2D) => void} trace */
+  mark(light, trace) {
+    const { context, random } = this;
+    const { width, height } = context.canvas;
+    const [x, y] = [width * random(), height * random()];
+    context.fillStyle = context.strokeStyle = css([1, 1, 1], light);
+    for (const [dx, dy] of [[0, 0], [-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]]) {
+      context.setTransform(1, 0, 0, 1, x + dx * width, y + dy * height);
+      context.beginPath();
+      trace(context);
+    }
+  }
+
+  /** @param {number} light @param {number} across half its width [px] @param {number} tall half its height */
+  ellipse(light, across, tall) {
+    const lean = 0.3 * (this.random() - 0.5);
+    this.mark(light, (on) => {
+      on.ellipse(0, 0, across, tall, lean, 0, 7);
+      on.fill();
+    });
+  }
+}
+
+/** @param {BarkBrush} brush */
+function paintRidges(brush) {
+  const { context, random } = brush;
+  for (let i = 0; i < 260; i++) {
+    const [bend, long, light] = [8 * (random() - 0.5), 18 + 40 * random(), 0.62 + 0.5 * random()];
+    context.lineWidth = 2.5 + 4.5 * random();
+    context.lineCap = "round";
+    brush.mark(light, (on) => {
+      on.moveTo(0, 0);
+      on.quadraticCurveTo(bend, 0.5 * long, 0.6 * bend, long);
+      on.stroke();
+    });
+  }
+}
+
+/** @param {BarkBrush} brush */
+function paintPlates(brush) {
+  const { random } = brush;
+  for (let i = 0; i < 130; i++) {
+    const [across, tall, light] = [5 + 6 * random(), 9 + 12 * random(), 0.75 + 0.4 * random()];
+    const corners = Array.from({ length: 9 }, (_, k) => [0.7, 0.45].map(() => 0.75 + 0.35 * random()).concat(0.7 * k));
+    brush.mark(light, (on) => {
+      for (const [a, b, turn] of corners) on.lineTo(a * across * Math.cos(turn), b * tall * Math.sin(turn));
+      on.fill();
+    });
+  }
+}
+
+/** Light and dark dashes across the stem, and black rifts, wide in the middle. @param {BarkBrush} brush */
+function paintDashes(brush) {
+  const { random } = brush;
+  for (let i = 0; i < 60; i++) brush.ellipse(0.88 + 0.1 * random(), 14 + 20 * random(), 2 + 5 * random());
+  for (let i = 0; i < 46; i++) brush.ellipse(0.25 + 0.3 * random(), 3 + 9 * random(), 0.8 + 0.9 * random());
+  for (let i = 0; i < 9; i++) {
+    const [across, tall] = [10 + 14 * random(), 3 + 5 * random()];
+    brush.mark(0.1 + 0.08 * random(), (on) => {
+      on.moveTo(-across, 0.4 * tall);
+      on.quadraticCurveTo(-0.2 * across, -1.4 * tall, across, -0.2 * tall);
+      on.quadraticCurveTo(0.1 * across, 1.7 * tall, -across, 0.4 * tall);
+      on.fill();
+    });
+  }
+}
+
+/** @param {BarkBrush} brush @param {boolean} isSmooth whether spots are flat and pale */
+function paintSpots(brush, isSmooth) {
+  const { random } = brush;
+  for (let i = 0; i < 170; i++) {
+    const light = isSmooth ? 0.86 + 0.16 * random() : 0.6 + 0.5 * random();
+    brush.ellipse(light, (isSmooth ? 9 : 4) + 9 * random(), (isSmooth ? 1.5 : 4) + (isSmooth ? 3 : 9) * random());
+  }
+}
+
+/** Paints a shoot that begins in the middle of the left edge. The picture has a length of 1 and the width of the
  * spray. */
 class Brush {
   /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {number} width over length
@@ -164,7 +202,7 @@ class Brush {
     this.context.lineCap = "round";
   }
 
-  /** A colour of a leaf. @param {number} light @param {number} young how far it is that of a fresh one */
+  /** A colour of a leaf. @param {number} light @param {number} young 0 to 1, the share of the colour of a fresh one */
   color(light, young) {
     const { random, base, fresh } = this;
     const own = light * (0.85 + 0.3 * random());
@@ -172,7 +210,7 @@ class Brush {
     return css(base.map((c, i) => c + mixed * (fresh[i] - c)), own);
   }
 
-  /** Paint elsewhere. @param {number} x @param {number} y @param {number} turn @param {number} scale
+  /** Paint in another frame. @param {number} x @param {number} y @param {number} turn @param {number} scale
    * @param {() => void} paint */
   at(x, y, turn, scale, paint) {
     const [c, s] = [scale * Math.cos(turn), scale * Math.sin(turn)];
@@ -188,7 +226,7 @@ class Brush {
     this.context.stroke(new Path2D(`M0 0H${long}`));
   }
 
-  /** How wide the spray is at a place of its axis, on either side. @param {number} x 0 to 1 */
+  /** Half width of the spray at a place of its axis. @param {number} x 0 to 1 */
   outline(x) {
     return this.half * Math.max(0, Math.sin(Math.PI * Math.min(1, 0.12 + 0.88 * x) ** 0.85)) ** 0.7;
   }
@@ -218,7 +256,7 @@ class Brush {
           side = -side;
           const lean = turn + side * (look.slenderness < 0.3 ? 0.25 + 0.3 * random() : 0.45 + 0.7 * random());
           const [cx, cy] = [x + far * Math.cos(turn), y + far * Math.sin(turn)];
-          // A leaf that would be cut off at the edge of the picture is a smaller one.
+          // A leaf that would reach beyond the edge of the picture is drawn smaller.
           const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
           const size = Math.min(unit * (0.7 + 0.35 * random()), 0.99 - cx, Math.sin(lean) * cy < 0 ? 1 : room);
           if (size > 0.3 * unit) this.at(cx, cy, lean, 1, () => this.leaf(size, light));
@@ -233,15 +271,15 @@ class Brush {
     }
   }
 
-  /** What is seen of a clump of shoots from afar: small leaves in layers with gaps between them, with no
-   * outline that would read as one large leaf. @param {number} leaf length of one */
+  /** A clump of shoots seen from afar: small leaves in layers with gaps between them, without an outline that would
+   * look like one large leaf. @param {number} leaf length of one */
   clump(leaf) {
     const { half, random } = this;
     const unit = this.unit * leaf;
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
       const turn = 2 * Math.PI * random();
-      // Boughs stand out of it on all sides: no disc is seen.
+      // Boughs stand out on all sides, so that it is no disc.
       const far = Math.sqrt(random()) * (0.8 + 0.2 * Math.sin(5 * turn + 1));
       const [along, across] = [far * Math.cos(turn), far * Math.sin(turn)];
       const [x, y] = [0.5 + (0.5 - unit) * along, (half - unit) * across];
