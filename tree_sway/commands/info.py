@@ -41,7 +41,7 @@ from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_dia
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import shown, TreeError
+from tree_sway.errors import LONGEST_NOTE, shown, TreeError
 from tree_sway.parameters.sway_parameters import SWAY
 
 _GRAVITY = 9.81
@@ -50,7 +50,6 @@ _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
 _LONGEST_NAME = 60
-_LONGEST_LINE = 1000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -270,7 +269,7 @@ def _text(facts: dict[str, Any]) -> str:
             f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   {mode["branch"]}'
             for mode in modes
         ]
-    return '\n'.join(shown(line, _LONGEST_LINE) for line in lines)
+    return '\n'.join(shown(line, LONGEST_NOTE) for line in lines)
 
 
 def _short(name: str) -> str:
