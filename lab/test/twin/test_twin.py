@@ -114,3 +114,13 @@ def test_a_sensor_finds_how_late_gusts_are_that_are_measured_upwind(
     errors = {row['sensors']: float(row['error']) for row in rows}
     assert errors['1'] < 0.4 * errors['0']
     assert rows[-1]['notes'].startswith('gusts 4.')
+
+
+def test_a_model_that_knows_the_tree_errs_less(capsys: pytest.CaptureFixture[str]) -> None:
+    words = 'lab twin --model 90 --seconds 30 --sensors 0 --without-band'.split()
+    errors = []
+    for more in ([], ['--known', '--advised']):
+        assert main([*words, *more, '--', 'spruce 4 6']) == 0
+        *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
+        errors.append(float(last['error']))
+    assert errors[1] < 0.8 * errors[0]
