@@ -56,11 +56,11 @@ _KNOWN_AHEAD = 0.5
 """Time in [s] by which samples of records are known ahead of a step."""
 
 _FOLLOWED_EVERY = 5.0
-_PACE, _DAMPING_PACE = 0.001, 0.01
+_PACE = 0.01
 """
 Pace in [1/s] at which the logarithms of stiffness and damping follow those of the real tree.
 
-A softer tree leans more; at this pace its lean changes by a fifth in three minutes.
+A softer tree leans more; at this pace its lean changes by a fifth in 20 s, less than gusts do.
 """
 
 _DYNAMIC = 4.0
@@ -322,7 +322,7 @@ class ObservedTree(SwaySimulator):
     def _follow(self, fit: TreeFit) -> None:
         """Let the model come nearer to the stiffness and damping of the real tree."""
         wanted = np.log([fit.stiffness, fit.damping])
-        most = _FOLLOWED_EVERY * np.array([_PACE, _DAMPING_PACE])
+        most = _FOLLOWED_EVERY * _PACE
         change = np.clip(wanted - self._learned, -most, most)
         if not change.any():
             return
