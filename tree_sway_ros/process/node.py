@@ -146,7 +146,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             service.callback = self.guard.wrapped(service.callback)
 
     def _if_possible(self, change: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-        """Return `change_state` that refuses by a line what the state does not allow."""
+        """Return ``change_state`` that refuses by a line what the state does not allow."""
 
         def change_or_refuse(request: Any, response: Any) -> Any:
             wanted, machine = request.transition, self._state_machine
