@@ -55,6 +55,11 @@ class Modes:
         """Return the slowest modes."""
         return Modes(self.circular[:count], np.ascontiguousarray(self.shapes[:, :count]))
 
+    def slower_than(self, circular: float) -> Modes:
+        """Return the modes below a circular frequency [rad/s], in their order."""
+        kept = self.circular < circular
+        return Modes(self.circular[kept], np.ascontiguousarray(self.shapes[:, kept]))
+
 
 @contextmanager
 def solvable(tree: Tree) -> Iterator[None]:

@@ -33,7 +33,23 @@ LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
 Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
 limp; the share of all branches, by length, that makes a limp tree; and its largest number of
 segments, for a step takes time in proportion. Of trees that were tried those whose twigs hang or
-whip have a share of 0.28 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
+whip have a share of 0.25 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
+"""
+
+WHIP_TURN, MOST_WHIPPY = 0.5, 500
+"""
+The same rotation [rad] for bare trees of few segments, and their number: young whips and rods,
+which bend as a whole, have a share of 0.30 to 0.59 beyond it, and a step of theirs takes little
+time. A sapling in leaf is not among them: its stem bends as far, but the table with its leaves is
+within 0.05 of all coordinates.
+"""
+
+FASTEST_LIMP, LEAST_SPAN = 60.0, 4.0
+"""
+Circular frequency [rad/s] at rest below which a limp tree keeps a coordinate: it turns by 1 rad
+in a frame. And the same over the slowest, below which it keeps each. Faster coordinates are short
+waves with little inertia at rest. Where the tree is bent they move all that is beyond, with up to
+5,000 times the inertia, and rattle.
 """
 
 _STEADY = 2.0
@@ -113,16 +129,23 @@ class TreeReductions:
         return self.frequencies[:count]
 
     def modes(self, model: int | str) -> Modes:
-        """Return all modes, or the leading ones in winds."""
+        """Return all modes, or the leading ones in winds, of limp trees without the fastest."""
         from tree_sway.core.setup.modes import leading_modes
 
         reduction = self.with_subtrees.reduction
         n = reduction.n_coordinates
         count = n if isinstance(model, str) else min(model, n)
-        if count in (0, n):
-            return self.natural_modes(1 if count == 0 else None).slowest(count)
-        responses = self.responses
-        return leading_modes(reduction, responses.rotations, responses.tips, count)
+        if count == 0:
+            return self.natural_modes(1).slowest(0)
+        if count == n:
+            leading = self.natural_modes(None)
+        else:
+            responses = self.responses
+            leading = leading_modes(reduction, responses.rotations, responses.tips, count)
+        if isinstance(model, int) and self.is_limp:
+            fastest = max(FASTEST_LIMP, LEAST_SPAN * float(leading.circular.min()))
+            return leading.slower_than(fastest)
+        return leading
 
     @cached_property
     def responses(self) -> Responses:
@@ -192,7 +215,9 @@ class TreeReductions:
     def is_limp(self) -> bool:
         """Whether so much of the tree turns so far that a table of loads is too coarse."""
         length = self.tree.branch_length
-        turned = float(length[self._reducer.turns > LIMP_TURN].sum())
+        may_whip = self.tree.n_segments <= MOST_WHIPPY and not self.settings.in_leaf
+        limp_turn = WHIP_TURN if may_whip else LIMP_TURN
+        turned = float(length[self._reducer.turns > limp_turn].sum())
         is_small = self.tree.n_segments <= MOST_LIMP
         return is_small and turned > LIMP_SHARE * float(length.sum())
 
