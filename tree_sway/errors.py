@@ -12,6 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
+LONGEST_NOTE = 1000
+"""Letters of a note on a file that are shown on one line."""
+
 
 class TreeSwayError(Exception):
     """

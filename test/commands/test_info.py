@@ -248,3 +248,9 @@ def test_the_published_moment_of_a_spruce_is_within_the_band_or_said_to_be_outsi
     assert found['published_moment'] == pytest.approx(111.7 * 0.25**2 * 20.0 * 100.0, rel=0.01)
     (note,) = (each for each in found['notes'] if 'published' in each)
     assert f'{said} that band' in note
+
+
+def test_it_names_places_of_motion_sensors(capsys: pytest.CaptureFixture[str]) -> None:
+    notes = ' '.join(facts(capsys, 'goldcrest', '--sensors', '2')['notes'])
+    assert 'motion sensors tell most' in notes
+    assert notes.count('% left') == 2

@@ -149,8 +149,7 @@ def test_a_source_that_is_not_reached_is_told_at_once_and_given_up_soon(
     said = capfd.readouterr().err
     assert f'sensor: waiting for {server}; Ctrl-C ends it\n' in said
     last = said.splitlines()[-1]
-    assert 'no wind within 1 s: no connection: ' in last
-    assert '127.0.0.1:1' in last
+    assert f'no wind within 1 s: no connection to {server}: refused' in last
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+from pathlib import Path
 import signal
 
 import pytest
@@ -101,3 +102,17 @@ def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
 
     observer.until(agree, 'both to sway alike', deadline=120.0)
     assert max(late(frames).values()) > 1e-3
+
+
+def test_no_name_of_a_tree_steers_the_terminal(run, observer, tmp_path):
+    text = (Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml').read_text('utf-8')
+    evil = tmp_path / 'evil.yaml'
+    name = r'name: "oak\e[2J\nready after 0 s"'
+    evil.write_text(text.replace('name: seedling', name, 1), encoding='utf-8')
+    process = run('solver', f'tree:={evil}')
+    started(observer, process)
+    process.send_signal(signal.SIGINT)
+    code, errors = ended(process)
+    assert code == 0, errors
+    assert r'oak\x1b[2J ready after 0 s' in errors
+    assert '\x1b' not in errors

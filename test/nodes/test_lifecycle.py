@@ -85,8 +85,19 @@ def test_what_cannot_be_configured_says_so_and_stays_as_it_was(compose, observer
     assert len(list(nodes['solver'].publishers)) == before
 
 
-def test_a_transition_that_is_none_ends_nothing(compose, observer, manage):
-    nodes = compose(wind={'autostart': False})
-    assert not manage('wind', Transition.TRANSITION_ACTIVATE)
+@pytest.mark.parametrize(
+    'wanted',
+    [
+        Transition(id=Transition.TRANSITION_ACTIVATE),
+        Transition(label='activate'),
+        Transition(id=250),
+        Transition(label='grow'),
+    ],
+    ids=lambda each: each.label or str(each.id),
+)
+def test_a_transition_that_is_not_possible_is_refused_and_no_failure(compose, observer, wanted):
+    # A client whose response was lost asks again, when the node is in its new state.
+    compose(wind={'autostart': False})  # it asks for no failures of callbacks
+    request = ChangeState.Request(transition=wanted)
+    assert not observer.call(ChangeState, 'wind/change_state', request).success
     assert state_of(observer, 'wind') == 'unconfigured'
-    nodes['wind'].guard.count = 0  # seen; the fixture asks for none

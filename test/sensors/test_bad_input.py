@@ -238,6 +238,10 @@ def test_silence_is_told(hear, port) -> None:
     heard.until(lambda: told(heard, 'nothing has come yet'))
 
 
+def test_a_name_is_one_line() -> None:
+    assert open_source('udp:5006?name=a%0Ab%1B%5B2J').name.startswith('a b\\x1b[2J, ')
+
+
 def test_a_fast_instrument_is_not_told_as_a_mean(hear, send, port) -> None:
     heard = hear(f'udp://127.0.0.1:{port}')
     heard.until(

@@ -30,6 +30,7 @@ from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.observe.sensor_advice import advised_places
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -40,7 +41,7 @@ from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_dia
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import shown, TreeError
+from tree_sway.errors import LONGEST_NOTE, shown, TreeError
 from tree_sway.parameters.sway_parameters import SWAY
 
 _GRAVITY = 9.81
@@ -49,7 +50,6 @@ _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
 _LONGEST_NAME = 60
-_LONGEST_LINE = 1000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -68,6 +68,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N',
         help='number of natural frequencies (%(default)s)',
     )
+    add(
+        '--sensors',
+        type=int,
+        default=0,
+        metavar='K',
+        help='say where this many motion sensors tell most (1 to 8)',
+    )
     speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
     add('--speed', type=float, metavar='U', help=speed)
     add_exposure_arguments(parser)
@@ -77,6 +84,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the facts on the trees."""
     within('--count', arguments.count, 1, 1e6)
+    within('--sensors', arguments.sensors, 0, 8)
     if arguments.speed is None:
         refuse_unused_exposure(arguments, '--speed U')
     else:
@@ -125,6 +133,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
     else:
         odd = sway_oddity(tree, species, min(mode['frequency'] for mode in modes))
         doubts = [*filter(None, [odd, limp_doubt])]
+        if arguments.sensors:
+            notes.append(_sensor_advice(tree, species, settings, arguments.sensors))
     used = published = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
@@ -165,6 +175,16 @@ def _limp_doubt(whole: TreeReductions) -> str:
         return ''
     simulator = make_simulator(whole.tree, whole.species, whole.settings, cache=MODELS)
     return simulator.banks[0].doubt
+
+
+def _sensor_advice(tree: Tree, species: Species, settings: Settings, count: int) -> str:
+    """Say where motion sensors tell most, and what they leave unknown."""
+    simulator = make_simulator(tree, species, settings, cache=MODELS)
+    places = [f'{each.at} ({each.left:.0%} left)' for each in advised_places(simulator, count)]
+    return (
+        f'motion sensors tell most, each with those before it, at {", ".join(places)} of the '
+        'sway that the wind does not tell (--at)'
+    )
 
 
 def _published_moment(tree: Tree, species: Species, speed: float) -> float | None:
@@ -249,7 +269,7 @@ def _text(facts: dict[str, Any]) -> str:
             f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   {mode["branch"]}'
             for mode in modes
         ]
-    return '\n'.join(shown(line, _LONGEST_LINE) for line in lines)
+    return '\n'.join(shown(line, LONGEST_NOTE) for line in lines)
 
 
 def _short(name: str) -> str:

@@ -123,7 +123,7 @@ class LiveSource(ABC):
         """Why no sample was accepted so far."""
         link = self._link
         if not link.is_up:
-            return f'no connection: {link.failure or "not yet"}'
+            return f'no connection to {link.transport}: {link.failure or "not yet"}'
         if not link.messages:
             return f'listening to {link.transport}: nothing has come yet'
         came = f'{link.messages} {self._messages} came'

@@ -74,7 +74,7 @@ def open_source(text: str) -> OpenedSource:
             cure='; '.join(filter(None, (guess, f'give one of {forms}'))),
         )
     source = kinds[address.scheme].open(address)
-    name = address.text_of('name')
+    name = address.name
     bearing = address.angle('from_degrees', WEST)
     given = address.text_of('mean')
     mean = address.number('mean', 0.0, 0.0, 86_400.0) if given else None

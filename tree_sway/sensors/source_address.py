@@ -10,8 +10,9 @@ from pathlib import Path
 import re
 from urllib.parse import parse_qsl, SplitResult, unquote, urlsplit
 
-from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.errors import FormatError, nearest, ParameterError, shown
 
+_LONGEST_NAME = 120
 _SCHEME = re.compile(r'([a-z][a-z0-9-]*)(?=[:?#]|$)')
 
 
@@ -43,6 +44,11 @@ class SourceAddress:
     def place(self) -> str:
         """Text after the scheme of an address without ``//``."""
         return unquote(self.parts.path)
+
+    @property
+    def name(self) -> str:
+        """Name for viewers and for columns of tables, on one line; empty without one."""
+        return shown(self.text_of('name'), _LONGEST_NAME)
 
     @property
     def host(self) -> str:

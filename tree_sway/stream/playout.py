@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From frames at irregular times to a smooth motion, as ``static/playout.js``.
+Playout buffer: turns frames that arrive irregularly into smooth motion, as ``static/playout.js``.
 
 States are shown with a short delay, on a curve through them (Catmull & Rom 1974). Where they are
-close together the next one is extrapolated on the parabola of the last three, as a tree has
-inertia.
+close together the next one is predicted on the parabola of the last three, as a tree has inertia.
 """
 
 from __future__ import annotations
@@ -22,21 +21,24 @@ from tree_sway.stream.protocol import PAUSED, RESTARTED
 DELAY = 0.15
 """Longest playout delay, and initial delay [s]."""
 
-_CALMS, _FIRST, _DOWN, _UP = 12.0, 0.25, 0.05, 0.2
-"""
-Time constant of the lateness of states [s], and at first; rates of change of the delay.
-
-"""
-
-_AHEAD = 0.03
-"""Largest spacing of states in [s] with extrapolation."""
-
+_YOUNGEST, _CALMS = 0.25, 12.0
+"""Time constant of the largest lateness [s]: the age of the connection, at least and at most."""
+_DOWN, _UP = 0.05, 0.2
+"""Fastest change of the delay, down and up, per time that passes [-]."""
+_PREDICTED = 0.03
+"""States closer together than this are continued by a predicted one [s]."""
 _WINDOW = 30.0
+"""Time in which the quickest state gives the offset of the clocks [s]."""
 _OTHER_CLOCK = 5.0
+"""Change of the offset that is no jitter: the sender has started again [s]."""
 _OUT_OF_ORDER = 1.0
+"""States older than the newest by less than this are dropped [s]."""
 _LONGEST_GAP = 0.5
+"""States further apart than this are not joined by a curve [s]."""
 _BLEND = 0.4
+"""Time over which the motion is blended after such a gap [s]."""
 _KEPT = 64
+"""Number of states that are kept."""
 
 
 class Moment(NamedTuple):
@@ -108,7 +110,7 @@ class Playout:
         self._adapts = delay is None
         self._spacing = 0.0
         self._jitter = 0.5 * DELAY
-        self._age = _FIRST
+        self._age = _YOUNGEST
         self._ahead = 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
@@ -142,12 +144,12 @@ class Playout:
         self._moments.append(moment)
 
     def _adapt(self, span: float, lateness: float) -> None:
-        """Move the delay towards that for a state, at a time [s] after the last."""
+        """Move the delay towards what the connection needs, a time [s] after the last state."""
         self._spacing += 0.1 * (span - self._spacing)
         self._age += span
-        calms = min(self._age, _CALMS)  # the first estimate of a line decays faster
+        calms = min(self._age, _CALMS)  # the first estimate of a connection decays faster
         self._jitter = max(lateness, self._jitter * math.exp(-span / calms))
-        self._ahead = self._spacing if self._spacing < _AHEAD else 0.0
+        self._ahead = self._spacing if self._spacing < _PREDICTED else 0.0
         change = min(self._spacing - self._ahead + self._jitter, DELAY) - self.delay
         self.delay += min(max(change, -_DOWN * span), _UP * span)
 
@@ -156,18 +158,18 @@ class Playout:
         moments = list(self._moments)
         if not moments:
             return self._shown
-        if self._ahead and len(moments) > 2 and moments[-1].stamp - moments[-2].stamp < _AHEAD:
-            moments.append(expected(*moments[-3:]))
+        if self._ahead and len(moments) > 2 and moments[-1].stamp - moments[-2].stamp < _PREDICTED:
+            moments.append(predicted(*moments[-3:]))
         time = now - self.clock.value - self.delay
         newest = len(moments) - 1
         after = next((i for i, each in enumerate(moments) if each.stamp > time), newest)
-        i2 = max(after, min(1, newest))
-        i1 = max(i2 - 1, 0)
-        a = moments[i1]
-        b = moments[i2]
+        end = max(after, min(1, newest))
+        begin = max(end - 1, 0)
+        a = moments[begin]
+        b = moments[end]
         span = b.stamp - a.stamp
         u = min(max((time - a.stamp) / span, 0.0), 1.0) if span > 0.0 else 1.0
-        curve = catmull_rom(moments[max(i1 - 1, 0)], a, b, moments[min(i2 + 1, newest)], u)
+        curve = catmull_rom(moments[max(begin - 1, 0)], a, b, moments[min(end + 1, newest)], u)
         wind = a.wind + u * (b.wind - a.wind)
         stamp = a.stamp + u * span
         self._shown = Moment(stamp, self._blended(curve, now), wind, b.flags & PAUSED)
@@ -183,15 +185,15 @@ class Playout:
         return before + u * u * (3.0 - 2.0 * u) * (coordinates - before)
 
 
-def expected(a: Moment, b: Moment, c: Moment) -> Moment:
+def predicted(a: Moment, b: Moment, c: Moment) -> Moment:
     """Extrapolate a, b and c by one period, on their parabola."""
     if not len(a.coordinates) == len(b.coordinates) == len(c.coordinates):
         return c
     span = c.stamp - b.stamp
     before = b.stamp - a.stamp
-    by = c.coordinates - b.coordinates
-    slower = (b.coordinates - a.coordinates) * span / before
-    values = c.coordinates + by + 2.0 * span / (span + before) * (by - slower)
+    step = c.coordinates - b.coordinates
+    last_step = (b.coordinates - a.coordinates) * span / before
+    values = c.coordinates + step + 2.0 * span / (span + before) * (step - last_step)
     return Moment(c.stamp + span, values, c.wind, c.flags & PAUSED)
 
 
@@ -208,16 +210,16 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
 
     """
     span = c.stamp - b.stamp
-    before = c.stamp - a.stamp
-    behind = d.stamp - b.stamp
+    a_to_c = c.stamp - a.stamp
+    b_to_d = d.stamp - b.stamp
     u2 = u * u
     u3 = u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
     # There are more coordinates while a branch is pulled.
     p, q, r, s = (each[: min(map(len, states))] for each in states)
     curve = (2.0 * u3 - 3.0 * u2 + 1.0) * q + (3.0 * u2 - 2.0 * u3) * r
-    if before > 0.0:
-        curve += (u3 - 2.0 * u2 + u) * span / before * (r - p)
-    if behind > 0.0:
-        curve += (u3 - u2) * span / behind * (s - q)
+    if a_to_c > 0.0:
+        curve += (u3 - 2.0 * u2 + u) * span / a_to_c * (r - p)
+    if b_to_d > 0.0:
+        curve += (u3 - u2) * span / b_to_d * (s - q)
     return np.concatenate([curve, c.coordinates[len(curve) :]])

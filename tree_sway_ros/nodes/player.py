@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tree_sway.errors import ParameterError
+from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_ros.nodes.recorded_imu import RecordedImu
@@ -33,7 +33,7 @@ class PlayerNode(TreeSwayNode):
         has_clock = self.values['publish_clock']
         self._wind = self.publisher(WIND, self._writer.message_class, is_replay=has_clock)
         for note in self._record.notes:
-            self.get_logger().info(note)
+            self.get_logger().info(shown(note, LONGEST_NOTE))
         self._ticks: Any = self.publisher(CLOCK) if has_clock else None
         self._motion = RecordedImu(self.values['file'], self.values['imu'], self._record.epoch)
         self._imu = [

@@ -30,7 +30,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
-from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.errors import FormatError, inside, LONGEST_NOTE, ParameterError, shown
 from tree_sway.files.motion.tree_history import TreeHistory
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_scene
@@ -91,7 +91,7 @@ class SolverNode(TreeSwayNode):
         """Open the tree, reduce it and prepare its kernels."""
         began = time.monotonic()
         log = self.get_logger().info
-        log(f"opening tree '{self.values['tree']}'")
+        log(f"opening tree '{shown(self.values['tree'])}'")
         source = self._open()
         log(
             f'reducing {source.tree.n_segments} segments and preparing the kernels (where no '
@@ -100,11 +100,11 @@ class SolverNode(TreeSwayNode):
         self._make_run(source)
         self._make_interfaces(source)
         for warning in source.warnings:
-            self.get_logger().warning(warning)
+            self.get_logger().warning(shown(warning, LONGEST_NOTE))
         for note in source.notes:
-            log(note)
+            log(shown(note, LONGEST_NOTE))
         log(
-            f'ready after {time.monotonic() - began:.1f} s: {source.tree.name}, '
+            f'ready after {time.monotonic() - began:.1f} s: {shown(source.tree.name)}, '
             f'{self.simulator.model}, {self.values["rate"]:g} Hz'
         )
 

@@ -140,8 +140,28 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     def _be_managed(self) -> None:
         n_services = len(self._services)
         LifecycleNodeMixin.__init__(self)
+        change = self._service_change_state
+        change.callback = self._if_possible(change.callback)
         for service in self._services[n_services:]:
             service.callback = self.guard.wrapped(service.callback)
+
+    def _if_possible(self, change: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+        """Return ``change_state`` that refuses by a line what the state does not allow."""
+
+        def change_or_refuse(request: Any, response: Any) -> Any:
+            wanted, machine = request.transition, self._state_machine
+            possible = {number: label for number, label, *_ in machine.available_transitions}
+            if wanted.label in possible.values() or (not wanted.label and wanted.id in possible):
+                return change(request, response)
+            self.get_logger().warning(
+                f'transition {wanted.label or wanted.id} is not possible in the state '
+                f'{machine.current_state[1]!r}; possible are '
+                + ', '.join(f'{label} ({number})' for number, label in possible.items())
+            )
+            response.success = False
+            return response
+
+        return change_or_refuse
 
     def create_subscription(
         self, kind: Any, topic: str, callback: Any, *more: Any, **named: Any

@@ -103,3 +103,24 @@ def test_one_sensor_takes_away_most_of_the_error(capsys: pytest.CaptureFixture[s
     errors = {row['sensors']: float(row['error']) for row in rows}
     assert list(errors) == ['U^2', 'model', '1']
     assert errors['1'] < 0.6 * min(errors['model'], errors['U^2'])
+
+
+def test_a_sensor_finds_how_late_gusts_are_that_are_measured_upwind(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = 'lab twin --model 90 --seconds 45 --sensors 0 1 --upwind 30 --without-band --'.split()
+    assert main([*words, 'spruce 4 6']) == 0
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    errors = {row['sensors']: float(row['error']) for row in rows}
+    assert errors['1'] < 0.4 * errors['0']
+    assert rows[-1]['notes'].startswith('gusts 4.')
+
+
+def test_a_model_that_knows_the_tree_errs_less(capsys: pytest.CaptureFixture[str]) -> None:
+    words = 'lab twin --model 90 --seconds 30 --sensors 0 --without-band'.split()
+    errors = []
+    for more in ([], ['--known', '--advised']):
+        assert main([*words, *more, '--', 'spruce 4 6']) == 0
+        *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
+        errors.append(float(last['error']))
+    assert errors[1] < 0.8 * errors[0]

@@ -25,6 +25,7 @@ import argparse
 import sys
 
 from tree_sway.commands.ending import Ending
+from tree_sway.core.observe.sensor_advice import advised_places
 from tree_sway.core.scene.make import make_simulator
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
@@ -79,6 +80,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add('--model', default='full', help='model of the true tree (%(default)s)')
     add('--without-band', action='store_true', help='us/step is that of the sensors alone')
+    add('--advised', action='store_true', help='sensors where tree-sway info --sensors advises')
+    add('--known', action='store_true', help='the model has the wood and damping of the true tree')
+    add('--tell-upwind', action='store_true', help='the model knows --upwind')
     add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
     for name, what in (
         ('wood', 'modulus of the true tree over the model'),
@@ -134,12 +138,15 @@ def _print_record(name: str) -> None:
 def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> None:
     tree, species = tree_called(name)
     in_leaf = arguments.in_leaf
+    known = make_simulator(tree, species, in_leaf=in_leaf)
     places = sensor_places(tree, max(arguments.sensors))
+    if arguments.advised:
+        advised = advised_places(known, max(arguments.sensors), arguments.speed)
+        places = [each.at for each in advised]
     model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
     trees = [around]
     if arguments.drawn:
         trees = drawn(around, arguments.drawn, in_leaf=in_leaf)
-    known = make_simulator(tree, species, in_leaf=in_leaf)
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
@@ -156,6 +163,8 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 in_leaf=in_leaf,
                 faulty=arguments.faulty,
                 has_band=not arguments.without_band,
+                known=each if arguments.known else None,
+                upwind=each.upwind if arguments.tell_upwind else 0.0,
             )
             scores.setdefault(str(count), []).append(score)
     for sensors, found in scores.items():

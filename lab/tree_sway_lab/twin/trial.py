@@ -16,11 +16,12 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
-from tree_sway_lab.twin.true_tree import DT, TrueMotion
+from tree_sway_lab.twin.true_tree import Circumstances, DT, TrueMotion
 
 FAULTY = SimulatedSensor(
     rate=25.0,
@@ -134,15 +135,29 @@ def twin_score(
     seed: int = 7,
     faulty: bool = False,
     has_band: bool = True,
+    upwind: float = 0.0,
+    known: Circumstances | None = None,
 ) -> Score:
-    """Score a tree that sensors at some places correct."""
+    """
+    Score a tree that sensors correct, told how far upwind the anemometer is [m].
+
+    With what is ``known`` of the true tree, its wood and damping are the model's.
+    """
+    damping_ratio = None
+    if known is not None:
+        usual = prepare(tree, species, model=0, in_leaf=in_leaf).damping_ratio
+        damping_ratio = min(known.damping * usual, 1.0)
+        species = replace(species, modulus=known.wood * species.modulus)
     twin = ObservedTree(
         tree,
         species,
         in_leaf=in_leaf,
+        learns=known is None,
+        damping_ratio=damping_ratio,
         at={each: each for each in places},
         is_smoothed=True,
         has_band=has_band,
+        upwind=upwind,
         submit=submit_beside,
     )
     rng = np.random.default_rng(seed)
@@ -173,6 +188,8 @@ def twin_score(
         late = LATE_STEPS + twin.observer.late
         late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
+    if twin.late_wind.delay:
+        notes.append(f'gusts {twin.late_wind.delay:.1f} s late')
     if (fit := twin.observer.fit) is not None:
         notes.append(
             f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}, drag {fit.drag:.2f}'

@@ -12,6 +12,7 @@ import pytest
 
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_file import read_motion
+from tree_sway.files.wind.wind_file import read_wind
 
 PHYPHOX = """"Time (s)","Acceleration x (m/s^2)","Acceleration y (m/s^2)","Acceleration z (m/s^2)"
 0.010,0.12,-0.34,9.78
@@ -110,3 +111,11 @@ def test_a_bag_without_imu_is_refused(tmp_path: Path) -> None:
         pass
     with pytest.raises(FormatError, match='on 0 topics'):
         read_motion(path)
+
+
+def test_the_folder_of_a_record_is_told_from_a_bag(tmp_path: Path) -> None:
+    (tmp_path / 'record.yaml').write_text('tree_sway_record: 1\n', encoding='utf-8')
+    with pytest.raises(FormatError, match=r'give a table of it, wind\.csv or motion_1\.csv'):
+        read_motion(str(tmp_path))
+    with pytest.raises(FormatError, match='a record of wind and motion, not a bag'):
+        read_wind(tmp_path)

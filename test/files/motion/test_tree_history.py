@@ -65,3 +65,17 @@ def test_a_table_that_cannot_be_gone_on_with_is_refused(tmp_path: Path) -> None:
     path.write_bytes(b'\xff\xfe\x00')
     with pytest.raises(FormatError, match='cannot be read'):
         TreeHistory(str(path), ['phone'])
+
+
+def test_a_row_that_a_full_disk_cut_off_stays_alone(tmp_path: Path) -> None:
+    path = tmp_path / 'oak.csv'
+    twin = ObservedTree(open_tree('goldcrest'), at={'phone': 'segment:3'})
+    for _ in range(2):
+        history = TreeHistory(str(path), ['phone'])
+        history.note(twin, 0.0)
+        assert history.note(twin, 600.0)
+        whole = path.read_bytes()
+        path.write_bytes(whole[:-4])
+    rows = rows_of(path)
+    assert len(rows) == 2
+    assert all(row['time'].endswith('Z') and None not in row for row in rows)

@@ -85,3 +85,10 @@ def test_what_a_scan_could_not_see_is_grown_on_request_and_said():
     assert any('is grown beyond it' in note for note in found.notes)
     with pytest.raises(ParameterError, match='beyond_scan'):
         open_tree(scan, beyond_scan='all')
+
+
+def test_that_nothing_is_grown_is_said_too():
+    whole = open_tree(DATA / 'seedling.yaml', beyond_scan='grow')
+    assert any('give the diameter of its twigs' in note for note in whole.notes)
+    whole = open_tree(DATA / 'seedling.yaml', beyond_scan='grow', twig_diameter=0.003)
+    assert any('no end is thicker than two twigs of 3 mm' in note for note in whole.notes)

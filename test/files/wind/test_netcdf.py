@@ -63,7 +63,7 @@ def test_a_missing_hour_is_refused(tmp_path: Path) -> None:
 
 def test_errors_name_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(tmp_path / 't2m.nc', names=('t2m', 'd2m'))
-    with pytest.raises(FormatError, match='no wind_x and no wind_y among valid_time, latitude'):
+    with pytest.raises(FormatError, match='no eastward wind and no northward wind among'):
         read_wind(path)
     with pytest.raises(ParameterError, match='write at=LATITUDE,LONGITUDE in degrees'):
         read_wind(path, at=('north', 'east'))
@@ -75,3 +75,13 @@ def test_errors_name_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyP
     with pytest.raises(MissingDependencyError, match=r'netCDF4.*'):
         read_wind(tmp_path / 'whole.nc')
     assert 'netcdf' in {known.name for known in wind_file.WIND_FORMATS}
+
+
+def test_components_are_found_by_their_standard_names(tmp_path: Path) -> None:
+    path = written(tmp_path / 'mast.nc', names=('mast_a', 'mast_b'))
+    with pytest.raises(FormatError, match='no eastward wind and no northward wind among'):
+        read_wind(path, turbulence=False)
+    with netcdf.Dataset(path, 'a') as data:
+        data['mast_a'].standard_name = 'eastward_wind'
+        data['mast_b'].standard_name = 'northward_wind'
+    assert read_wind(path, turbulence=False).velocity[0].tolist() == [0.0, 1.0, 0.0]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
-from tree_sway.files.wind.sway_table import read_csv_sway
+from tree_sway.files.wind.sway_table import parse_sway, read_csv_sway
 
 
 def read(tmp_path, text):
@@ -83,3 +83,10 @@ def test_errors(tmp_path, text, message):
 def test_no_file(tmp_path):
     with pytest.raises(FormatError, match=r'none.csv: no such file'):
         read_csv_sway(tmp_path / 'none.csv')
+
+
+def test_of_an_imu_the_acceleration_is_taken():
+    rows = ['time,ax,ay,az,gx,gy,gz', '0,1,2,9.8,7,7,7', '1,3,4,9.8,7,7,7']
+    found = parse_sway(rows, 'motion_1.csv')
+    assert found.quantity == 'acceleration'
+    assert found.motion.tolist() == [[1.0, 2.0, 9.8], [3.0, 4.0, 9.8]]

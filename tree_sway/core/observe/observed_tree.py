@@ -29,6 +29,7 @@ from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.dragged_motion import DraggedMotion
 from tree_sway.core.observe.explained_motion import ExplainedMotion
+from tree_sway.core.observe.late_wind import LateWind
 from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.observe.members import Members, most_of, uncertainty_of
@@ -55,11 +56,11 @@ _KNOWN_AHEAD = 0.5
 """Time in [s] by which samples of records are known ahead of a step."""
 
 _FOLLOWED_EVERY = 5.0
-_PACE, _DAMPING_PACE = 0.001, 0.01
+_PACE = 0.01
 """
 Pace in [1/s] at which the logarithms of stiffness and damping follow those of the real tree.
 
-A softer tree leans more; at this pace its lean changes by a fifth in three minutes.
+A softer tree leans more; at this pace its lean changes by a fifth in 20 s, less than gusts do.
 """
 
 _DYNAMIC = 4.0
@@ -93,6 +94,9 @@ class ObservedTree(SwaySimulator):
         Whether stiffness and damping follow the sensors.
     has_band
         Whether it also says how sure it is (`band`).
+    upwind
+        Distance of the anemometer upwind of the tree in [m]: so far gusts travel. Sensors find it
+        where it is not told.
     submit
         Begins a call in another thread, as ``concurrent.futures.Executor.submit`` does, in which
         gains, mountings and fits are found beside the steps. The motion is the same without.
@@ -121,6 +125,7 @@ class ObservedTree(SwaySimulator):
         is_smoothed: bool = False,
         learns: bool = True,
         has_band: bool = False,
+        upwind: float = 0.0,
         submit: Submit | None = None,
         cache: ModelCache | None = PREPARED,
         plain: bool = False,
@@ -146,6 +151,8 @@ class ObservedTree(SwaySimulator):
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
+        self.late_wind = LateWind(within('upwind', upwind, 0.0, 1000.0, 'm'))
+        """The wind on its way from the anemometer."""
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
@@ -182,7 +189,12 @@ class ObservedTree(SwaySimulator):
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
         self.observer = Observer(
-            self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed, submit=self._submit
+            self,
+            tracks,
+            1.0 / rate,
+            wind=self.late_wind,
+            is_smoothed=self._is_smoothed,
+            submit=self._submit,
         )
         """What the sensors tell."""
         self._dragged = DraggedMotion(self.observer, 1.0 / rate)
@@ -271,6 +283,7 @@ class ObservedTree(SwaySimulator):
         eta -= added[0]
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
+            x, y, z = self.late_wind.push(x, y, z, dt)
             self._last_wind = x, y, z
             by_delay = self._crown.push(x, y, z, dt)
             apart = (self._share @ by_delay).tolist()
@@ -309,7 +322,7 @@ class ObservedTree(SwaySimulator):
     def _follow(self, fit: TreeFit) -> None:
         """Let the model come nearer to the stiffness and damping of the real tree."""
         wanted = np.log([fit.stiffness, fit.damping])
-        most = _FOLLOWED_EVERY * np.array([_PACE, _DAMPING_PACE])
+        most = _FOLLOWED_EVERY * _PACE
         change = np.clip(wanted - self._learned, -most, most)
         if not change.any():
             return
@@ -340,11 +353,12 @@ class ObservedTree(SwaySimulator):
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
-        return (*super()._memory(), *self._crown.memory(), self._added)
+        return (*super()._memory(), *self.late_wind.memory(), *self._crown.memory(), self._added)
 
     def reset(self) -> None:
         """Return to rest, with no wind; what is known about the sensors stays."""
         super().reset()
+        self.late_wind.reset()
         self._crown.reset()
         self._added[:] = 0.0
         self._dragged.reset()

@@ -27,6 +27,7 @@ from tree_sway.core.observe.correction_energy import find_energies
 from tree_sway.core.observe.disturbance import Disturbance
 from tree_sway.core.observe.estimate import Estimate
 from tree_sway.core.observe.gain_design import GainDesign, Gains, NOISE
+from tree_sway.core.observe.late_wind import LateWind
 from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.running_fit import RunningFit
 from tree_sway.core.observe.sensor_place import place_motion
@@ -64,6 +65,8 @@ class Observer:
         Sensors on the tree.
     dt
         Time step in [s].
+    wind
+        Wind of the tree, which is made as late as the sensors tell.
     is_smoothed
         Whether the smoothed state is kept too.
     submit
@@ -77,6 +80,7 @@ class Observer:
         tracks: Sequence[SensorTrack],
         dt: float,
         *,
+        wind: LateWind | None = None,
         is_smoothed: bool = False,
         submit: Submit | None = None,
     ) -> None:
@@ -88,7 +92,9 @@ class Observer:
         frequency = float(simulator.frequencies(1)[0])
         with one_thread():
             self._unknown = UnknownMotion(simulator, n, dt)
-            self._readings = SensorReadings(self._unknown, self.tracks, places, dt, submit)
+            self._readings = SensorReadings(
+                self._unknown, self.tracks, places, dt, wind or LateWind(), submit
+            )
         self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
         lag = SMOOTHED_LAG if is_smoothed else 0
         self._design = GainDesign(self._unknown, self.tracks, places, lag, submit)

@@ -10,14 +10,23 @@ had then.
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.late_wind import LateWind, LONGEST_WAY
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
-from tree_sway.core.observe.sensor_track import FoundMounting, ROWS, sensed_rows, SensorTrack
+from tree_sway.core.observe.sensor_track import (
+    FoundMounting,
+    LagRange,
+    NO_LAG,
+    ROWS,
+    sensed_rows,
+    SensorTrack,
+)
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
 LATEST = 30
@@ -27,6 +36,13 @@ _KEPT = 64
 
 _MOUNTED_AFTER = 12
 """Steps after which a mounting that is looked for is known."""
+
+_LEAST_LAG, _LEAST_CHANGE = 1.0, 0.2
+"""
+Least lag of the wind in [s] that is believed at first, and least change of it afterwards.
+
+Gusts reach single limbs later than the stem too: only the sensor that found a lag changes it.
+"""
 
 
 class SensorReadings:
@@ -41,6 +57,8 @@ class SensorReadings:
         Sensors, and how each is moved by the coordinates of the model.
     dt
         Time step in [s].
+    wind
+        Wind of the tree, which is made as late as the sensors tell.
     submit
         As `LaterWork` takes it.
 
@@ -52,10 +70,12 @@ class SensorReadings:
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
         dt: float,
+        wind: LateWind,
         submit: Submit | None = None,
     ) -> None:
         self._unknown, self._tracks, self._places = unknown, tracks, places
-        self._dt, self._submit = dt, submit
+        self._dt, self._wind, self._submit = dt, wind, submit
+        self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self.lateness = Lateness(len(tracks), dt, LATEST)
         """Steps by which sensors are read late."""
@@ -126,9 +146,27 @@ class SensorReadings:
             due = next((track for track in self._tracks if track.is_due), None)
             if due is None:
                 return
-            self._search = due, LaterWork(due.search(), _MOUNTED_AFTER, self._submit)
+            search = due.search(self._lags_of(due))
+            self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
         track, work = self._search
         found = work.advance()
         if found is not None:
             self._search = None
             track.take(found)
+            if found.lag:
+                self._told_lag = track
+                self._wind.delay_more(found.lag * self._dt)
+                for each in self._tracks:
+                    each.delay_model(found.lag)
+
+    def _lags_of(self, track: SensorTrack) -> LagRange:
+        """Find which lags of the wind a sensor may tell."""
+        delay = self._wind.delay
+        if self._told_lag not in (None, track):
+            return NO_LAG
+        if delay:
+            least = round(_LEAST_CHANGE / self._dt)
+        else:
+            least = max(round(_LEAST_LAG / self._dt), track.window)
+        earliest = -math.floor(delay / self._dt)
+        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)

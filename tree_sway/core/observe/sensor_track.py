@@ -19,10 +19,18 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.observe.alignment import align, Alignment, GRAVITY, LEAST_NOISE, TELLS_LITTLE
+from tree_sway.core.observe.alignment import (
+    align,
+    Alignment,
+    averaged,
+    GRAVITY,
+    LEAST_NOISE,
+    TELLS_LITTLE,
+)
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.sample_ring import read_samples
 from tree_sway.core.observe.sensor_place import PlaceMotion
+from tree_sway.core.observe.wind_lag import find_lag
 
 LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
@@ -145,24 +153,66 @@ def read_motion(
     return True
 
 
+class LagRange(NamedTuple):
+    """Earliest and latest lag of the wind in steps, and the least change of it that counts."""
+
+    earliest: int
+    latest: int
+    least: int
+
+
+NO_LAG = LagRange(0, 0, 1)
+"""Range of a wind whose lag is not in question."""
+
+
 class FoundMounting(NamedTuple):
-    """How a sensor is mounted, and its mean difference from the model then, (9,)."""
+    """
+    How a sensor is mounted, and its mean difference from the model then, (9,).
+
+    ``lag`` is by how many steps the tree moves later than the model.
+    """
 
     alignment: Alignment
     bias: Floats
+    lag: int = 0
 
 
 def _mountings(
-    sensed: Floats, computed: Floats, reference: Floats | None, window: int
+    sensed: Floats, computed: Floats, reference: Floats | None, window: int, lags: LagRange
 ) -> Iterator[FoundMounting]:
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     found = align(sensed, upright, free, reference, window)
+    lag = _lag(sensed, upright if found.has_gravity else free, window, lags)
+    if lag:
+        later, earlier = lagging(lag, len(sensed))
+        sensed, upright, free = sensed[later], upright[earlier], free[earlier]
+        found = align(sensed, upright, free, reference, window)
+    if found.problem:
+        lag = 0
     bias = np.zeros(9)
     if not found.problem:
         model = upright if found.has_gravity else free
         bias = (found.motion(sensed) - model).mean(axis=0)
-    yield FoundMounting(found, bias)
+    yield FoundMounting(found, bias, lag)
+
+
+def _lag(sensed: Floats, model: Floats, window: int, lags: LagRange) -> int:
+    """By how many steps a sensor moves later than the model, where that is sure; else 0."""
+    pairs = [
+        (averaged(sensed[:, rows], window), averaged(model[:, rows], window))
+        for rows in (slice(0, 3), slice(3, 6))
+        if np.isfinite(sensed[:, rows]).all()
+    ]
+    if not pairs or lags.earliest == lags.latest:
+        return 0
+    found = find_lag(pairs, lags.earliest, lags.latest, window)
+    return found.steps if found.is_sure and abs(found.steps) >= lags.least else 0
+
+
+def lagging(lag: int, count: int) -> tuple[slice, slice]:
+    """Rows of a sensor, and those of a model by a lag before, of a number of rows each."""
+    return slice(max(lag, 0), count + min(lag, 0)), slice(max(-lag, 0), count + min(-lag, 0))
 
 
 class SensorTrack:
@@ -319,12 +369,33 @@ class SensorTrack:
         """Whether it has seen enough motion for its mounting to be found again."""
         return self._count >= self._next_fit
 
-    def search(self) -> Iterator[FoundMounting]:
+    def search(self, lags: LagRange = NO_LAG) -> Iterator[FoundMounting]:
         """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self._count)
-        n = min(self._count, len(self._sensed))
-        sensed, computed = self._sensed[:n].copy(), self._computed[:n].T.copy()
-        return _mountings(sensed, computed, self.sensor.reference, self._window)
+        sensed, computed = self._remembered()
+        return _mountings(sensed, computed.T.copy(), self.sensor.reference, self._window, lags)
+
+    @property
+    def window(self) -> int:
+        """Steps in a period of the first sway."""
+        return self._window
+
+    def _remembered(self) -> tuple[Floats, Floats]:
+        """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
+        n, size = max(self._count, 0), len(self._sensed)
+        first = n % size if n > size else 0
+        memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
+        return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
+
+    def delay_model(self, lag: int) -> None:
+        """Remember the model as if its wind had been later by a number of steps."""
+        sensed, computed = self._remembered()
+        later, earlier = lagging(lag, len(sensed))
+        kept = max(len(sensed) - abs(lag), 0)
+        self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
+        if self._count > kept:
+            self._next_fit -= self._count - kept
+            self._count = kept
 
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on."""

@@ -17,7 +17,10 @@ positive definite:
     (k + M - 1 + D) u = T F - (M - 1) a + D u0,   k = T f / u >= 1,   D = h B / 2
 
 with a the mean acceleration without f, and u0 that of the last step: the drag is implicit by the
-damping B of the air, for F was found at the rates which the last step's force predicts.
+damping B of the air, for F was found at the rates which the last step's force predicts. B is
+``S M S``, S the roots of the damping of each coordinate at rest: a motion that hardly moves the
+bent tree is hardly damped there. With more damping than that its force would follow late, and
+feed it.
 
 A force s that is at right angles to the motion v in the middle, as the centrifugal, would lengthen
 v if it were constant. It turns with the motion instead, as ``G (v0 + v1) / 2`` with the
@@ -32,7 +35,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.kernel import part
-from tree_sway.core.run.dense import add_times, dot, multiply, solve_positive, take_block
+from tree_sway.core.run.dense import dot, multiply, solve_positive, take_block
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
 FASTEST = 2.5
@@ -64,16 +67,16 @@ class CoupledStep(NamedTuple):
     """Acceleration u of these by a force, (c,)."""
     own: Floats
     """k of these, (c,)."""
-    damping: Floats
-    """D of these for a drag of 1, (c, c)."""
+    root_damping: Floats
+    """S of these times the root of ``h / 2``, for a drag of 1, (c,)."""
     own_damping: Floats
-    """Diagonal of D for a drag of 1, of all coordinates, (m,)."""
+    """D of each coordinate by itself at rest, for a drag of 1, (m,)."""
     matrix: Floats
     """Matrix of the equation above, (c, c)."""
     rights: Floats
     """Right-hand sides of this equation, then its solutions, (3, c)."""
     products: Floats
-    """Scratch memory, (6, c)."""
+    """Scratch memory, (7, c)."""
 
 
 def coupled_step(
@@ -89,7 +92,7 @@ def coupled_step(
     half
         Coefficients of half a step, as in `table_model.fill_time_step`, (6, m).
     damping
-        Damping of the coordinates by the air for a drag of 1, (m, m).
+        Damping of each coordinate by the air at rest for a drag of 1, (m,).
     leading
         Number of coordinates that may be coupled.
     length
@@ -112,11 +115,11 @@ def coupled_step(
         stretch=stretch,
         per_force=per_force,
         own=stretch / per_force,
-        damping=0.5 * length * damping[np.ix_(coupled, coupled)],
-        own_damping=0.5 * np.diagonal(damping) * whole[5],
+        root_damping=np.sqrt(0.5 * length * damping[coupled]),
+        own_damping=0.5 * damping * whole[5],
         matrix=np.zeros((count, count)),
         rights=np.zeros((3, count)),
-        products=np.zeros((6, count)),
+        products=np.zeros((7, count)),
     )
 
 
@@ -168,13 +171,17 @@ def find_force(
     take_block(change, law.coupled, law.matrix)
     inertial = law.products[2]
     dragged = law.products[3]
+    rooted = law.products[6]
     multiply(law.matrix, free, inertial)
-    multiply(law.damping, last_pull, dragged)
-    add_times(law.matrix, drag, law.damping)
+    root = law.root_damping
     right = law.rights[0]
+    np.multiply(root, last_pull, rooted)
+    multiply(law.matrix, rooted, dragged)
     for k in range(len(right)):
-        right[k] += drag * dragged[k] - inertial[k]
-        law.matrix[k, k] += law.own[k]
+        right[k] += drag * root[k] * (dragged[k] + rooted[k]) - inertial[k]
+        for j in range(len(right)):
+            law.matrix[k, j] *= 1.0 + drag * root[k] * root[j]
+        law.matrix[k, k] += law.own[k] + drag * root[k] * root[k]
     if solve_positive(law.matrix, law.rights):
         _turn_with_motion(law, turning, along)
         for k in range(len(right)):

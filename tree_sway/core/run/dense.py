@@ -50,11 +50,6 @@ def take_block(matrix: Floats, rows: Ints, out: Floats) -> None:
     out[:] = matrix[np.ix_(rows, rows)]
 
 
-def add_times(matrix: Floats, factor: float, other: Floats) -> None:
-    """Add a multiple of another matrix of the same shape to a matrix."""
-    matrix += factor * other
-
-
 def solve_positive(matrix: Floats, rights: Floats) -> bool:
     """
     Solve for some right-hand sides (k, n), which the solutions replace.
@@ -173,15 +168,6 @@ if not WHY_PLAIN:
             for i in range(len(rows)):
                 for k in range(len(rows)):
                     out[i, k] = matrix[rows[i], rows[k]]
-
-        return loop
-
-    @_loop_of(add_times)
-    def _add_times(matrix, factor, other):  # type: ignore[no-untyped-def]
-        def loop(matrix, factor, other):  # type: ignore[no-untyped-def]
-            for i in range(matrix.shape[0]):
-                for k in range(matrix.shape[1]):
-                    matrix[i, k] += factor * other[i, k]
 
         return loop
 

@@ -138,12 +138,8 @@ class LimpStep(WindBasisBank):
         self.pose = inertia_at_rest(self.middles, model.shapes, down, model.weight_slopes)
         self.limp_motion = motion_of(model, len(self.pose.change))
         self._segments = segment_drag(model, self.branches, self.middles.tangent)
-        damping = damping_at_rest(self._segments, self.pose.columns_at_rest)
-        q = len(self.pose.factor)
-        damping[:q] = self.pose.factor @ damping[:q]
-        damping[:, :q] = damping[:, :q] @ self.pose.factor.T
-        self._drag = damping
-        """Damping of the coordinates by still air, per drag and speed, (m, m)."""
+        self._drag = damping_at_rest(self._segments, self.pose.columns_at_rest)
+        """Damping of each coordinate by still air, per drag and speed, (m,)."""
         self._law: CoupledStep | None = None
         self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
         self._begin_anew()

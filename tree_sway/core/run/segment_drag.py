@@ -68,13 +68,13 @@ def segment_drag(model: SwayModel, branches: Records, tangent: Floats) -> Segmen
 
 def damping_at_rest(drag: SegmentDrag, columns: Floats) -> Floats:
     """
-    Return the damping of coordinates by still air at most, per drag and speed, (m, m).
+    Return the damping of each coordinate by still air at most, per drag and speed, (m,).
 
     Columns are displacements of the segments at rest per unit of each coordinate, times the square
     roots of the masses, (m, 3 n).
     """
-    moved = columns / np.repeat(drag.root_mass, 3)
-    return np.asarray((moved * np.repeat(2.0 * drag.area * drag.speed, 3)) @ moved.T)
+    per_mass = 2.0 * drag.area * drag.speed / drag.root_mass**2
+    return np.asarray(np.square(columns) @ np.repeat(per_mass, 3))
 
 
 def fill_drag(

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import csv
 from datetime import datetime, timezone
+import os
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,15 @@ def refuse_no_history(path: str, names: Sequence[str]) -> None:
     if text and next(csv.reader(text.splitlines()[:1])) != _columns(names):
         cure = 'name another file; sensors of one table keep their names and places'
         raise FormatError('has other columns', where=path, cure=cure)
+
+
+def _is_cut_off(path: Path) -> bool:
+    """Whether the last row of a table has no end, as a full disk or a loss of power leaves it."""
+    if not path.is_file() or path.stat().st_size == 0:
+        return False
+    with path.open('rb') as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) != b'\n'
 
 
 def _columns(names: Sequence[str]) -> list[str]:
@@ -132,8 +142,11 @@ class TreeHistory:
         date = datetime.now(timezone.utc).isoformat(timespec='seconds').replace('+00:00', 'Z')
         cells = ['' if value is None else f'{value:.6g}' for value in values]
         try:
+            is_cut_off = _is_cut_off(self._path)
             with self._path.open('a', encoding='utf-8', newline='') as file:
                 writer = csv.writer(file, lineterminator='\n')
+                if is_cut_off:
+                    file.write('\n')
                 if file.tell() == 0:
                     writer.writerow(_columns(self._names))
                 writer.writerow([date, *cells])

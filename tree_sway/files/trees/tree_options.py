@@ -136,7 +136,7 @@ class TreeOptions:
             tree, beyond = grown_beyond(
                 replace(tree, species=species.key), twig, self.trusted_diameter
             )
-            notes += [] if beyond is None else [beyond.sentence()]
+            notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
             tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
@@ -153,3 +153,10 @@ class TreeOptions:
             content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=(x, y, z)
         )
         return done if species is content.species else done.of_species(species)
+
+
+def _why_nothing_grows(twig: float) -> str:
+    """Say why nothing was grown beyond a scan, whose last twigs have a diameter [m]."""
+    if twig <= 0.0:
+        return 'nothing is grown beyond it: give the diameter of its twigs, twig_diameter=0.003'
+    return f'nothing is grown beyond it: no end is thicker than two twigs of {1e3 * twig:g} mm'

@@ -26,6 +26,7 @@ from tree_sway.files.wind.station_means import filled_means
 
 _MOST = 20_000_000
 """Largest number of times."""
+_WORDS = {'time': 'time', 'wind_x': 'eastward wind', 'wind_y': 'northward wind'}
 
 
 def read_netcdf_wind(
@@ -76,7 +77,8 @@ def _read(
     names = {each: _find(data, each) for each in ('time', 'wind_x', 'wind_y', 'gust')}
     missing = [each for each in ('time', 'wind_x', 'wind_y') if names[each] is None]
     if missing:
-        what = f'no {" and no ".join(missing)} among {", ".join([*data.variables][:20])}'
+        said = [_WORDS[each] for each in missing]
+        what = f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}'
         raise FormatError(what, where=source, cure='choose the 10 m u and v components of wind')
     clock, x, y, gust = (data.variables.get(name) for name in names.values())
     notes, place = _place(data, x, point)
@@ -97,11 +99,15 @@ def _read(
 
 
 def _find(data: Any, quantity: str) -> str | None:
-    """Variable of a quantity whose name comes first among the usual ones."""
-    ranks = [
-        (rank, name) for name in data.variables if (rank := rank_of(name, quantity)) is not None
-    ]
-    return min(ranks)[1] if ranks else None
+    """Variable of a quantity whose name comes first among the usual ones, or standard name."""
+    ranks = list[tuple[bool, int, str]]()
+    for name, variable in data.variables.items():
+        standard_name = str(getattr(variable, 'standard_name', ''))
+        for is_standard, each in ((False, name), (True, standard_name)):
+            rank = rank_of(each, quantity)
+            if rank is not None:
+                ranks.append((is_standard, rank, name))
+    return min(ranks)[2] if ranks else None
 
 
 def _place(

@@ -68,8 +68,9 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     Raises
     ------
     FormatError
-        No time or no motion among the columns, an unknown unit, two quantities in one file, or a
-        cell that is not a finite number.
+        No time or no motion among the columns, an unknown unit, two quantities in one file other
+        than those of an IMU, of which the acceleration is taken, or a cell that is not a finite
+        number.
 
     """
     table = parse_table(lines, source)
@@ -83,6 +84,9 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     if 'seconds_elapsed' in names:  # Sensor Logger has axes x, y, z for all its sensors
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
+    if quantities == ['acceleration', 'rate']:  # of an IMU: both have the same frequencies
+        motion = [(i, quantity) for i, quantity in motion if quantity == 'acceleration']
+        quantities = ['acceleration']
     if len(quantities) > 1:
         what = f'{" and ".join(quantities)} in one file'
         raise table.error(what, cure='keep the columns of one quantity')

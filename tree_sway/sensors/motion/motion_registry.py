@@ -58,7 +58,7 @@ def open_motion(text: str) -> OpenedMotion:
             ),
         )
     source = known[address.scheme](address)
-    name = address.text_of('name')
+    name = address.name
     address.refuse_others()
     return OpenedMotion(source, name or source.name)
 

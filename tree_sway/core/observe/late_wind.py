@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind at a tree that stands downwind of the anemometer: the one measured some seconds ago.
+
+Gusts travel with the mean wind, as in `gust_travel`. Either the distance is told, or `wind_lag`
+finds how long they take, and the distance follows from the first ten minutes of wind. From then on
+the time follows the mean speed of the last ten minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, partial
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel
+from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
+
+LONGEST_WAY = 15.0
+"""Longest time in [s] by which gusts may be later than at the anemometer."""
+
+_AVERAGED = 600.0
+_SLOWEST = 1.0
+_CAPACITY = 1024
+_FINEST = 2.0 * LONGEST_WAY / (_CAPACITY - 4)
+
+
+class LateWind:
+    """
+    The wind of the last seconds, and the one that reaches the tree now.
+
+    Parameters
+    ----------
+    distance
+        Distance of the anemometer upwind of the tree in [m].
+
+    """
+
+    def __init__(self, distance: float = 0.0) -> None:
+        self._run, self._at = np.zeros((_CAPACITY, 4)), np.zeros(2, dtype=np.int64)
+        self._mean, self._wanted = np.zeros(3), np.zeros(1)
+        self._way = np.array([distance, 0.0])  # distance [m], and 1 while it is not yet known
+        self._delay, self._wind = np.zeros(1), np.zeros((1, 3))
+
+    def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
+        """Add the mean wind [m/s] of a step of dt [s] at the anemometer; return the tree's."""
+        self._compiled(x, y, z, dt)
+        east, north, up = self._wind[0].tolist()
+        return east, north, up
+
+    @cached_property
+    def _compiled(self) -> Callable[[float, float, float, float], None]:
+        arrays = self._run, self._at, self._mean, self._way, self._wanted, self._delay, self._wind
+        return partial(entry_of(push_late, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    @property
+    def delay(self) -> float:
+        """Time in [s] by which gusts are later than at the anemometer."""
+        return float(self._delay[0])
+
+    @property
+    def distance(self) -> float:
+        """Distance of the anemometer upwind in [m]."""
+        return float(self._way[0])
+
+    def delay_more(self, time: float) -> None:
+        """Let gusts be later by another time in [s], from the next step on."""
+        self._delay[0] = min(max(self._delay[0] + time, 0.0), LONGEST_WAY)
+        self._way[:] = self._delay[0] * max(self._mean[0], _SLOWEST), 1.0
+
+    def memory(self) -> tuple[NDArray[Any], ...]:
+        """Return views of the state."""
+        return self._run, self._at, self._mean, self._way, self._delay
+
+    def reset(self) -> None:
+        """Forget the wind; where the anemometer stands stays."""
+        for array in (self._run, self._at, self._mean, self._delay):
+            array[...] = 0
+
+
+@kernel
+def push_late(
+    run: Floats, at: NDArray[np.int64], mean: Floats, way: Floats, wanted: Floats, delay: Floats,
+    wind: Floats, x: float, y: float, z: float, dt: float,
+) -> None:  # fmt: skip
+    """Perform `LateWind.push`."""
+    remember(run, at, _FINEST, x, y, z, dt)
+    follow_mean(mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
+    speed = max(mean[0], _SLOWEST)
+    if way[1] > 0.0:
+        way[0] = delay[0] * speed
+        way[1] = 1.0 if mean[2] < _AVERAGED else 0.0
+    wanted[0] = way[0] / speed
+    past_winds(run, at, wanted, delay, LONGEST_WAY, x, y, z, dt, wind)

@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How much later than at the anemometer gusts reach the tree, from the motion of a sensor.
+
+Turbulence moves with the mean wind and changes little on the way (Taylor 1938, Proceedings of the
+Royal Society A 164, 476-490): the tree moves as the model did in the wind of some seconds before.
+Of all lags, the right one has the largest correlation of sensor and model over all ways in which
+the sensor may be mounted, the sum of the singular values of their covariance (Wahba 1965, SIAM
+Review 7, 409).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+
+_LIKE, _BY_CHANCE = 0.33, 2.4
+"""
+Least correlation at a lag that is believed, and that over the one of a single period of sway.
+
+Motions of some periods resemble each other by chance, by the root of their number.
+"""
+
+_OVER_OTHERS = 1.3
+"""Least correlation at a lag over that at lags of a period of sway or more beside it."""
+
+_LEAST_OVERLAP = 0.5
+"""Least share of the samples that are compared at a lag."""
+
+
+class WindLag(NamedTuple):
+    """A lag in steps, the correlation at it and the largest one beside it, periods compared."""
+
+    steps: int
+    likeness: float
+    beside: float
+    n_periods: float
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the lag is believed."""
+        chance = _BY_CHANCE / math.sqrt(max(self.n_periods, 1.0))
+        return self.likeness > max(_LIKE, chance, _OVER_OTHERS * self.beside)
+
+
+def find_lag(
+    pairs: Sequence[tuple[Floats, Floats]], least: int, most: int, period: int
+) -> WindLag:
+    """
+    Find by how many steps a sensor is behind a model.
+
+    Parameters
+    ----------
+    pairs
+        Motion of the sensor, in any frame, and of the model, (n, 3) each, of every quantity that
+        is measured.
+    least, most
+        Smallest and largest lag in steps.
+    period
+        Steps in a period of sway: lags closer to each other count as one.
+
+    """
+    n = len(pairs[0][0])
+    least, most = max(least, -round(_LEAST_OVERLAP * n)), min(most, round(_LEAST_OVERLAP * n))
+    lags = np.arange(least, most + 1)
+    size = 1 << (2 * n - 1).bit_length()  # of a wave without overlap
+    covariance = np.zeros((len(lags), 3, 3))
+    own, other = np.zeros((2, len(lags)))
+    for sensed, model in pairs:
+        moved, wanted = _of_size_one(sensed), _of_size_one(model)
+        waves = np.fft.rfft(moved, size, axis=0)[:, :, None]
+        waves = waves * np.fft.rfft(wanted, size, axis=0)[:, None].conj()
+        covariance += np.fft.irfft(waves, size, axis=0)[lags]
+        own += _sums(np.square(moved).sum(axis=1), lags)
+        other += _sums(np.square(wanted).sum(axis=1), -lags)
+    values = np.linalg.svd(covariance, compute_uv=False).sum(axis=1)
+    likeness = values / np.sqrt(np.maximum(own * other, 1e-300))
+    best = int(np.argmax(likeness))
+    apart = np.abs(lags - lags[best]) >= period
+    beside = float(likeness[apart].max()) if apart.any() else 0.0
+    return WindLag(int(lags[best]), float(likeness[best]), beside, n / period)
+
+
+def _of_size_one(rows: Floats) -> Floats:
+    """Motion (n, 3) about its mean, over its root mean square."""
+    beyond = rows - rows.mean(axis=0)
+    return np.asarray(beyond / max(float(beyond.std()), 1e-300))
+
+
+def _sums(squares: Floats, lags: Ints) -> Floats:
+    """Sum the squares (n,) of a motion that are compared with an earlier one, at each lag."""
+    sums = np.concatenate([[0.0], np.cumsum(squares)])
+    last = len(squares) - np.maximum(-lags, 0)
+    return np.asarray(sums[last] - sums[np.maximum(lags, 0)])
