@@ -136,3 +136,13 @@ def test_a_told_distance_of_the_anemometer_is_for_a_tree_without_sensors() -> No
     for each in told:
         each.step((5.0, 0.0, 0.0), DT)
     assert [each.late_wind.delay for each in told] == pytest.approx([6.0, 0.0])
+
+
+@pytest.mark.long
+def test_a_sensor_on_a_limb_tells_one_period_of_sway_from_the_next(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = 'lab twin crooked --model 120 --seconds 60 --sensors 1 --seed 415 --upwind 30'.split()
+    assert main([*words, '--advised', '--without-band']) == 0
+    *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
+    assert last['notes'].startswith('gusts 4.')
