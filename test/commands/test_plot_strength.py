@@ -16,16 +16,23 @@ pytest.importorskip('matplotlib', reason='needs matplotlib')
 
 
 def test_a_curve_is_drawn_and_printed(tmp_path, capsys):
-    picture = tmp_path / 'strength.png'
+    picture = tmp_path / 'strength.svg'
     tree = 'test/files/data/fork.simpleforest.csv'
     options = ['--strength', '--species', 'oak', '--model', '6', '--speed', '12']
     assert main(['plot', tree, *options, '-o', str(picture)]) == 0
-    assert picture.stat().st_size > 10_000
+    assert '<!-- fork.simpleforest, wind at 2.3 m -->' in picture.read_text(encoding='utf-8')
     text = capsys.readouterr().out
     shares = [float(share) for share in re.findall(r'wood ([\d.e+-]+) %', text)]
     assert len(shares) == 6
     assert shares == sorted(shares)
     assert shares[0] > 0.0
+
+
+def test_what_is_unknown_is_said_in_the_picture(tmp_path):
+    picture = tmp_path / 'strength.svg'
+    tree = ['benjamina', '--model', '6', '--speed', '12']  # in a pot
+    assert main(['plot', *tree, '--strength', '-o', str(picture)]) == 0
+    assert picture.read_text(encoding='utf-8').count(': unknown -->') == 1
 
 
 def test_a_stand_has_a_curve_of_each_kind(tmp_path, capsys):

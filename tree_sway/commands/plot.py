@@ -145,9 +145,10 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         )  # fmt: skip
         rig = strength_rig(each, settings)
         rng = np.random.default_rng(0)
-        used[each.name] = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
-        for speed, use in zip(speeds, used[each.name], strict=True):
+        curve = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
+        for speed, use in zip(speeds, curve, strict=True):
             print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
+        used[f'{each.name}, wind at {exposure.reference_height:.3g} m'] = curve
     plot_strength(speeds, used, output)
 
 

@@ -71,7 +71,8 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     speeds
         Mean wind speeds in [m/s], (n,).
     used
-        Used shares at each speed by the name of each tree, with the bands of the sources.
+        Used shares at each speed, with the bands of the sources, by the name of each tree and the
+        height of its mean wind.
     path
         File to write, whose suffix is that of the format.
 
@@ -81,7 +82,8 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
         for name, curve in used.items():
             percent = 100.0 * np.array([getattr(each, what) for each in curve])
             share, least, most = percent.T
-            (line,) = axes.plot(speeds, share, label=name)
+            unknown = bool(np.isnan(share).all())
+            (line,) = axes.plot(speeds, share, label=f'{name}: unknown' if unknown else name)
             axes.fill_between(speeds, least, most, color=line.get_color(), alpha=0.15, lw=0)
         axes.axhline(100.0, color='black', lw=0.8, ls='--')
         axes.set(title=what, xlabel='mean wind [m/s]', ylim=(0.0, 200.0))

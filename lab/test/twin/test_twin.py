@@ -21,6 +21,7 @@ from tree_sway_lab.twin.true_tree import (
 )
 
 from tree_sway.commands.cli import main
+from tree_sway.core.observe.observed_tree import ObservedTree
 
 TIME = DT * np.arange(3000)
 TIPS = np.stack([np.sin(TIME), np.cos(1.3 * TIME), 0.0 * TIME], axis=1)[:, None]
@@ -124,3 +125,24 @@ def test_a_model_that_knows_the_tree_errs_less(capsys: pytest.CaptureFixture[str
         *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
         errors.append(float(last['error']))
     assert errors[1] < 0.8 * errors[0]
+
+
+def test_a_told_distance_of_the_anemometer_is_for_a_tree_without_sensors() -> None:
+    tree, species = tree_called('straight')
+    told = [
+        ObservedTree(tree, species, model=30, in_leaf=False, at=at, upwind=30.0)
+        for at in ({}, {'phone': 1.0})
+    ]
+    for each in told:
+        each.step((5.0, 0.0, 0.0), DT)
+    assert [each.late_wind.delay for each in told] == pytest.approx([6.0, 0.0])
+
+
+@pytest.mark.long
+def test_a_sensor_on_a_limb_tells_one_period_of_sway_from_the_next(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = 'lab twin crooked --model 120 --seconds 60 --sensors 1 --seed 415 --upwind 30'.split()
+    assert main([*words, '--advised', '--without-band']) == 0
+    *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
+    assert last['notes'].startswith('gusts 4.')

@@ -82,7 +82,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--without-band', action='store_true', help='us/step is that of the sensors alone')
     add('--advised', action='store_true', help='sensors where tree-sway info --sensors advises')
     add('--known', action='store_true', help='the model has the wood and damping of the true tree')
-    add('--tell-upwind', action='store_true', help='the model knows --upwind')
+    add(
+        '--tell-upwind',
+        action='store_true',
+        help='the model knows --upwind where it has no sensor',
+    )
     add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
     for name, what in (
         ('wood', 'modulus of the true tree over the model'),

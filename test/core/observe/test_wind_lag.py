@@ -42,6 +42,15 @@ def test_no_lag_of_another_motion_is_believed(seed: int) -> None:
     assert not find_lag([(motion(seed), motion(seed + 100))], 0, 900, PERIOD).is_sure
 
 
+def test_a_lag_is_not_believed_where_the_present_wind_explains_half_as_much() -> None:
+    whole = motion(1, 3000)
+    model, later = whole[300:2700], whole[200:2600]
+    found = find_lag([(later + 0.65 * model, model)], -300, 600, PERIOD)
+    assert found.steps == pytest.approx(100, abs=10)
+    assert found.likeness > 1.4 * found.beside
+    assert not found.is_sure
+
+
 def blown(wind: LateWind, speeds: Floats) -> Floats:
     return np.array([wind.push(float(each), 0.0, 0.0, DT)[0] for each in speeds])
 

@@ -95,8 +95,8 @@ class ObservedTree(SwaySimulator):
     has_band
         Whether it also says how sure it is (`band`).
     upwind
-        Distance of the anemometer upwind of the tree in [m]: so far gusts travel. Sensors find it
-        where it is not told.
+        Distance of the anemometer upwind of the tree in [m], for a tree without sensors: those
+        find how long gusts travel, and more exactly than the mean wind of the first minutes.
     submit
         Begins a call in another thread, as ``concurrent.futures.Executor.submit`` does, in which
         gains, mountings and fits are found beside the steps. The motion is the same without.
@@ -151,7 +151,8 @@ class ObservedTree(SwaySimulator):
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
-        self.late_wind = LateWind(within('upwind', upwind, 0.0, 1000.0, 'm'))
+        distance = within('upwind', upwind, 0.0, 1000.0, 'm')
+        self.late_wind = LateWind(0.0 if self._places else distance)
         """The wind on its way from the anemometer."""
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)

@@ -183,7 +183,7 @@ def _mountings(
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     found = align(sensed, upright, free, reference, window)
-    lag = _lag(sensed, upright if found.has_gravity else free, window, lags)
+    lag = _lag(sensed, upright, free, window, lags, has_gravity=found.has_gravity)
     if lag:
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
@@ -197,12 +197,27 @@ def _mountings(
     yield FoundMounting(found, bias, lag)
 
 
-def _lag(sensed: Floats, model: Floats, window: int, lags: LagRange) -> int:
-    """By how many steps a sensor moves later than the model, where that is sure; else 0."""
+def _lag(
+    sensed: Floats,
+    upright: Floats,
+    free: Floats,
+    window: int,
+    lags: LagRange,
+    *,
+    has_gravity: bool,
+) -> int:
+    """
+    By how many steps a sensor moves later than the model, where that is sure; else 0.
+
+    Gravity tells the lean in gusts, which a softer tree has in common with its model. The rest is
+    sway, which resembles itself a period later.
+    """
+    model = upright if has_gravity else free
+    told = [rows for rows in (slice(0, 3), slice(3, 6)) if np.isfinite(sensed[:, rows]).all()]
+    if has_gravity and slice(0, 3) in told:
+        told = told[:1]
     pairs = [
-        (averaged(sensed[:, rows], window), averaged(model[:, rows], window))
-        for rows in (slice(0, 3), slice(3, 6))
-        if np.isfinite(sensed[:, rows]).all()
+        (averaged(sensed[:, rows], window), averaged(model[:, rows], window)) for rows in told
     ]
     if not pairs or lags.earliest == lags.latest:
         return 0

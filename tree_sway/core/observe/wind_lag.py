@@ -30,21 +30,37 @@ Motions of some periods resemble each other by chance, by the root of their numb
 _OVER_OTHERS = 1.3
 """Least correlation at a lag over that at lags of a period of sway or more beside it."""
 
+_OVER_PRESENT = 2.0
+"""
+Least correlation over that without a lag, where both are a period of sway or more apart.
+
+A softer tree resembles its model a period later too. Where the wind comes late, the present one
+resembles it by chance only.
+"""
+
 _LEAST_OVERLAP = 0.5
 """Least share of the samples that are compared at a lag."""
 
 
 class WindLag(NamedTuple):
-    """A lag in steps, the correlation at it and the largest one beside it, periods compared."""
+    """
+    A lag in steps; the correlation at it, the largest one beside it, and that without a lag.
+
+    ``period`` is the number of steps in a period of sway, ``n_periods`` how many are compared.
+    """
 
     steps: int
     likeness: float
     beside: float
+    present: float
+    period: int
     n_periods: float
 
     @property
     def is_sure(self) -> bool:
         """Whether the lag is believed."""
+        if abs(self.steps) >= self.period and self.likeness < _OVER_PRESENT * self.present:
+            return False
         chance = _BY_CHANCE / math.sqrt(max(self.n_periods, 1.0))
         return self.likeness > max(_LIKE, chance, _OVER_OTHERS * self.beside)
 
@@ -61,7 +77,7 @@ def find_lag(
         Motion of the sensor, in any frame, and of the model, (n, 3) each, of every quantity that
         is measured.
     least, most
-        Smallest and largest lag in steps.
+        Smallest and largest lag in steps, at most 0 and at least 0.
     period
         Steps in a period of sway: lags closer to each other count as one.
 
@@ -84,7 +100,8 @@ def find_lag(
     best = int(np.argmax(likeness))
     apart = np.abs(lags - lags[best]) >= period
     beside = float(likeness[apart].max()) if apart.any() else 0.0
-    return WindLag(int(lags[best]), float(likeness[best]), beside, n / period)
+    present = float(likeness[np.searchsorted(lags, 0)])
+    return WindLag(int(lags[best]), float(likeness[best]), beside, present, period, n / period)
 
 
 def _of_size_one(rows: Floats) -> Floats:
