@@ -26,9 +26,16 @@ LONGEST_WAY = 15.0
 """Longest time in [s] by which gusts may be later than at the anemometer."""
 
 _AVERAGED = 600.0
+"""Time in [s] over which the mean speed is taken."""
+
 _SLOWEST = 1.0
+"""Least mean speed in [m/s] with which gusts travel, so that a calm delays nothing for ever."""
+
 _CAPACITY = 1024
+"""Number of past winds that are kept."""
+
 _FINEST = 2.0 * LONGEST_WAY / (_CAPACITY - 4)
+"""Least time in [s] between them, so that they reach back for longer than the longest way."""
 
 
 class LateWind:
@@ -89,7 +96,12 @@ def push_late(
     run: Floats, at: NDArray[np.int64], mean: Floats, way: Floats, wanted: Floats, delay: Floats,
     wind: Floats, x: float, y: float, z: float, dt: float,
 ) -> None:  # fmt: skip
-    """Perform `LateWind.push`."""
+    """
+    Perform `LateWind.push`.
+
+    Gusts are late by ``way[0] / speed``; while the distance is not yet known (``way[1]``) it is
+    that of the delay found, ``delay speed``, at the present mean speed.
+    """
     remember(run, at, _FINEST, x, y, z, dt)
     follow_mean(mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
     speed = max(mean[0], _SLOWEST)
