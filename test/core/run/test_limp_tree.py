@@ -30,7 +30,7 @@ from tree_sway.core.run.pose_inertia import (
 )
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.scene.simulate import Rig, simulate
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import FASTEST_LIMP, TreeReductions
 from tree_sway.core.tree.species import species_named
@@ -137,6 +137,11 @@ def test_it_does_not_rattle_at_60_hz(tree, most_error):
     tips = record_tips(make_simulator(tree, WOOD, SETTINGS), tree, wind, FRAME)[: len(truth)]
     assert 0.8 < roughness(tips, truth) < 1.2
     assert tip_error(tree, tips, truth) < most_error
+
+
+def test_a_record_says_how_many_coordinates_were_left_out():
+    record = simulate(weeping(3), np.full((9, 3), 2.0), settings=SETTINGS)
+    assert ' of 60 coordinates are solved' in ''.join(record.notes)
 
 
 def test_a_limp_tree_keeps_its_slow_coordinates():
