@@ -570,6 +570,13 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
          'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
          'Sways differently: frequencies +7.6 % from those of 1.3 h; a limb lost, loose roots, '
          'ice or leaves?'),
+        ({'change': {'is_change': True, 'percent': 1.2, 'hours': 1.0, 'power': 2.53, 'low': 2.71,
+                     'high': 3.26}, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
+         'Sways differently: 2.5 times the power at 2.71 to 3.26 Hz of 1.0 h before; a limb lost, '
+         'loose roots, ice or leaves?'),
         ({'change': {'is_change': False, 'percent': -0.62, 'hours': 0.5}, 'sensors': [
             {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
              'residual': 0.251}]},

@@ -286,11 +286,14 @@ class Session:
         }
         if changes := simulator.sway_changes:
             first = max(changes, key=lambda each: each.size)
-            told['change'] = {
+            change: dict[str, object] = {
                 'is_change': first.is_change,
                 'percent': round(100.0 * (first.ratio - 1.0), 1),
                 'hours': round(first.hours, 2),
             }
+            if (band := first.changed_band) is not None:
+                change |= {name: round(value, 3) for name, value in band._asdict().items()}
+            told['change'] = change
         if (learned := simulator.learned) is not None:
             told['learned'] = {
                 'frequency': round(learned.frequency, 4),

@@ -31,13 +31,17 @@ HOUR = round(3600.0 / DT)
 RESTING = round(20.0 / DT)
 """Steps after a cut in which the sensor is silent."""
 
+LIKE_WINDS = (5.0, 6.0, 5.0, 6.0, 5.0, 6.0, 5.0)
+"""Mean winds that the hour after a cut has in common with the one before [m/s]."""
+
 
 class Case(NamedTuple):
-    """A tree, and the mean wind every half hour [m/s]."""
+    """A tree, the mean wind every half hour [m/s], and by how much it turns in all [rad]."""
 
     tree: str
     seed: int
     speeds: tuple[float, ...]
+    turn: float = 0.0
 
 
 def wind_of(case: Case, count: int) -> Floats:
@@ -46,7 +50,11 @@ def wind_of(case: Case, count: int) -> Floats:
     wind = simulate_turbulence(5.0, rate=1.0 / DT, duration=count * DT, rng=rng)[:count]
     when = np.linspace(0.0, count, len(case.speeds))
     means = np.interp(np.arange(count), when, case.speeds)
-    return wind * (means / 5.0)[:, None]
+    turned = np.linspace(0.0, case.turn, count)
+    x, y, z = (wind * (means / 5.0)[:, None]).T
+    east = np.cos(turned) * x - np.sin(turned) * y
+    north = np.sin(turned) * x + np.cos(turned) * y
+    return np.stack([east, north, z], axis=1)
 
 
 def poses_of(tree: Tree, species: Species, at: str, wind: Floats, seed: int) -> Floats:
@@ -93,13 +101,16 @@ def watched(case: Case, whole: int, cut: int = 0) -> tuple[ObservedTree, list[st
     'case',
     [
         Case('crooked', 601, (6.0, 4.0, 7.0, 5.0)),
+        Case('limbs4', 611, LIKE_WINDS, 0.3),
+        Case('straight 2', 632, (5.0, 7.0, 4.0, 6.0)),
+        Case('crooked 11', 811, LIKE_WINDS, 0.3),
         pytest.param(
             Case('crooked 3', 602, (5.0, 7.0, 4.0, 6.0)),
-            marks=pytest.mark.xfail(reason='it moves frequencies by 1.4 %, within chance'),
+            marks=pytest.mark.xfail(reason='the bands differ by 5.97 of the 6 errors that count'),
         ),
         pytest.param(
             Case('candelabra', 602, (5.0, 7.0, 4.0, 6.0)),
-            marks=pytest.mark.xfail(reason='no sway of its own stands out of that of many stems'),
+            marks=pytest.mark.xfail(reason='its short stem sways by less than the noise'),
         ),
     ],
 )
@@ -120,6 +131,8 @@ def test_a_lost_limb_is_seen_within_an_hour(case: Case) -> None:
         Case('crooked', 603, (3.0, 8.0, 4.0, 7.0, 3.0, 6.0)),
         Case('spruce 8', 604, (8.0, 3.0, 6.0, 2.5, 7.0, 4.0)),
         Case('straight', 605, (4.0, 8.0, 2.5, 6.0, 3.0, 7.0)),
+        Case('limbs4', 711, (4.0, 8.0, 2.5, 6.0, 3.0, 7.0), 1.5),
+        Case('crooked 9', 712, (4.0, 8.0, 2.5, 6.0, 3.0, 7.0), -1.0),
     ],
 )
 def test_three_hours_of_wind_are_no_change(case: Case) -> None:

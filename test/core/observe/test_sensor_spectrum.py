@@ -19,7 +19,7 @@ def test_it_is_the_mean_over_stretches_that_overlap_by_half() -> None:
     motion, force = rng.normal(size=(1000, 3)), rng.normal(size=(1000, FORCES)) + 5.0
     spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
     for each in zip(motion, force, strict=True):
-        spectrum.add(*each)
+        spectrum.add(*each, each[0])
     # The fifth half ends with the record: its stretch has not been transformed yet.
     assert spectrum.count == 3
     series = np.hstack([motion[:, :2], force])
@@ -35,17 +35,20 @@ def test_it_is_the_mean_over_stretches_that_overlap_by_half() -> None:
     np.testing.assert_allclose(
         spectrum.products, np.moveaxis(wanted[..., inside], 2, 0), atol=1e-9 * np.abs(wanted).max()
     )
+    frequencies = np.round(spectrum.watched_frequencies * LENGTH * DT).astype(int)
+    power = 3.0 * wanted[[0, 1], [0, 1]].real
+    np.testing.assert_allclose(spectrum.end_block().watched, power[:, frequencies].T, rtol=1e-9)
 
 
 def test_a_gap_begins_a_stretch_anew() -> None:
     spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
-    still = np.zeros(3), np.zeros(FORCES)
+    still = np.zeros(3), np.zeros(FORCES), np.zeros(3)
     for _ in range(300):
         spectrum.add(*still)
     assert spectrum.until_first == pytest.approx(10.0)
     spectrum.skip()
     assert spectrum.until_first == pytest.approx(LENGTH * DT)
-    for _ in range(LENGTH + 2 + FORCES):
+    for _ in range(LENGTH + 4 + FORCES):
         assert spectrum.count == 0
         spectrum.add(*still)
     assert spectrum.count == 1

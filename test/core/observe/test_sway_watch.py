@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Another frequency is seen within two blocks of motion; other winds are no change."""
+"""Another frequency or another mode is seen within two blocks; other winds are no change."""
 
 from __future__ import annotations
 
@@ -26,17 +26,28 @@ def swayed(frequency: float, wind: float, rng: np.random.Generator) -> Floats:
     return np.asarray(lfilter([1.0], denominator, forces, axis=0))
 
 
-def watched(frequencies: list[float], seed: int, share: float = 1.0) -> SwayWatch:
-    """Watch blocks of these frequencies [Hz], of a share of the sway, measured with noise."""
+def watched(
+    frequencies: list[float], seed: int, share: float = 1.0, limb: float = 3.0
+) -> SwayWatch:
+    """
+    Watch blocks of these frequencies [Hz], of a share of the sway, measured with noise.
+
+    From the sixth block on, a limb, whose own mode is seen little, has another frequency [Hz].
+    """
     rng = np.random.default_rng(seed)
     spectrum = SensorSpectrum(1.0, DT, 1)
-    watch = SwayWatch(spectrum)
+    watch = SwayWatch(spectrum, 1.0)
     force = np.zeros(1)
-    for frequency, wind in zip(frequencies, WINDS, strict=False):
-        motion = share * swayed(frequency, wind, rng) + NOISE * rng.normal(size=(N_STEPS, 3))
+    blown, count = 0.0, 0
+    for k, (frequency, wind) in enumerate(zip(frequencies, WINDS, strict=False)):
+        of_limb = 0.2 * swayed(3.0 if k < 5 else limb, wind, rng)
+        sway = swayed(frequency, wind, rng) + of_limb
+        motion = share * sway + NOISE * rng.normal(size=(N_STEPS, 3))
         for each in motion:
-            spectrum.add(each, force)
-            watch.note(wind, NOISE)
+            spectrum.add(each, force, each)
+            blown, count = blown + wind, count + 1
+            if watch.is_due:
+                watch.advance((blown, 0.0, count), NOISE, NOISE)
     return watch
 
 
@@ -56,6 +67,16 @@ def test_another_frequency_is_seen_and_stays_said(ratio: float) -> None:
         assert watch.change is not None
         assert watch.change.ratio == pytest.approx(ratio, abs=0.05)
         assert 'sways differently' in str(watch.change)
+
+
+def test_another_mode_of_a_limb_is_seen_in_its_band() -> None:
+    watch = watched([1.0] * 8, seed=9, limb=3.6)
+    assert watch.change is not None
+    assert watch.change.ratio == pytest.approx(1.0, abs=0.03)
+    band = watch.change.changed_band
+    assert band is not None
+    assert 2.5 < band.low < band.high < 4.5
+    assert 'times the power' in str(watch.change)
 
 
 def test_noise_alone_tells_nothing() -> None:

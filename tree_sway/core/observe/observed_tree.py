@@ -69,9 +69,9 @@ _DYNAMIC = 4.0
 
 @dataclass
 class _Record:
-    """Times [s], (n,), rows of each quantity, and the next one to be offered."""
+    """Times [s], rows of each quantity, (n, 3) or (n, 4), and the next one to be offered."""
 
-    time: Floats
+    time: list[float]
     rows: dict[str, Floats]
     next: int = 0
 
@@ -262,7 +262,7 @@ class ObservedTree(SwaySimulator):
             )
             if each is not None
         }
-        self._records[name] = _Record(times[order], rows)
+        self._records[name] = _Record(times[order].tolist(), rows)
 
     def _offer_records(self, until: float) -> None:
         """Offer the samples of all records up to a time in [s]."""
@@ -301,8 +301,7 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        speed = math.hypot(*self._last_wind)
-        correction = self.observer.step(self.now, speed, swing, n_periods)
+        correction = self.observer.step(self.now, self._last_wind, swing, n_periods)
         self._bound(correction)
         added[:] = self._dragged.step(correction[1], n_periods)
         self.observer.note_dragged(added[0])

@@ -179,7 +179,11 @@ class Observer:
         return bool(self._design.used)
 
     def step(
-        self, time: float, speed: float, swing: tuple[Floats, ...], n_periods: int = 1
+        self,
+        time: float,
+        wind: tuple[float, float, float],
+        swing: tuple[Floats, ...],
+        n_periods: int = 1,
     ) -> Floats:
         """
         Observe a step.
@@ -188,8 +192,8 @@ class Observer:
         ----------
         time
             Time of the end of the step in [s].
-        speed
-            Speed of the mean wind that moves the tree in [m/s], finite.
+        wind
+            Mean wind that moves the tree in [m/s], finite.
         swing
             Displacement, rate and force of each coordinate in the wind alone, (m,).
         n_periods
@@ -202,12 +206,12 @@ class Observer:
 
         """
         self._step += 1
-        self._unknown.note_wind(speed)
+        self._unknown.note_wind(math.hypot(*wind))
         self._readings.note(self._step, swing)
         if self._smoothed is not None:
             self._smoothed.note_computed(self._step, swing[0])
         if self._readings.read(time, self._step, self._done):
-            self._fit.add(self._readings.is_known, self._readings.forces)
+            self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:
             self._take(gains)
@@ -271,8 +275,8 @@ class Observer:
         readings, used = self._readings, self._design.used
         for k in used:
             readings.is_known[k] &= self.tracks[k].in_use
-        np.take(readings.beyond, self._row_of, out=self._values, mode='clip')
-        np.take(readings.is_known, self._sensor_of, out=self._is_known, mode='clip')
+        readings.beyond.take(self._row_of, out=self._values, mode='clip')
+        readings.is_known.take(self._sensor_of, out=self._is_known, mode='clip')
         estimate.advance(self._values, self._is_known, n_periods)
         share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
         np.subtract(self._wanted_trust, self.trust, out=self._less_trust)

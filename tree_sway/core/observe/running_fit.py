@@ -60,23 +60,29 @@ class RunningFit:
         n = unknown.count
         self._places = [each.first(n) for each in places]
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
-        self.watches = [SwayWatch(each) for each in self._spectra]
+        self.watches = [SwayWatch(each, frequency, submit) for each in self._spectra]
         """Whether the tree still sways as it did, by each sensor."""
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
+        self._east = self._north = 0.0
+        self._n_winds = 0
         self._work: LaterWork[TreeFit] | None = None
         self._fit_after = _FIRST
         self.found: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
 
-    def add(self, is_known: NDArray[np.bool_], forces: Floats) -> None:
-        """Add the motion that sensors have just read, and the forces of the wind then, (n,)."""
-        wind = self._unknown.mean_speed
+    def add(self, is_known: NDArray[np.bool_], forces: Floats, east: float, north: float) -> None:
+        """Add the motion that sensors have just read, forces of the wind, (n,), and the wind."""
+        self._east += east
+        self._north += north
+        self._n_winds += 1
         for known, track, spectrum, watch in zip(
             is_known.tolist(), self._tracks, self._spectra, self.watches, strict=True
         ):
             if known:
-                spectrum.add(track.fitted_motion, forces)
-                watch.note(wind, track.fitted_noise)
+                spectrum.add(track.fitted_motion, forces, track.watched_motion)
+                if watch.is_due:
+                    winds = self._east, self._north, self._n_winds
+                    watch.advance(winds, track.fitted_noise, track.watched_noise)
             elif track.is_silent:
                 spectrum.skip()
 
@@ -86,6 +92,9 @@ class RunningFit:
             found = self._work.advance()
             if found is not None:
                 self.found, self._work = found, None
+            return
+        longest = max([each.seconds for each in self._spectra])
+        if longest < self._fit_after:
             return
         measured = [k for k in used if self._spectra[k].count]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.spectrum_change import WATCHED_BAND
 
 Waves = NDArray[np.complex128]
 """Complex amplitudes."""
@@ -33,10 +34,12 @@ class SpectrumBlock(NamedTuple):
     """
     Power of east and north together at each frequency, (f,), a sum over ``n_stretches``.
 
-    ``seconds`` is the length of the motion in [s].
+    ``watched`` is that of the watched motion, of east and north, (g, 2), and ``seconds`` the
+    length of the motion in [s].
     """
 
     power: Floats
+    watched: Floats
     n_stretches: int
     seconds: float
 
@@ -44,6 +47,8 @@ class SpectrumBlock(NamedTuple):
 class SensorSpectrum:
     """
     Averaged spectrum of the angular rate or acceleration of a sensor, and of the known forces.
+
+    That of the watched motion, the acceleration where there is one, is over a wider band.
 
     Parameters
     ----------
@@ -59,8 +64,9 @@ class SensorSpectrum:
     def __init__(self, frequency: float, dt: float, count: int) -> None:
         self._dt = dt
         half = self._half = round(0.5 * _CYCLES / (frequency * dt))
-        # East, north and the force on each coordinate.
-        n_series = 2 + count
+        # East, north, the force on each coordinate, and the watched motion to east and north.
+        self._n_products = 2 + count
+        n_series = self._n_products + 2
         self._series = np.zeros((n_series, _HALVES, half))
         self._window = np.hanning(2 * half + 1)[:-1]
         self._stretch = np.zeros(2 * half)
@@ -70,9 +76,15 @@ class SensorSpectrum:
         self.circular: Floats = 2.0 * np.pi * np.asarray(axis[self._inside], dtype=np.float64)
         """Circular frequencies in [rad/s], (f,)."""
         n_frequencies = len(self.circular)
-        self._waves = np.zeros((n_frequencies, n_series), dtype=np.complex128)
-        self._products = np.zeros((n_frequencies, n_series, n_series), dtype=np.complex128)
-        self._block = SpectrumBlock(np.zeros(n_frequencies), 0, 0.0)
+        shape = (n_frequencies, self._n_products)
+        self._waves = np.zeros(shape, dtype=np.complex128)
+        self._products = np.zeros((*shape, self._n_products), dtype=np.complex128)
+        low, high = (edge * frequency for edge in WATCHED_BAND)
+        self._is_watched = (axis > low) & (axis < high)
+        self.watched_frequencies: Floats = np.asarray(axis[self._is_watched], dtype=np.float64)
+        """Frequencies of the watched motion in [Hz], (g,)."""
+        self._watched = np.zeros((len(self.watched_frequencies), 2))
+        self._block = SpectrumBlock(np.zeros(n_frequencies), self._watched.copy(), 0, 0.0)
         self._now, self._filled, self._n_halves = 0, 0, 0
         self._next = n_series
         self.count = 0
@@ -80,10 +92,12 @@ class SensorSpectrum:
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
 
-    def add(self, motion: Floats, force: Floats) -> None:
-        """Add motion, (3,), and forces of the known wind, (count,), of a step."""
+    def add(self, motion: Floats, force: Floats, watched: Floats) -> None:
+        """Add motions, (3,), and forces of the known wind, (count,), of a step."""
         row = self._series[:, self._now, self._filled]
-        row[:2], row[2:] = motion[:2], force
+        row[:2] = motion[:2]
+        row[2:-2] = force
+        row[-2:] = watched[:2]
         self._filled += 1
         self.seconds += self._dt
         if self._next < len(self._series):
@@ -112,7 +126,12 @@ class SensorSpectrum:
         stretch[half:] = series[self._now - 1]
         stretch -= stretch.mean()
         stretch *= self._window
-        self._waves[:, self._next] = np.fft.rfft(stretch)[self._inside]
+        waves = np.fft.rfft(stretch)
+        if self._next < self._n_products:
+            self._waves[:, self._next] = waves[self._inside]
+        else:
+            axis = self._next - self._n_products
+            self._watched[:, axis] += np.square(np.abs(waves[self._is_watched]))
         self._next += 1
         if self._next == len(self._series):
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
@@ -127,14 +146,17 @@ class SensorSpectrum:
         """Begin a block; return the last one."""
         before = self._block
         power = self._products[:, (0, 1), (0, 1)].real.sum(axis=1)
-        self._block = SpectrumBlock(power, self.count, self.seconds)
+        self._block = SpectrumBlock(power, self._watched.copy(), self.count, self.seconds)
         return SpectrumBlock(
-            power - before.power, self.count - before.n_stretches, self.seconds - before.seconds
+            power - before.power,
+            self._watched - before.watched,
+            self.count - before.n_stretches,
+            self.seconds - before.seconds,
         )
 
     def power_of_noise(self, deviation: float) -> float:
-        """Power of white noise of a deviation, east and north, at each frequency of a stretch."""
-        return 2.0 * deviation**2 * float(np.square(self._window).sum())
+        """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
+        return deviation**2 * float(np.square(self._window).sum())
 
     @property
     def products(self) -> Waves:

@@ -269,7 +269,15 @@ class SensorTrack:
         self._absent = self._agreed = 0.0
         self._is_refused = False
         self._values, self._moved = np.zeros((2, 9))
-        self._fitted_rows = slice(0, 3)
+        self.fitted_motion = self.watched_motion = self._moved[:3]
+        """
+        The last sample of this quantity, and of the acceleration, in the frame of the tree, (3,).
+
+        Without an acceleration, the first of the others is watched. The acceleration tells more of
+        fast sway than the angular rate, which is less above its noise.
+        """
+        self.fitted_noise = self.watched_noise = 0.0
+        """Standard deviations of their noise in each sample, as measured."""
 
     @cached_property
     def _read(self) -> Callable[..., bool]:
@@ -325,16 +333,6 @@ class SensorTrack:
         if self._is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
         return f'{name}: silent: check its battery and connection'
-
-    @property
-    def fitted_motion(self) -> Floats:
-        """The last sample of this quantity in the frame of the tree, (3,)."""
-        return self._moved[self._fitted_rows]
-
-    @property
-    def fitted_noise(self) -> float:
-        """Standard deviation of the noise of this quantity in each sample, as measured."""
-        return 0.0 if self.alignment is None else float(self.alignment.noise[self.fitted])
 
     @property
     def is_silent(self) -> bool:
@@ -423,7 +421,11 @@ class SensorTrack:
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
-        self._fitted_rows = slice(3 * self.fitted, 3 * self.fitted + 3)
+        first, watched = 3 * self.fitted, 3 * self.uses[0]
+        self.fitted_motion = self._moved[first : first + 3]
+        self.watched_motion = self._moved[watched : watched + 3]
+        self.fitted_noise = float(found.noise[self.fitted])
+        self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
         self.in_use = not self._is_refused
 

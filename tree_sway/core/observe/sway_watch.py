@@ -9,18 +9,23 @@ come loose, sways at other frequencies. So does one in another wind, a little: m
 slow modes more. The middle of the last blocks is therefore compared with the one that the blocks
 before foretell for their wind, by a line over the logarithm of the mean wind whose slope is known
 roughly before anything is measured.
+
+The loss of a small limb moves the middle by less than chance does. It changes the power in narrow
+bands, which `spectrum_change` compares.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_spectrum import SensorSpectrum
+from tree_sway.core.observe.spectrum_change import BandChange, CHANGED, SpectrumChange
 
 BLOCK = 600.0
 """Motion of a block in [s]."""
@@ -43,6 +48,11 @@ _CHANGED = 4.0
 _LEAST_POWER = 1.0
 """Least power of the sway over that of the noise [-]: with less, a block tells nothing."""
 
+_COMPARED_AFTER = 10
+"""Steps after which the bands of a block are compared: their parts are fewer."""
+
+_CAUSES = 'as after the loss of a limb, with loose roots, ice or other leaves'
+
 
 @dataclass(frozen=True)
 class SwayChange:
@@ -57,31 +67,49 @@ class SwayChange:
         Standard deviation of its logarithm [-].
     hours
         Length of the motion before in [h].
+    band
+        Largest change of the power in a band; None before any was looked for.
 
     """
 
     ratio: float
     error: float
     hours: float
+    band: BandChange | None = None
 
     @property
     def size(self) -> float:
-        """Return the difference over its error [-]."""
-        return abs(math.log(self.ratio)) / self.error
+        """Return the larger difference over the least one that counts [-]."""
+        of_band = 0.0 if self.band is None else self.band.size / CHANGED
+        return max(self.of_middle, of_band)
+
+    @property
+    def of_middle(self) -> float:
+        """Return the difference of the middle over the least one that counts [-]."""
+        return abs(math.log(self.ratio)) / self.error / _CHANGED
 
     @property
     def is_change(self) -> bool:
         """Whether it is beyond chance and wind."""
-        return self.size > _CHANGED
+        return self.size > 1.0
+
+    @property
+    def changed_band(self) -> BandChange | None:
+        """The band whose power has changed, where the middle of the spectrum does not tell it."""
+        return self.band if self.is_change and self.of_middle <= 1.0 else None
 
     def __str__(self) -> str:
         """Return it as a sentence."""
         percent, error = 100.0 * (self.ratio - 1.0), 100.0 * self.error
+        if (band := self.changed_band) is not None:
+            return (
+                f'it sways differently: {band.power:.2g} times the power of {self.hours:.2g} h '
+                f'before at {band.low:.2f} to {band.high:.2f} Hz, {_CAUSES}'
+            )
         if self.is_change:
             return (
                 f'it sways differently: at frequencies {percent:+.0f} % from those of '
-                f'{self.hours:.2g} h before (+- {error:.1f} % by chance and wind), as after the '
-                'loss of a limb, with loose roots, ice or other leaves'
+                f'{self.hours:.2g} h before (+- {error:.1f} % by chance and wind), {_CAUSES}'
             )
         return (
             f'it sways as before: at frequencies {percent:+.1f} % from those of '
@@ -104,40 +132,82 @@ class SwayWatch:
     ----------
     spectrum
         Spectrum of the sensor.
+    frequency
+        First frequency of the model in [Hz].
+    submit
+        As `LaterWork` takes it.
 
     """
 
-    def __init__(self, spectrum: SensorSpectrum) -> None:
-        self._spectrum = spectrum
+    def __init__(
+        self, spectrum: SensorSpectrum, frequency: float, submit: Submit | None = None
+    ) -> None:
+        self._spectrum, self._submit = spectrum, submit
+        self._bands = SpectrumChange(spectrum.watched_frequencies, frequency)
+        self._work: LaterWork[BandChange] | None = None
         self._blocks: list[_Middle] = []
-        self._wind, self._n_winds = 0.0, 0
+        self._began = (0.0, 0.0, 0)
         self.change: SwayChange | None = None
         """The first change, else the last comparison; None before any."""
 
-    def note(self, wind: float, noise: float) -> None:
-        """Note the mean wind of a step in [m/s] and the noise of the sensor; end a due block."""
-        self._wind += wind
-        self._n_winds += 1
+    @property
+    def is_due(self) -> bool:
+        """Whether a block ends, or bands are being compared."""
+        return self._work is not None or self._spectrum.block_seconds >= BLOCK
+
+    def advance(self, winds: tuple[float, float, int], noise: float, watched_noise: float) -> None:
+        """
+        End a block, or go on with comparing its bands.
+
+        Parameters
+        ----------
+        winds
+            Sums of the winds so far to east and north [m/s], and their number.
+        noise, watched_noise
+            Noise of the sensor, and that of its watched motion.
+
+        """
+        if self._work is not None and (found := self._work.advance()) is not None:
+            self._work = None
+            self._take(found)
         if self._spectrum.block_seconds < BLOCK:
             return
         block = self._spectrum.end_block()
-        mean = self._wind / self._n_winds
-        self._wind, self._n_winds = 0.0, 0
-        floor = block.n_stretches * self._spectrum.power_of_noise(noise)
+        east, north, count = (now - then for now, then in zip(winds, self._began, strict=True))
+        wind = east / count, north / count
+        self._began = winds
+        floor = 2.0 * block.n_stretches * self._spectrum.power_of_noise(noise)
         power = np.maximum(block.power - floor, 0.0)
         if power.sum() > max(_LEAST_POWER * floor * len(power), 1e-300):
             frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
-            self._compare(_Middle(float(frequency), math.log(max(mean, 0.1))))
+            self._compare(_Middle(float(frequency), math.log(max(math.hypot(*wind), 0.1))))
+        if block.n_stretches:
+            parts = self._bands.add(
+                block.watched / block.n_stretches,
+                self._spectrum.power_of_noise(watched_noise),
+                block.seconds,
+                wind,
+            )
+            self._work = LaterWork(parts, _COMPARED_AFTER, self._submit)
+
+    def _take(self, band: BandChange) -> None:
+        """Take the largest change of a band; once a band has changed, that stays."""
+        before = None if self.change is None else self.change.band
+        if self.change is not None and (before is None or before.size <= CHANGED):
+            self.change = replace(self.change, band=band)
 
     def _compare(self, last: _Middle) -> None:
-        """Add a block, and compare; once the tree has changed, that stays."""
+        """Add a block, and compare; once the middle has changed, that stays."""
         self._blocks.append(last)
         past, recent = self._blocks[:-_RECENT], self._blocks[-_RECENT:]
-        if len(past) < _LEAST_PAST or self.has_changed:
+        before = self.change
+        if len(past) < _LEAST_PAST or (before is not None and before.of_middle > 1.0):
             return
         found, wind = np.mean(recent, axis=0).tolist()
         foretold, error = _foretold(np.array(past), wind)
-        self.change = SwayChange(math.exp(found - foretold), error, len(past) * BLOCK / 3600.0)
+        hours = len(past) * BLOCK / 3600.0
+        band = None if before is None else before.band
+        self.change = SwayChange(math.exp(found - foretold), error, hours, band)
 
     @property
     def has_changed(self) -> bool:

@@ -188,7 +188,7 @@ interface MotionStatus {
   /** First frequency from the sensors [Hz], and the length of the motion that it was found from [h]. */
   learned?: { frequency: number; hours: number };
   /** Change of the sway frequencies since some hours [h] ago [%]. */
-  change?: { is_change: boolean; percent: number; hours: number };
+  change?: { is_change: boolean; percent: number; hours: number; power?: number; low?: number; high?: number };
   /** Interval with a probability of 80 % for the real tip, from the model's [m]. */
   band?: number[];
 }

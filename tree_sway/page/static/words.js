@@ -95,9 +95,13 @@ export function motionSensors(motion) {
     lines.push(word("learned_sway", learned.frequency.toFixed(3), learned.hours.toFixed(2)));
   }
   if (change && Number.isFinite(change.percent) && Number.isFinite(change.hours)) {
-    const { is_change, percent, hours } = change;
+    const { is_change, percent, hours, power, low, high } = change;
     const signed = `${percent > 0 ? "+" : ""}${percent.toFixed(1)}`;
-    lines.push(word(is_change ? "sways_differently" : "sways_as_before", signed, hours.toFixed(1)));
+    if (power && low && high) {
+      lines.push(word("sways_with_other_power", power.toPrecision(2), low.toFixed(2), high.toFixed(2), hours.toFixed(1)));
+    } else {
+      lines.push(word(is_change ? "sways_differently" : "sways_as_before", signed, hours.toFixed(1)));
+    }
   }
   return lines.join("\n");
 }
