@@ -15,7 +15,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.kinds.kinds import kind_called  # noqa: E402
+from tree_sway_lab.validation.truth import SETTINGS, WOOD  # noqa: E402
+
 from tree_sway.core.model.settings import Settings  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
@@ -111,6 +115,16 @@ def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]
     assert session.status()['model'] == 'branch'
     identity = decode_description(sink.descriptions[1]).short_identity
     until(lambda: decode_frame(sink.frames[-1]).identity == identity)
+
+
+def test_a_limp_tree_says_how_many_coordinates_it_solves() -> None:
+    def build_whips(choices: Choices) -> Any:
+        return make_simulator(kind_called(choices.tree), WOOD, SETTINGS)
+
+    session = Session(build_whips, Choices('whips'), SimulatedWind(5.0))
+    solved = len(session.simulator.models[0].stiffness)
+    assert 0 < solved < 60
+    assert session.status()['model'] == f'{solved}/60'
 
 
 def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:

@@ -87,7 +87,8 @@ def stream_arrays(
     scale = _scale(branches, _largest(found[REACH], projection))
     poses = _gusty_poses(found[REACH])
     missed = _missed(poses, basis, projection, scale)
-    error = _largest_error(branches, shapes @ missed)
+    tips, _ = np.split(moved, [3 * len(branches)])
+    error = _largest_motion(tips @ missed)
     return arrays_of_stream(StateBasis(basis, projection, scale, error))
 
 
@@ -126,7 +127,8 @@ def basis_of_responses(branches: Records, responses: Floats, greatest: Floats) -
     reach = np.abs(projection @ greatest).max(axis=1, initial=0.0)
     scale = _scale(branches, reach)
     missed = _missed(greatest, basis, projection, scale)
-    return StateBasis(basis, projection, scale, _largest_error(branches, missed))
+    error = _largest_motion(tip_motion(branches, missed))
+    return StateBasis(basis, projection, scale, error)
 
 
 def _scale(branches: Records, reach: Floats) -> Floats:
@@ -232,7 +234,7 @@ def _gusty_poses(response: Leaning) -> Floats:
     return np.asarray((response.poses + np.sqrt(2.0) * turned).reshape(-1, m).T)
 
 
-def _largest_error(branches: Records, missed: Floats) -> float:
-    """Find the largest motion of a tip by rotations (N, p) that are left out, in [m]."""
-    moved = tip_motion(branches, missed)
-    return float(np.sqrt(np.square(moved).sum(axis=1).max(initial=0.0)))
+def _largest_motion(tips: Floats) -> float:
+    """Find the largest displacement of a tip by those of all tips in some poses, in [m]."""
+    displacement = tips.reshape(-1, 3, tips.shape[-1])
+    return float(np.sqrt(np.square(displacement).sum(axis=1).max(initial=0.0)))

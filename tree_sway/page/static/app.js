@@ -237,7 +237,7 @@ function fit() {
 }
 
 /** Name of a model for people. @param {string} model */
-const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) : model);
+const modelName = (model) => (/^\d+(\/\d+)?$/.test(model) ? word("coordinates", model) : model);
 
 /** @param {number} now */
 function draw(now) {
