@@ -15,7 +15,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.numpy_rotation import cross
-from tree_sway.core.setup.tree_motion import levels_of, sum_outward
+from tree_sway.core.setup.tree_motion import sum_outward
 from tree_sway.core.setup.turning import turning_of
 from tree_sway.core.tree.tree import Tree
 
@@ -54,7 +54,6 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
     first = places.first[:-1]
     on = places.base_segment
     parent = np.maximum(places.parent, 0)
-    levels = levels_of(places.parent)
     branch = tree.branch_of_segment
     joint, base, own = turning_of(tree, places, lead)
     below = base[parent]
@@ -69,7 +68,7 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
         starts = np.cumsum(chords, axis=0) - chords
         starts -= starts[first][branch]
         on_parent = np.where(on[:, None, None] < 0, 0.0, starts[on])
-        bases = sum_outward(parent, levels, on_parent + arms)
+        bases = sum_outward(parent, on_parent + arms)
         moved = bases[branch] + starts + 0.5 * chords
         return moved.swapaxes(0, 1).reshape(q, 3 * len(branch))
 
@@ -79,7 +78,7 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
     slopes = np.zeros((q, q, q))
     for k in range(q):
         of_bases = _order(below, joint, k)
-        order = sum_outward(parent, levels, of_bases)[branch]
+        order = sum_outward(parent, of_bases)[branch]
         order += _order(here, own, k)
         chords = _second_derivative(whole, order, chord, k)
         arms = _second_derivative(whole[on], order[on], arm, k)
