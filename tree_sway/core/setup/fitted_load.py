@@ -18,6 +18,7 @@ from tree_sway.core.beams.beam import stacked
 from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.wind_on_branch import exposure
 from tree_sway.core.numpy_rotation import cross, cross_matrix
+from tree_sway.core.setup.numpy_branch_loads import symmetric_matrices
 from tree_sway.core.setup.slanting_winds import SlantingWinds
 
 _STRAIGHT = 0.03
@@ -28,9 +29,6 @@ _CROOKED = 1e-9
 
 _ROWS, _COLUMNS = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
 """Places of the six numbers of a symmetric matrix."""
-
-_WHOLE = [0, 3, 4, 3, 1, 5, 4, 5, 2]
-"""Which of the six numbers each entry of the matrix is, row after row."""
 
 
 class _Panels(NamedTuple):
@@ -201,7 +199,7 @@ def _fit_crooked(model: BranchModel, share: Floats, record: np.void) -> None:
     slanting = SlantingWinds(model.beam.chord)
     winds = slanting.winds
     record['projector'] = _nearest_projector(slanting, tangent, share)
-    projector = record['projector'][_WHOLE].reshape(3, 3)
+    projector = symmetric_matrices(record['projector'])
     across = winds @ projector
     square = (winds * across).sum(axis=1)
     speed = np.sqrt(np.maximum(square, 0.0))

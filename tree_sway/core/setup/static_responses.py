@@ -23,8 +23,13 @@ from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.load_layouts import WORK
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.load_derivatives import LoadSlopes, SYMMETRIC
-from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
+from tree_sway.core.setup.load_derivatives import LoadSlopes
+from tree_sway.core.setup.numpy_branch_loads import (
+    copies_of,
+    into_slots,
+    NumpyPasses,
+    symmetric_matrices,
+)
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
@@ -142,7 +147,7 @@ class WindMoments:
         base = base_motion(branches, shapes)
         moved = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
         moved += own_motion(branches, 'load_mode', shapes)
-        projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
+        projector = symmetric_matrices(branches['projector'])
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
         area = branches['area'] * branches['speed'] ** 2
