@@ -142,6 +142,9 @@ def test_it_does_not_rattle_at_60_hz(tree, most_error):
 def test_a_record_says_how_many_coordinates_were_left_out():
     record = simulate(weeping(3), np.full((9, 3), 2.0), settings=SETTINGS)
     assert ' of 60 coordinates are solved' in ''.join(record.notes)
+    sim = make_simulator(weeping(3), WOOD, SETTINGS)
+    assert sim.model == f'{len(sim.models[0].stiffness)}/60'
+    assert make_simulator(weeping(3), WOOD, SETTINGS, model=3).model == '3'
 
 
 def test_a_limp_tree_keeps_its_slow_coordinates():
