@@ -166,7 +166,9 @@ function showPanel() {
 /** Hide the controls that have no effect. */
 function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
-  for (const name of ["height", "age", "individual", "month"]) panel.hide(name, !status.is_grown);
+  for (const name of ["height", "individual", "month"]) panel.hide(name, !status.is_grown);
+  // Without a measured stem an age says nothing.
+  panel.hide("age", !status.is_grown || !status.stem_of);
   panel.note("age", status.stem_of ? `${word("age_of")} ${status.stem_of} (McPherson 2016)` : "");
 }
 
