@@ -139,6 +139,16 @@ def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Sessio
         session.apply('gravity', 0.0)
 
 
+@pytest.mark.parametrize(('tree', 'age'), [('willow', 0.0), ('cherry', 57.0), ('lime', 120.0)])
+def test_a_tree_of_another_species_has_an_age_that_was_measured(tree: str, age: float) -> None:
+    wanted: list[Choices] = []
+    session = Session(build, Choices(str(SEEDLING)), SimulatedWind(5.0))
+    session._builder.want = wanted.append  # type: ignore[method-assign]
+    session.choices = Choices('oak', age=120.0)
+    session.apply('tree', tree)
+    assert (wanted[0].tree, wanted[0].age) == (tree, age)
+
+
 def test_a_fault_while_building_is_reported_and_the_next_wish_is_built(
     live: tuple[Session, Sink], caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -72,7 +72,8 @@ def bent_by_weight(
 
     def by_weight(vectors: Floats) -> Floats:
         """Curvatures by the weight of a branch that has these curvatures, as energy vectors."""
-        bent = np.moveaxis(curvature_of(beam, vectors, shear_ratio), 0, 2)
+        curvature = curvature_of(beam, vectors, shear_ratio)
+        bent = np.moveaxis(curvature, 0, 2)
         moments = gravity * _moment_of_weight(beam, mass, subtrees, bent, mass_beyond)
         response = beam.curvature_in_space(moments, shear_ratio)
         return energy_vector(beam, np.moveaxis(response, 2, 0), shear_ratio)
@@ -81,13 +82,16 @@ def bent_by_weight(
     blocks = [loads]
     for _ in range(_KRYLOV_BLOCKS):
         block = by_weight(blocks[-1])
-        blocks.append(block / max(float(np.linalg.norm(block)), 1e-300))
+        size = max(float(np.linalg.norm(block)), 1e-300)
+        blocks.append(block / size)
     basis = np.linalg.qr(np.vstack(blocks).T)[0]
     stiffness = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
     if np.linalg.eigvalsh(stiffness + stiffness.T)[0] < 2.0 * _BUCKLED:
         return curvatures
     amounts = np.linalg.solve(stiffness, basis.T @ loads.T)
-    return np.moveaxis(curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
+    vectors = basis @ amounts
+    curvature = curvature_of(beam, vectors.T, shear_ratio)
+    return np.moveaxis(curvature, 0, 2)
 
 
 def weight_over_stiffness(

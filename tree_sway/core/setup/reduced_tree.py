@@ -19,7 +19,7 @@ from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
 from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
 from tree_sway.core.checks import one_of_each
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.branch_places import places_of
@@ -132,7 +132,7 @@ class TreeReducer:
     @cached_property
     def turns(self) -> Floats:
         """Rotation [rad] of each branch in the wind that branches are cut for, (b,)."""
-        dynamic_pressure = drag_density(CUT_FOR, *self._drag_law) * CUT_FOR**2
+        dynamic_pressure = self._drag_law.dynamic_pressure(CUT_FOR)
         return np.asarray(dynamic_pressure * self._beams.turns(self._species.modulus))
 
     @cached_property

@@ -17,7 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.model.drag_law import crown_drag, drag_density, DragLaw
+from tree_sway.core.model.drag_law import crown_drag, DragLaw
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.species import Species
@@ -155,16 +155,16 @@ class TreeReductions:
         moved_steadily = moved(steady)
         weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
         answers = np.hstack([natural.shapes @ mixes, weight * steady])
-        in_gale = drag_density(_GALE, *self.drag_law) * _GALE**2 / weight
-        return Responses(answers, np.hstack([tips, weight * moved_steadily]), float(in_gale))
+        in_gale = self.drag_law.dynamic_pressure(_GALE) / weight
+        all_tips = np.hstack([tips, weight * moved_steadily])
+        return Responses(answers, all_tips, float(in_gale))
 
     def _static_responses(self) -> Floats:
         """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
         from tree_sway.core.setup.static_responses import static_responses
 
-        law = self.drag_law
         solve = self.with_subtrees.reduction.factors.solve
-        return static_responses(self.wind_moments, solve, lambda u: drag_density(u, *law) * u * u)
+        return static_responses(self.wind_moments, solve, self.drag_law)
 
     @cached_property
     def wind_moments(self) -> WindMoments:
