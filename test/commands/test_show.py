@@ -185,3 +185,13 @@ def test_a_table_of_risk_colours_the_trees_that_it_names(
         arguments = ['show', str(SEEDLING), '--risk', str(table), '--port', '0', '--seconds', '1']
         assert main(arguments) == 2
         assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(('address', 'is_warned'), [('0.0.0.0', True), ('127.0.0.1', False)])
+def test_links_without_a_certificate_are_warned_of(
+    address: str, is_warned: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    token = tmp_path / 'token'
+    given = ['show', str(SEEDLING), '--port', '0', '--seconds', '0.1', '--model', QUICK]
+    assert main([*given, '--address', address, '--token-file', str(token)]) == 0
+    assert ('without a certificate everybody' in capsys.readouterr().err) is is_warned
