@@ -320,6 +320,16 @@ def test_columns_renewed_in_turn_give_the_inertia_of_all_at_once(swaying):
     np.testing.assert_allclose(in_turn, step.pose.change, atol=1e-9)
 
 
+def test_twigs_that_their_own_stiffness_shapes_get_a_further_pair():
+    for kind, is_shaped in (('birch', True), ('whips', True), ('willow', False)):
+        tree = kind_called(kind)
+        counts = [
+            TreeReductions(tree, WOOD, settings).with_subtrees.reduction.n_coordinates
+            for settings in (SETTINGS, replace(SETTINGS, model='full'))
+        ]
+        assert (counts[0] > counts[1]) == is_shaped, kind
+
+
 def test_inertia_is_positive_however_old_its_columns_are(swaying):
     step, eta, rate = swaying
     count = len(step.pose.change)

@@ -59,8 +59,7 @@ def bent_by_weight(
 
     """
     mass_beyond = _mass_beyond(beam, mass, subtrees)
-    weight_over_stiffness = gravity * beam.integral(mass_beyond / beam.second_moment)
-    is_limp = weight_over_stiffness * beam.node[..., -1] >= _LIMP
+    is_limp = _over_stiffness(beam, mass_beyond, gravity) >= _LIMP
     if not is_limp.any():
         return curvatures
     if is_limp.ndim:
@@ -93,6 +92,23 @@ def bent_by_weight(
     vectors = basis @ amounts
     curvature = curvature_of(beam, vectors.T, shear_ratio)
     return np.moveaxis(curvature, 0, 2)
+
+
+def weight_over_stiffness(
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, gravity: float
+) -> Floats:
+    """
+    Return the weight of a branch and its subtrees over its stiffness in bending [-].
+
+    That is ``w L^3 / (2 E I)`` for a weight per length of w; the arguments are as in
+    `bent_by_weight`.
+    """
+    return _over_stiffness(beam, _mass_beyond(beam, mass, subtrees), gravity)
+
+
+def _over_stiffness(beam: BranchBeam, mass_beyond: Floats, gravity: float) -> Floats:
+    bent = gravity * beam.integral(mass_beyond / beam.second_moment)
+    return np.asarray(bent * beam.node[..., -1])
 
 
 def _mass_beyond(beam: BranchBeam, mass: Floats, subtrees: SubtreeSums) -> Floats:

@@ -68,7 +68,7 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
         starts = np.cumsum(chords, axis=0) - chords
         starts -= starts[first][branch]
         on_parent = np.where(on[:, None, None] < 0, 0.0, starts[on])
-        bases = sum_outward(parent, on_parent + arms)
+        bases = sum_outward(places.parent, on_parent + arms)
         moved = bases[branch] + starts + 0.5 * chords
         return moved.swapaxes(0, 1).reshape(q, 3 * len(branch))
 
@@ -81,7 +81,7 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
     slopes = np.zeros((q, q, q))
     for k in range(q):
         of_bases = _order(below, joint, k)
-        order = sum_outward(parent, of_bases)[branch]
+        order = sum_outward(places.parent, of_bases)[branch]
         order += _order(here, own, k)
         bent_chords = _second_derivative(whole, moved_chords, order, chord, k)
         bent_arms = _second_derivative(on_whole, moved_arms, order[on], arm, k)

@@ -121,6 +121,7 @@ class LoadSlopes:
         count = len(branches)
         # Branches that carry others, and for each branch the place of its parent among them.
         self._bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
+        self._bearing_parents = np.r_[-1, self._on[self._bearing[1:]]]
         base = -cross_matrix(branches['base'])
         self._slide_at_rest = np.concatenate(
             [np.broadcast_to(_IDENTITY, (count, 3, 3)), base], axis=2
@@ -254,7 +255,7 @@ class LoadSlopes:
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
         """Sum the motion at the joints of branches that carry others, from the root outward."""
-        return sum_outward(self._on[self._bearing], joints)
+        return sum_outward(self._bearing_parents, joints)
 
     def _in_slots(self, name: str) -> Floats:
         return of_slots(self._loads[name], len(self._branches))

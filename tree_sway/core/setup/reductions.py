@@ -28,22 +28,6 @@ if TYPE_CHECKING:
     from tree_sway.core.setup.reduced_tree import ReducedTree, TreeReducer
     from tree_sway.core.setup.static_responses import WindMoments
 
-LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
-"""
-Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
-limp; the share of all branches, by length, that makes a limp tree; and its largest number of
-segments, for a step takes time in proportion. Of trees that were tried those whose twigs hang or
-whip have a share of 0.25 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
-"""
-
-WHIP_TURN, MOST_WHIPPY = 0.5, 500
-"""
-The same rotation [rad] for bare trees of few segments, and their number: young whips and rods,
-which bend as a whole, have a share of 0.30 to 0.59 beyond it, and a step of theirs takes little
-time. A sapling in leaf is not among them: its stem bends as far, but the table with its leaves is
-within 0.05 of all coordinates.
-"""
-
 FASTEST_LIMP, LEAST_SPAN = 60.0, 4.0
 """
 Circular frequency [rad/s] at rest below which a limp tree keeps a coordinate: it turns by 1 rad
@@ -214,12 +198,7 @@ class TreeReductions:
     @property
     def is_limp(self) -> bool:
         """Whether so much of the tree turns so far that a table of loads is too coarse."""
-        length = self.tree.branch_length
-        may_whip = self.tree.n_segments <= MOST_WHIPPY and not self.settings.in_leaf
-        limp_turn = WHIP_TURN if may_whip else LIMP_TURN
-        turned = float(length[self._reducer.turns > limp_turn].sum())
-        is_small = self.tree.n_segments <= MOST_LIMP
-        return is_small and turned > LIMP_SHARE * float(length.sum())
+        return self._reducer.is_limp
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

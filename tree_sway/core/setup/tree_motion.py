@@ -126,8 +126,8 @@ def base_motion(branches: Records, rotations: Numbers) -> Numbers:
 def sum_outward(parents: Ints, joints: Numbers) -> Numbers:
     """Add the motion of its parent to that of each branch, from the root on, (b, ...)."""
     total = joints.copy()
-    for branch in range(1, len(parents)):  # parents are before their children
-        total[branch] += total[parents[branch]]
+    for level in levels_of(parents)[1:]:  # children of the stem are complete
+        total[level] += total[parents[level]]
     return total
 
 

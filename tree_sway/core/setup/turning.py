@@ -31,7 +31,7 @@ def turning_of(tree: Tree, places: Places, shapes: Floats) -> Turning:
     own = _rotations(places.segment_turn, tree.branch_of_segment, places, shapes)
     joint = _rotations(places.base_rotation, parent, places, shapes)
     joint[0] = 0.0
-    return Turning(joint, sum_outward(parent, joint), own)
+    return Turning(joint, sum_outward(places.parent, joint), own)
 
 
 def _rotations(modes: Floats, branch: Ints, places: Places, shapes: Floats) -> Floats:
