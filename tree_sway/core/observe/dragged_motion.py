@@ -15,11 +15,14 @@ correction of u that is applied, and c_u, k_u damping, by wood and air, and stif
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.oscillators.propagator import held_propagator
 
 if TYPE_CHECKING:
@@ -47,8 +50,6 @@ class DraggedMotion:
         self.motion = self._state[:2]
         """Displacement and rate of each coordinate, (2, m)."""
         self._law = np.zeros((2, 3, m))
-        self._terms = np.zeros((2, 3, m))
-        self._share = np.ones(m)
         self._drag = np.zeros((m, observer.count))
         self._found_for: tuple[object, object] = (None, None)
 
@@ -77,13 +78,15 @@ class DraggedMotion:
         if any(now is not then for now, then in zip(present, self._found_for, strict=True)):
             self._find_law(forces.drag)
             self._found_for = present
-        np.subtract(1.0, observer.trust, out=self._share[: observer.count])
-        force = np.dot(self._drag, rates, out=self._state[2])
-        force *= self._share
-        for _ in range(n_periods):
-            np.multiply(self._law, self._state, out=self._terms)
-            np.add.reduce(self._terms, axis=1, out=self.motion)
+        self._move(self._law, self._drag, observer.trust, rates, n_periods, self._state)
         return self.motion
+
+    @cached_property
+    def _move(self) -> Callable[..., None]:
+        if WHY_PLAIN:
+            return move_dragged_in_numpy
+        trust = self._observer.trust
+        return entry_of(move_dragged, self._law, self._drag, trust, trust, 1, self._state)
 
     def _find_law(self, drag: Floats) -> None:
         """Find how the coordinates move in the present wind, with drag per rate (m, m)."""
@@ -98,3 +101,47 @@ class DraggedMotion:
     def reset(self) -> None:
         """Return to rest."""
         self._state[:] = 0.0
+
+
+@kernel
+def move_dragged(
+    law: Floats, drag: Floats, trust: Floats, rates: Floats, n_periods: int, state: Floats
+) -> None:
+    """
+    Move what is dragged by some time steps.
+
+    Parameters
+    ----------
+    law
+        Displacement and rate after a step by those before and the force, (2, 3, m).
+    drag
+        Force on each coordinate per rate of the corrected ones, (m, n).
+    trust, rates
+        Share of the correction that is applied, and its rate, (n,).
+    n_periods
+        Number of time steps.
+    state
+        Displacement, rate and force, (3, m), written.
+
+    """
+    for i in range(len(drag)):
+        force = 0.0
+        for j in range(len(rates)):
+            force += drag[i, j] * rates[j]
+        if i < len(trust):
+            force *= 1.0 - trust[i]
+        state[2, i] = force
+        for _ in range(n_periods):
+            eta, rate = state[0, i], state[1, i]
+            for k in range(2):
+                state[k, i] = law[k, 0, i] * eta + law[k, 1, i] * rate + law[k, 2, i] * force
+
+
+def move_dragged_in_numpy(
+    law: Floats, drag: Floats, trust: Floats, rates: Floats, n_periods: int, state: Floats
+) -> None:
+    """Move what is dragged as `move_dragged`."""
+    np.dot(drag, rates, out=state[2])
+    state[2, : len(trust)] *= 1.0 - trust
+    for _ in range(n_periods):
+        state[:2] = (law * state).sum(axis=1)
