@@ -45,8 +45,10 @@ class TreeSwayError(Exception):
         return type(self)(self.what, where=where, cure=self.cure)
 
     def inside(self, whole: str) -> TreeSwayError:
-        """Return the error with its place as a part of a larger one."""
-        return self.at(f'{whole}: {self.where}' if self.where else whole)
+        """Return the error with its place as a part of a larger one, or of its option."""
+        if not self.where or whole == f'--{self.where}':
+            return self.at(whole)
+        return self.at(f'{whole}: {self.where}')
 
 
 @contextmanager

@@ -16,7 +16,10 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.commands import cli
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 
 MODULUS, DENSITY = 8e9, 900.0
@@ -248,6 +251,24 @@ def test_the_published_moment_of_a_spruce_is_within_the_band_or_said_to_be_outsi
     assert found['published_moment'] == pytest.approx(111.7 * 0.25**2 * 20.0 * 100.0, rel=0.01)
     (note,) = (each for each in found['notes'] if 'published' in each)
     assert f'{said} that band' in note
+
+
+def test_a_tree_in_leaf_of_a_stand_is_damped_by_crowns_that_touch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / 'birch.yaml'
+    write_tree(path, grow('birch', 8.0, rng=np.random.default_rng(0)))
+    damping = []
+
+    def strength_rig(tree: PlacedTree, settings: Settings) -> None:
+        damping.append(tree.species.damping_in_leaf)
+        raise ParameterError('far enough')
+
+    monkeypatch.setattr('tree_sway.commands.info.strength_rig', strength_rig)
+    for exposure in ('open', 'stand'):
+        words = ['--speed', '10', '--exposure', exposure, '--count', '1']
+        assert cli.main(['info', str(path), *words]) == 2
+    assert damping[1] == pytest.approx(1.5 * damping[0])
 
 
 def test_it_names_places_of_motion_sensors(capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,11 +21,12 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.commands.page_controls import page_controls  # noqa: E402
+from tree_sway.commands.page_controls import page_controls, sensor_place  # noqa: E402
 from tree_sway.core.growth.grow import grow  # noqa: E402
 from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway.page.session import Choices  # noqa: E402
+from tree_sway.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -153,7 +154,7 @@ def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
     ('tree', 'is_grown'), [('birch', True), ('goldcrest', False), ('oak.yaml', False)]
 )
 def test_only_a_species_that_is_no_built_in_tree_is_grown(tree: str, is_grown: bool) -> None:
-    choices = show.Choices(tree)
+    choices = Choices(tree)
     assert choices.is_grown is is_grown
     controls = {each.name: each for each in page_controls(choices, SimulatedWind(6.0))}
     offered = controls['tree'].choices
@@ -185,3 +186,22 @@ def test_a_table_of_risk_colours_the_trees_that_it_names(
         arguments = ['show', str(SEEDLING), '--risk', str(table), '--port', '0', '--seconds', '1']
         assert main(arguments) == 2
         assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(('address', 'is_warned'), [('0.0.0.0', True), ('127.0.0.1', False)])
+def test_links_without_a_certificate_are_warned_of(
+    address: str, is_warned: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    token = tmp_path / 'token'
+    given = ['show', str(SEEDLING), '--port', '0', '--seconds', '0.1', '--model', QUICK]
+    assert main([*given, '--address', address, '--token-file', str(token)]) == 0
+    assert ('without a certificate everybody' in capsys.readouterr().err) is is_warned
+
+
+def test_each_control_of_the_page_has_its_hint_in_all_languages() -> None:
+    words = json.loads((ROOT / 'tree_sway/page/static/words.json').read_text(encoding='utf-8'))
+    wind = RecordedWind(np.arange(3.0), np.zeros((3, 3)))
+    choices = Choices('oak')
+    controls = [*page_controls(choices, SimulatedWind(5.0)), *page_controls(choices, wind)]
+    described = {each.name for each in [*controls, sensor_place(choices)] if each.description}
+    assert [name for name in sorted(described) if len(words.get(f'{name}_hint', [])) != 4] == []

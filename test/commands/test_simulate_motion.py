@@ -107,7 +107,7 @@ def test_without_enough_sway_no_tree_is_written(
         (['--learn', 'own.yaml'], 'no motion sensor to learn from'),
         (['--motion', 'motion.csv', '--at', '1.0', '--learn', 'own.glb'], 'cannot store'),
         (['--motion', 'motion.csv'], '1 --motion and 0 --at'),
-        (['--motion', 'motion.csv', '--at', '99'], 'the stem has no height'),
+        (['--motion', 'motion.csv', '--at', '99'], ': --at: the stem has no height'),
         (['--motion', 'missing.csv', '--at', '0.3'], 'missing.csv'),
         (['--motion', 'motion.csv', '--at', '0.3', '--motion-starts', 'nan'], '--motion-starts'),
     ],

@@ -310,6 +310,14 @@ def test_a_certificate_of_another_name_says_so(tmp_path: Path) -> None:
     assert 'use a host name that the certificate contains' in done.stderr
 
 
+def test_http_where_there_is_tls_says_so(tmp_path: Path) -> None:
+    certified, key = certificate(tmp_path, 'IP:127.0.0.1')
+    settings = PageSettings(port=0, certificate=certified, private_key=key)
+    with PageServer(settings) as server:
+        with StreamClient(server.url.replace('https:', 'http:')) as client:
+            until(lambda: 'if it has a certificate, give https://' in client.problem)
+
+
 def test_https_where_there_is_no_tls_says_so(server: PageServer) -> None:
     assert 'give http://' in refused(server.url.replace('http:', 'https:'))
 

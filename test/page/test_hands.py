@@ -139,7 +139,7 @@ async def pull_and_let_go(browser: Browser) -> str:
     moved = MOVED.format(f'{PULL}.segment')
     await browser.until(f'{PULL}.force > 0.01 && {moved} > 0.02')
     label = "document.getElementById('pull-force')"
-    await browser.until(f'!{label}.hidden && / N$/.test({label}.textContent)')
+    await browser.until(f'!{label}.hidden && / k?N$/.test({label}.textContent)')
     shown = float((await browser.run(f'{label}.textContent')).split()[0])
     # It swings on the spring, too: let go where it is far over.
     await browser.until(f'{moved} > 0.02')

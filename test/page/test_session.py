@@ -15,7 +15,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.kinds.kinds import kind_called  # noqa: E402
+from tree_sway_lab.validation.truth import SETTINGS, WOOD  # noqa: E402
+
 from tree_sway.core.model.settings import Settings  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
@@ -113,6 +117,16 @@ def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]
     until(lambda: decode_frame(sink.frames[-1]).identity == identity)
 
 
+def test_a_limp_tree_says_how_many_coordinates_it_solves() -> None:
+    def build_whips(choices: Choices) -> Any:
+        return make_simulator(kind_called(choices.tree), WOOD, SETTINGS)
+
+    session = Session(build_whips, Choices('whips'), SimulatedWind(5.0))
+    solved = len(session.simulator.models[0].stiffness)
+    assert 0 < solved < 60
+    assert session.status()['model'] == f'{solved}/60'
+
+
 def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
     session, sink = live
     session.apply('tree', 'missing')
@@ -123,6 +137,16 @@ def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Sessio
     assert session.choices.tree == str(SEEDLING)
     with pytest.raises(ParameterError, match='cannot be changed'):
         session.apply('gravity', 0.0)
+
+
+@pytest.mark.parametrize(('tree', 'age'), [('willow', 0.0), ('cherry', 57.0), ('lime', 120.0)])
+def test_a_tree_of_another_species_has_an_age_that_was_measured(tree: str, age: float) -> None:
+    wanted: list[Choices] = []
+    session = Session(build, Choices(str(SEEDLING)), SimulatedWind(5.0))
+    session._builder.want = wanted.append  # type: ignore[method-assign]
+    session.choices = Choices('oak', age=120.0)
+    session.apply('tree', tree)
+    assert (wanted[0].tree, wanted[0].age) == (tree, age)
 
 
 def test_a_fault_while_building_is_reported_and_the_next_wish_is_built(

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 import json
 import math
 from typing import Any
@@ -144,7 +145,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             gravity=settings.gravity, in_leaf=settings.in_leaf,
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        rig = strength_rig(tallest, chosen)
+        touched = replace(tallest, species=exposure.in_contact(species))
+        rig = strength_rig(touched, chosen)
         (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(
             f'{exposure}, of {arguments.speed:g} m/s: {used}; rot and wet soil are not included'

@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
-from tree_sway.page.access import make_token, read_token
+from tree_sway.page.access import is_loopback, make_token, read_token
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.server import PageServer
 
@@ -67,6 +68,12 @@ def print_address(server: PageServer, begin: str) -> None:
     if not server.viewers_token:
         print(f'{begin} {server.url}', flush=True)
         return
+    if server.url.startswith('http:') and not is_loopback(server.settings.address):
+        print(
+            'warning: without a certificate everybody on the way can read these links and what '
+            'they show (doc/share_a_page.md)',
+            file=sys.stderr,
+        )
     token = read_token(server.settings.token_file)
     print(f'{begin} {server.url}?{urlencode({"token": token})}')
     print(f'to look only: {server.url}?{urlencode({"token": server.viewers_token})}', flush=True)

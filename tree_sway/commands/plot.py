@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -143,7 +144,8 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        rig = strength_rig(each, settings)
+        touched = replace(each, species=exposure.in_contact(each.species))
+        rig = strength_rig(touched, settings)
         rng = np.random.default_rng(0)
         curve = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
         for speed, use in zip(speeds, curve, strict=True):

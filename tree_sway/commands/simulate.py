@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 import sys
 
@@ -76,7 +77,9 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_no_table(output)
     check_learn_argument(arguments)
     refuse_unused_wind(arguments)
-    tree_file = opened_tree(arguments)
+    opened = opened_tree(arguments)
+    exposure = chosen_exposure(arguments, opened.tree, opened.species)
+    tree_file = replace(opened, species=exposure.in_contact(opened.species))
     learned_file: LearnedFile | None = None
     if arguments.learn is not None:
         learned_file = LearnedFile(arguments.learn, tree_file, chosen_leaves(arguments))
@@ -86,7 +89,6 @@ def run(arguments: argparse.Namespace) -> int:
         if name not in names:
             cure = nearest(name, names) or f'such as {names[0]}'
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
-    exposure = chosen_exposure(arguments, tree_file.tree, tree_file.species)
     ground = float(tree_file.tree.start[0, 2])
     wind = _wind(arguments, exposure)
     motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))

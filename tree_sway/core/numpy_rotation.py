@@ -23,14 +23,14 @@ def quaternions_of(vectors: Floats) -> Floats:
     return quaternions
 
 
-_CYCLES = (0, 1, 2), (1, 2, 0), (2, 0, 1)
+CYCLES = (0, 1, 2), (1, 2, 0), (2, 0, 1)
 """Cyclic permutations of the axes x, y, z."""
 
 
 def cross(a: Floats, b: Floats) -> Floats:
     """Cross products along the last axis, (..., 3); numpy's own take several times as long."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    for i, j, k in _CYCLES:
+    for i, j, k in CYCLES:
         product[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
     return product
 
@@ -38,7 +38,7 @@ def cross(a: Floats, b: Floats) -> Floats:
 def cross_matrix(v: Floats) -> Floats:
     """Matrices whose product with a vector is the cross product of v with it, (..., 3, 3)."""
     matrix = np.zeros((*v.shape, 3))
-    for i, j, k in _CYCLES:
+    for i, j, k in CYCLES:
         matrix[..., k, j] = v[..., i]
         matrix[..., j, k] = -v[..., i]
     return matrix

@@ -83,10 +83,11 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
     Split the name of a column from its unit, of a kind in `UNITS`.
 
     The unit is in brackets, or behind ``-`` or a comma. If none of these is a unit of the kind, it
-    is the text in the first brackets, or empty without them.
+    is the text in the first brackets, or empty without them. A number in brackets, as in ``u(1)``,
+    tells the element of a logger's array.
     """
     text = column.strip().strip('"').strip()
-    in_brackets = [found.strip() for found in _BRACKETS.findall(text)]
+    in_brackets = [found for found in _BRACKETS.findall(text) if not found.isdigit()]
     behind = [found.strip() for found in _BEHIND.findall(text)]
     name = _NAME_ENDS.sub('', text, count=1).strip() or text
     for unit in (*in_brackets, *behind):

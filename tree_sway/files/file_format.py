@@ -115,7 +115,20 @@ def format_of(
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
+    if _is_header_alone(head):
+        raise FormatError(
+            'a header and no rows', where=str(path), cure='write rows below its header'
+        )
     raise _unknown(path, kind, names)
+
+
+def _is_header_alone(head: str) -> bool:
+    """Whether the beginning of a file is one row of cells, none of them a number."""
+    lines = [line for line in head.splitlines() if line.strip() and not line.startswith('#')]
+    if len(lines) != 1:
+        return False
+    has_cells = re.search('[,;\t]', lines[0]) is not None
+    return has_cells and re.search(r'\d', lines[0]) is None
 
 
 def _unknown(path: Path, kind: str, names: str) -> FormatError:

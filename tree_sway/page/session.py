@@ -102,6 +102,12 @@ class Choices:
         curve = stem_growth().get(self.tree) if self.is_grown else None
         return curve.measured if curve else ''
 
+    @property
+    def of_known_age(self) -> Choices:
+        """The same with an age to which stems of the species were measured; 0 if none were."""
+        curve = stem_growth().get(self.tree) if self.is_grown else None
+        return replace(self, age=min(self.age, float(curve.oldest)) if curve else 0.0)
+
 
 Build = Callable[[Choices], Simulator]
 """Function that makes the simulator of some choices."""
@@ -227,7 +233,8 @@ class Session:
         elif name in Choices.__dataclass_fields__:
             changed = {name: value}
             before = self._builder.wanted or self.choices
-            self._builder.want(replace(before, **changed))  # type: ignore[arg-type]
+            wanted = replace(before, **changed)  # type: ignore[arg-type]
+            self._builder.want(wanted.of_known_age if name == 'tree' else wanted)
         else:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 

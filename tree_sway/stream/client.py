@@ -278,7 +278,7 @@ class StreamClient:
                         self._refusal = None
                         await self._follow(socket)
                 except Exception as error:
-                    self.problem = str(error) or type(error).__name__
+                    self.problem = _problem_of(error, self.url)
                     with self._more:
                         self._refusal = _refusal_of(error, self.url)
                         self._more.notify_all()
@@ -383,6 +383,15 @@ class StreamClient:
                 self._on_frame(frame, arrival)
             except Exception as error:
                 self.problem = f'on_frame: {type(error).__name__}: {error}'
+
+
+def _problem_of(error: Exception, url: str) -> str:
+    """Return what is wrong with a connection, in words."""
+    problem = str(error) or type(error).__name__
+    # A server with a certificate hangs up on plain HTTP.
+    if isinstance(error, aiohttp.ServerDisconnectedError) and url.startswith('ws:'):
+        return f'{problem}; if it has a certificate, give https://'
+    return problem
 
 
 def _refusal_of(error: Exception, url: str) -> TransportError | None:

@@ -11,7 +11,7 @@ stand and inside it, it is that of `exposure`, and its mean that at the top of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -118,6 +118,7 @@ def _computed(kind: RiskKind) -> KindResult:
         spacing=kind.spacing or None,
         anemometer_height=STATION_HEIGHT if kind.exposure == 'open' else None,
     )
+    whole = replace(whole, species=exposure.in_contact(whole.species))
     curves = tuple(_season(whole, kind.seed, in_leaf, exposure) for in_leaf in seasons)
     return KindResult(kind, curves, kind.height / _diameter(tree), exposure, note)
 

@@ -40,7 +40,7 @@ def test_the_pages_are_up_to_date() -> None:
 def test_every_species_has_a_row() -> None:
     rows = species_table().splitlines()[2:]
     assert [row.split('`')[1] for row in rows] == list(species_keys())
-    assert '| 9.4 | 1010 | 0.04, 0.08 | 2.8 | 2.6575 U^-0.846 |' in next(
+    assert '| 9.4 | 1010 | 0.04, 0.05 | 2.8 | 2.6575 U^-0.846 |' in next(
         row for row in rows if '`oak`' in row
     )
 

@@ -85,7 +85,7 @@ def gust_response(case: GustCase, seconds: float = 600.0, seed: int = 1) -> Gust
         crown_coherence=case.coherence,
         profile=site.profile(float(tree.start[0, 2])),
     )
-    rig = Rig(PlacedTree(case.species, tree, species=species), settings)
+    rig = Rig(PlacedTree(case.species, tree, species=site.in_contact(species)), settings)
     wind = simulate_turbulence(
         _SPEED,
         rate=_RATE,

@@ -29,8 +29,8 @@ from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
     'kinds', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
-    'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'forestgales', 'broadleaves',
-    'battery', 'paper',
+    'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'held_out', 'forestgales',
+    'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 

@@ -142,6 +142,9 @@ def test_it_does_not_rattle_at_60_hz(tree, most_error):
 def test_a_record_says_how_many_coordinates_were_left_out():
     record = simulate(weeping(3), np.full((9, 3), 2.0), settings=SETTINGS)
     assert ' of 60 coordinates are solved' in ''.join(record.notes)
+    sim = make_simulator(weeping(3), WOOD, SETTINGS)
+    assert sim.model == f'{len(sim.models[0].stiffness)}/60'
+    assert make_simulator(weeping(3), WOOD, SETTINGS, model=3).model == '3'
 
 
 def test_a_limp_tree_keeps_its_slow_coordinates():
@@ -315,6 +318,16 @@ def test_columns_renewed_in_turn_give_the_inertia_of_all_at_once(swaying):
     renewed(step, eta, rate, 0, count)
     assert np.linalg.norm(in_turn) > 0.1
     np.testing.assert_allclose(in_turn, step.pose.change, atol=1e-9)
+
+
+def test_twigs_that_their_own_stiffness_shapes_get_a_further_pair():
+    for kind, is_shaped in (('birch', True), ('whips', True), ('willow', False)):
+        tree = kind_called(kind)
+        counts = [
+            TreeReductions(tree, WOOD, settings).with_subtrees.reduction.n_coordinates
+            for settings in (SETTINGS, replace(SETTINGS, model='full'))
+        ]
+        assert (counts[0] > counts[1]) == is_shaped, kind
 
 
 def test_inertia_is_positive_however_old_its_columns_are(swaying):

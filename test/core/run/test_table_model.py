@@ -16,8 +16,8 @@ from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.simulator import WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.load_table import direction, SPEEDS
-from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.load_table import SPEEDS
+from tree_sway.core.setup.static_responses import direction, WindMoments
 from tree_sway.core.tree.building import tree_from_segments
 
 DT = 1.0 / 60.0

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -72,6 +73,20 @@ def test_an_anemometer_above_a_stand_sees_more_wind_than_its_top():
     assert high.over_anemometer(z)[-1] == pytest.approx(1.0)
     of_low = low.over_anemometer(z)
     assert high.over_anemometer(z) == pytest.approx(of_low / of_low[-1])
+
+
+def test_crowns_that_touch_damp_a_tree_in_leaf_unless_its_damping_was_measured():
+    oak = species_named('oak')
+    alone, edge, inside = (
+        Exposure(kind, **SITKA).in_contact(oak).damping_in_leaf for kind in EXPOSURES
+    )
+    assert alone == oak.damping_in_leaf
+    assert edge == pytest.approx(1.25 * alone)
+    assert inside == pytest.approx(1.5 * alone)
+    stand = Exposure('stand', **SITKA)
+    assert stand.in_contact(oak).damping_bare == oak.damping_bare
+    measured = replace(oak, damping_in_leaf=0.07)
+    assert stand.in_contact(measured) is measured
 
 
 @pytest.mark.parametrize(('ratio', 'factor'), [(0.11, 4.486), (0.2, 2.482), (0.45, 1.340)])

@@ -69,3 +69,52 @@ def test_a_tree_beyond_its_habit_is_scaled(tmp_path: Path) -> None:
 def test_thousands_are_no_range(number: str) -> None:
     assert cell_number(number) == (1234.5, '')
     assert cell_number(f'{number} m') == (1234.5, 'm')
+
+
+@pytest.mark.parametrize(
+    ('text', 'number'),
+    [
+        ('f. 24 m. en hoger', (24.0, 'm')),
+        ('60 ft and over', (60.0, 'ft')),
+        ('25 m und höher', (25.0, 'm')),
+    ],
+)
+def test_the_highest_class_has_its_least_number(text: str, number: tuple[float, str]) -> None:
+    assert cell_number(text) == number
+
+
+LAS_VEGAS = (
+    'OBJECTID,BOTANICAL,COMMON,DBH,HEIGHT,COND,X,Y\n'
+    '1,Fraxinus velutina,ARIZONA ASH,19-24,31-45,Good,-115.2,36.2\n'
+    '2,Pinus eldarica,MONDEL PINE,13-18,16-30,Fair,-115.2001,36.2001\n'
+    '3,Quercus virginiana,LIVE OAK,1-6,1-15,Dead,-115.2002,36.2002\n'
+    '4,Fraxinus velutina,ARIZONA ASH,25-30,46-60,Good,-115.2003,36.2003\n'
+)
+
+
+def test_classes_of_feet_beside_thick_stems_are_feet(tmp_path: Path) -> None:
+    scene = opened(tmp_path, LAS_VEGAS)
+    assert heights(scene) == pytest.approx([38 * 0.3048, 23 * 0.3048, 53 * 0.3048])
+    assert 'HEIGHT is taken as feet, by height over diameter' in scene.notes
+
+
+def test_dead_trees_are_told_by_the_columns_of_cities(tmp_path: Path) -> None:
+    notes = '\n'.join(opened(tmp_path, LAS_VEGAS).notes)
+    assert "1 row is left out: 1 dead or gone; line 4: COND is 'Dead'" in notes
+    buenos_aires = (
+        'estado_plantera,nombre_cientifico,diametro_altura_pecho,altura_arbol,long,lat\n'
+        'Ocupada,Fraxinus pennsylvanica,25,11,-58.4771,-34.6459\n'
+        'Tocón,Tipuana tipu,70,0,-58.4774,-34.6462\n'
+    )
+    scene = opened(tmp_path, buenos_aires)
+    assert heights(scene) == pytest.approx([11.0])
+
+
+def test_a_stem_of_no_tree_is_said(tmp_path: Path) -> None:
+    paris = (
+        'LIBELLE FRANCAIS,CIRCONFERENCE (cm),HAUTEUR (m),geo_point_2d\n'
+        'Platane,110,12,"48.8566, 2.3001"\n'
+        'Sophora,250050,10,"48.8568, 2.3003"\n'
+    )
+    notes = '\n'.join(opened(tmp_path, paris).notes)
+    assert "1 cells of CIRCONFERENCE (cm) do not count: line 3 is '250050'" in notes

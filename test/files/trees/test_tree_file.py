@@ -49,6 +49,12 @@ def test_unknown_content(tmp_path):
         read_trees(tmp_path / 'none.csv')
 
 
+def test_a_header_alone_is_said(tmp_path):
+    (tmp_path / 'stand.csv').write_text('# measured in May\nspecies,height_m,dbh_cm\n')
+    with pytest.raises(FormatError, match=r'stand\.csv: a header and no rows; write rows below'):
+        read_trees(tmp_path / 'stand.csv')
+
+
 @pytest.mark.parametrize(
     ('name', 'content', 'words'),
     [

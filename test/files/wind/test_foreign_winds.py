@@ -47,6 +47,9 @@ STATIONS = {
     'date and time apart': 'Date;Time;Wind Speed [m/s];Wind Dir\n'
     + stamped('%d.%m.%Y;%H:%M', 10, '{t};{u:.2f};270')
     .replace('.', ',').replace(',03,2024', '.03.2024'),
+    'logger with an array': '"TOA5","CR1000"\n"TIMESTAMP","u(1)","u(2)","WS","WindDir"\n'
+    '"TS","volts","volts","meters/second","degrees"\n"","Smp","Smp","Avg","Smp"\n'
+    + stamped('%Y-%m-%d %H:%M:%S', 1, '"{t}",0.1,0.2,{u:.3f},270'),
     'logger': '"TOA5","CR1000"\n"TIMESTAMP","RECORD","WS","WindDir","WS_Max"\n'
     '"TS","RN","m/s","deg","m/s"\n'
     '"","","Avg","Avg","Max"\n' + stamped('%Y-%m-%d %H:%M:%S', 10, '"{t}",1,{u:.3f},270,{g:.3f}'),

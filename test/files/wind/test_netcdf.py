@@ -85,3 +85,36 @@ def test_components_are_found_by_their_standard_names(tmp_path: Path) -> None:
         data['mast_a'].standard_name = 'eastward_wind'
         data['mast_b'].standard_name = 'northward_wind'
     assert read_wind(path, turbulence=False).velocity[0].tolist() == [0.0, 1.0, 0.0]
+
+
+def station(path: Path, speed_unit: str, direction_unit: str = 'degree') -> Path:
+    """Write three samples of a station: from the east, from the north, and a broken vane."""
+    with netcdf.Dataset(path, 'w') as data:
+        data.createDimension('time', 3)
+        columns = {
+            'time': ('minutes since 2024-03-01 00:00', [0.0, 10.0, 20.0]),
+            'wspd': (speed_unit, [2.0, 4.0, 6.0]),
+            'wdir': (direction_unit, [90.0, 0.0, 999.0]),
+        }
+        for name, (unit, values) in columns.items():
+            variable: Any = data.createVariable(name, 'f8', ('time',))
+            variable.units = unit
+            variable[:] = values
+        data['wspd'].standard_name = 'wind_speed'
+        data['wdir'].standard_name = 'wind_from_direction'
+    return path
+
+
+@pytest.mark.parametrize(('unit', 'factor'), [('m s-1', 1.0), ('knots', 1852.0 / 3600.0)])
+def test_speed_and_direction_are_read_in_their_units(
+    unit: str, factor: float, tmp_path: Path
+) -> None:
+    record = read_wind(station(tmp_path / 'mast.nc', unit), turbulence=False)
+    wanted = factor * np.array([[-2.0, 0.0, 0.0], [0.0, -4.0, 0.0]])
+    np.testing.assert_allclose(record.velocity, wanted, atol=1e-12)
+    assert record.refused == 1
+
+
+def test_an_unknown_unit_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r"mast\.nc: wspd: unknown unit 'furlongs'"):
+        read_wind(station(tmp_path / 'mast.nc', 'furlongs'))

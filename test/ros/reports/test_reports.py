@@ -302,3 +302,16 @@ def test_a_tree_that_lost_coordinates_is_a_warning(fork):
     assert report().level == WARN
     assert 'left out 2 times' in report().message
     assert report().values['reduced'] == 2
+
+
+def test_a_limp_tree_reports_how_many_coordinates_it_solves():
+    from tree_sway_lab.kinds.kinds import kind_called
+    from tree_sway_lab.validation.truth import SETTINGS, WOOD
+
+    from tree_sway.core.scene.make import make_simulator
+    from tree_sway_ros.reports import sway_report
+
+    sim = make_simulator(kind_called('whips'), WOOD, SETTINGS)
+    status = sway_report._model(sim)
+    assert status.message == f'{len(sim.models[0].stiffness)}/60'
+    assert status.values['model'] == status.message

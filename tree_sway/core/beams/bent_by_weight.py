@@ -59,8 +59,7 @@ def bent_by_weight(
 
     """
     mass_beyond = _mass_beyond(beam, mass, subtrees)
-    weight_over_stiffness = gravity * beam.integral(mass_beyond / beam.second_moment)
-    is_limp = weight_over_stiffness * beam.node[..., -1] >= _LIMP
+    is_limp = _over_stiffness(beam, mass_beyond, gravity) >= _LIMP
     if not is_limp.any():
         return curvatures
     if is_limp.ndim:
@@ -73,7 +72,8 @@ def bent_by_weight(
 
     def by_weight(vectors: Floats) -> Floats:
         """Curvatures by the weight of a branch that has these curvatures, as energy vectors."""
-        bent = np.moveaxis(curvature_of(beam, vectors, shear_ratio), 0, 2)
+        curvature = curvature_of(beam, vectors, shear_ratio)
+        bent = np.moveaxis(curvature, 0, 2)
         moments = gravity * _moment_of_weight(beam, mass, subtrees, bent, mass_beyond)
         response = beam.curvature_in_space(moments, shear_ratio)
         return energy_vector(beam, np.moveaxis(response, 2, 0), shear_ratio)
@@ -82,13 +82,33 @@ def bent_by_weight(
     blocks = [loads]
     for _ in range(_KRYLOV_BLOCKS):
         block = by_weight(blocks[-1])
-        blocks.append(block / max(float(np.linalg.norm(block)), 1e-300))
+        size = max(float(np.linalg.norm(block)), 1e-300)
+        blocks.append(block / size)
     basis = np.linalg.qr(np.vstack(blocks).T)[0]
     stiffness = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
     if np.linalg.eigvalsh(stiffness + stiffness.T)[0] < 2.0 * _BUCKLED:
         return curvatures
     amounts = np.linalg.solve(stiffness, basis.T @ loads.T)
-    return np.moveaxis(curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
+    vectors = basis @ amounts
+    curvature = curvature_of(beam, vectors.T, shear_ratio)
+    return np.moveaxis(curvature, 0, 2)
+
+
+def weight_over_stiffness(
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, gravity: float
+) -> Floats:
+    """
+    Return the weight of a branch and its subtrees over its stiffness in bending [-].
+
+    That is ``w L^3 / (2 E I)`` for a weight per length of w; the arguments are as in
+    `bent_by_weight`.
+    """
+    return _over_stiffness(beam, _mass_beyond(beam, mass, subtrees), gravity)
+
+
+def _over_stiffness(beam: BranchBeam, mass_beyond: Floats, gravity: float) -> Floats:
+    bent = gravity * beam.integral(mass_beyond / beam.second_moment)
+    return np.asarray(bent * beam.node[..., -1])
 
 
 def _mass_beyond(beam: BranchBeam, mass: Floats, subtrees: SubtreeSums) -> Floats:

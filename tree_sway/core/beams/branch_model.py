@@ -21,11 +21,12 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.beams.beam import Attachments, BranchBeam, one_of, RotationField, SlopeShape
-from tree_sway.core.beams.bent_by_weight import bent_by_weight
+from tree_sway.core.beams.bent_by_weight import bent_by_weight, weight_over_stiffness
 from tree_sway.core.beams.field_counts import (
     BRANCH_PAIRS_OF_SMALL,
     BRANCH_TURNS,
     ENRICHED_PAIRS,
+    LIMP_PAIRS,
     PLAIN_PAIRS,
     PLAIN_TURNS,
     SLENDER_BEAMS,
@@ -259,6 +260,15 @@ class TreeBeams:
             turns[branches] = turned / beam.chord_length
         return turns / modulus
 
+    def weight_over_stiffness(self) -> Floats:
+        """Weight of each branch with its subtree over its stiffness in bending [-], (b,)."""
+        gravity = self._gravity
+        found = np.zeros(len(self._loaded))
+        for branch, loaded in self._loaded.items():
+            subtrees = self._sums.select(loaded.children)
+            found[branch] = weight_over_stiffness(loaded.beam, loaded.mass, subtrees, gravity)
+        return found
+
     def _curvatures(self, branch: int, n_subtrees: int) -> Floats:
         """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
         key = branch, n_subtrees
@@ -275,7 +285,11 @@ class TreeBeams:
         return beam.curvature_in_space(moments, self._shear_ratio)
 
     def models(
-        self, *, subtrees: bool, enriched: frozenset[int] = frozenset()
+        self,
+        *,
+        subtrees: bool,
+        enriched: frozenset[int] = frozenset(),
+        limp: frozenset[int] = frozenset(),
     ) -> list[BranchModel]:
         """
         Model each branch.
@@ -287,6 +301,8 @@ class TreeBeams:
             paper).
         enriched
             Branches with further shapes and twists.
+        limp
+            Branches with a further pair of shapes.
 
         Returns
         -------
@@ -300,7 +316,10 @@ class TreeBeams:
         found = []
         for branch, loaded in sorted(self._loaded.items()):
             n_subtrees = len(loaded.children) if subtrees else 0
-            found.append(self._model(branch, n_subtrees, *self._richness(branch, enriched)))
+            n_pairs, n_turns = self._richness(branch, enriched)
+            if branch in limp:
+                n_pairs = max(n_pairs, LIMP_PAIRS)
+            found.append(self._model(branch, n_subtrees, n_pairs, n_turns))
         return found
 
     def _model_twigs(self, twigs: _AlikeTwigs) -> None:

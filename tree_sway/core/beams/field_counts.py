@@ -16,6 +16,9 @@ ENRICHED_PAIRS = 3
 STEM_TURNS, BRANCH_TURNS = 3, 1
 """Turns of an enriched stem, and of any other enriched branch."""
 
+LIMP_PAIRS = 2
+"""Pairs of a limp branch that its own stiffness shapes."""
+
 SMALL_TREE = 12
 """Largest number of branches of a small tree, which gets more pairs."""
 

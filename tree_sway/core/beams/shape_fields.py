@@ -48,8 +48,10 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
 
     (b, e1, e2) is right-handed.
     """
-    reference = np.where(np.abs(chord[..., 2:]) > 0.9, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
-    e1 = reference - (reference * chord).sum(axis=-1, keepdims=True) * chord
+    is_upright = np.abs(chord[..., 2:]) > 0.9
+    reference = np.where(is_upright, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+    along = (reference * chord).sum(axis=-1, keepdims=True)
+    e1 = reference - along * chord
     e1 /= np.linalg.norm(e1, axis=-1, keepdims=True)
     return e1, cross(chord, e1)
 
@@ -98,7 +100,8 @@ def shape_fields(
         pair = np.where(is_turned[..., None, None, None], pair, np.stack(about))
     about_e2 = (pair[0] @ e2[..., None, :, None])[..., 0]
     about_e1 = (pair[1] @ e1[..., None, :, None])[..., 0]
-    drawn = beam.slope_shape(0.5 * (about_e2 - about_e1) * beam.second_moment)
+    bending = 0.5 * (about_e2 - about_e1) * beam.second_moment
+    drawn = beam.slope_shape(bending)
     fields = [RotationField(beam, each) for each in pair]
     if n_pairs > PLAIN_PAIRS or n_turns > PLAIN_TURNS:
         fields += _further(beam, mass, subtrees, shear_ratio, fields, n_pairs, n_turns)
@@ -157,12 +160,10 @@ def shaken_energies(
     moment = cross(subtrees.mass_moment[:, None], axes)
     moments = beam.moment_in_space(load, force, moment)
     by_shaking = np.moveaxis(beam.curvature_in_space(moments, shear_ratio), 2, 0)
-    of_fields = [field.curvature for field in fields]
-    vectors = np.array(
-        [energy_vector(beam, each, shear_ratio) for each in (*by_shaking, *of_fields)]
-    )
-    shaken = vectors[:3]
-    basis = np.linalg.qr(vectors[3:].T)[0]
+    shaken = energy_vector(beam, by_shaking, shear_ratio)
+    of_fields = np.array([field.curvature for field in fields])
+    spanned = energy_vector(beam, of_fields, shear_ratio)
+    basis = np.linalg.qr(spanned.T)[0]
     missed = shaken - shaken @ basis @ basis.T
     return float(np.square(shaken).sum()), float(np.square(missed).sum())
 
@@ -180,15 +181,19 @@ def _static_pair(
     """
     slopes, _, _ = beam.from_base(curvatures)
     ends = beam.integral(cross(slopes, beam.tangent[..., None, None, :]))
-    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=-1))
-    turns /= np.maximum(beam.chord_length, _NO_LENGTH)[..., None, None]
+    axes = np.stack([e1, e2], axis=-1)
+    turns = _WIND_WEIGHTS[:, None] * (ends @ axes)
+    length = np.maximum(beam.chord_length, _NO_LENGTH)
+    turns /= length[..., None, None]
     # The pseudoinverse of the turns by three winds: how much of each wind turns by 1.
     sides, largest, winds = np.linalg.svd(turns, full_matrices=False)
     is_turned = largest[..., -1] > _TURNED * largest[..., 0]
     is_turned &= beam.chord_length > _NO_LENGTH
-    largest = np.where(is_turned[..., None], largest, 1.0)[..., None, :]
-    mix = (winds.swapaxes(-1, -2) / largest) @ sides.swapaxes(-1, -2) * _WIND_WEIGHTS
-    pair = np.moveaxis(mix[..., None, None, :, :] @ curvatures, -2, 0)
+    divisor = np.where(is_turned[..., None], largest, 1.0)
+    per_turn = winds.swapaxes(-1, -2) / divisor[..., None, :]
+    mix = per_turn @ sides.swapaxes(-1, -2) * _WIND_WEIGHTS
+    mixed = mix[..., None, None, :, :] @ curvatures
+    pair = np.moveaxis(mixed, -2, 0)
     return np.ascontiguousarray(pair), is_turned
 
 

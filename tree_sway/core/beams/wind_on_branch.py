@@ -10,7 +10,8 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.beams.beam import BranchBeam
 
 _BEARINGS = 8
-_ALONG_SQUARED = np.cos((np.arange(_BEARINGS) + 0.5) * np.pi / (2 * _BEARINGS)) ** 2
+_ANGLES = (np.arange(_BEARINGS) + 0.5) * np.pi / (2 * _BEARINGS)
+_ALONG_SQUARED = np.cos(_ANGLES) ** 2
 """Squared cosine between winds from a quarter of the horizon and the branch's own bearing."""
 
 
@@ -22,12 +23,16 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     the ground of 1 m/s.
     """
     tangent = beam.tangent
-    across_branch = np.eye(3) - tangent[..., :, None] * tangent[..., None, :]
+    along_branch = tangent[..., :, None] * tangent[..., None, :]
+    across_branch = np.eye(3) - along_branch
     exposed = drag_area * exposure(tangent)[..., None]
-    return np.asarray(exposed[..., None, None] * across_branch[..., None, :, :])
+    loads = exposed[..., None, None] * across_branch[..., None, :, :]
+    return np.asarray(loads)
 
 
 def exposure(tangent: Floats) -> Floats:
     """Return the share of the wind across each panel, averaged over winds from all sides, (m,)."""
     level_squared = 1.0 - tangent[..., 2:] ** 2
-    return np.asarray(np.sqrt(1.0 - level_squared * _ALONG_SQUARED).mean(axis=-1))
+    across_squared = 1.0 - level_squared * _ALONG_SQUARED
+    share = np.sqrt(across_squared)
+    return np.asarray(share.mean(axis=-1))

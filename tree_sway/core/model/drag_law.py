@@ -50,6 +50,10 @@ class DragLaw(NamedTuple):
     exponent: float
     steady: float = 0.0
 
+    def dynamic_pressure(self, speed: float) -> float:
+        """Return the drag per area in a wind in [m/s], in [kg/m/s^2]."""
+        return drag_density(speed, *self) * speed**2
+
 
 def crown_drag(
     wood_area: float, leaf_area: Floats, clad_wood: Floats,

@@ -125,8 +125,16 @@ class SwaySimulator:
 
     @property
     def model(self) -> str:
-        """Model in use: its name, or its number of coordinates."""
-        return str(self.settings.model)
+        """
+        Model in use: its name, or its number of coordinates.
+
+        A limp tree may solve fewer than asked for, and has both numbers, as in ``54/60``.
+        """
+        asked = self.settings.model
+        (model,) = self.models
+        solved = len(model.stiffness)
+        has_fewer = model.is_limp and isinstance(asked, int) and solved < asked
+        return f'{solved}/{asked}' if has_fewer else str(asked)
 
     @property
     def name(self) -> str:

@@ -292,10 +292,9 @@ def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     found = [bank.doubt for bank in simulator.banks if bank.doubt]
     if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
-    (model,) = simulator.models
-    kept, asked = len(model.stiffness), model.settings.model
-    if model.is_limp and isinstance(asked, int) and kept < asked:
-        found.append(f'twigs hang or whip: {kept} of {asked} coordinates are solved, the slower')
+    solved, slash, asked = simulator.model.partition('/')
+    if slash:
+        found.append(f'twigs hang or whip: {solved} of {asked} coordinates are solved, the slower')
     if now.reduced > before.reduced:
         found.append(
             'steps stayed clamped to the limit of the model, and coordinates were left out: '

@@ -15,7 +15,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.numpy_rotation import cross
-from tree_sway.core.setup.tree_motion import levels_of, sum_outward
+from tree_sway.core.setup.tree_motion import sum_outward
 from tree_sway.core.setup.turning import turning_of
 from tree_sway.core.tree.tree import Tree
 
@@ -54,7 +54,6 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
     first = places.first[:-1]
     on = places.base_segment
     parent = np.maximum(places.parent, 0)
-    levels = levels_of(places.parent)
     branch = tree.branch_of_segment
     joint, base, own = turning_of(tree, places, lead)
     below = base[parent]
@@ -69,22 +68,25 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
         starts = np.cumsum(chords, axis=0) - chords
         starts -= starts[first][branch]
         on_parent = np.where(on[:, None, None] < 0, 0.0, starts[on])
-        bases = sum_outward(parent, levels, on_parent + arms)
+        bases = sum_outward(places.parent, on_parent + arms)
         moved = bases[branch] + starts + 0.5 * chords
         return moved.swapaxes(0, 1).reshape(q, 3 * len(branch))
 
-    chords = cross(whole, chord[:, None])
-    arms = cross(whole[on], arm[:, None])
-    at_rest = middles(chords, arms)
+    on_whole = whole[on]
+    """Rotation of the segment that each branch sits on, (b, q, 3)."""
+    moved_chords = cross(whole, chord[:, None])
+    moved_arms = cross(on_whole, arm[:, None])
+    at_rest = middles(moved_chords, moved_arms)
+    of_segments = np.repeat(mass, 3)
     slopes = np.zeros((q, q, q))
     for k in range(q):
         of_bases = _order(below, joint, k)
-        order = sum_outward(parent, levels, of_bases)[branch]
+        order = sum_outward(places.parent, of_bases)[branch]
         order += _order(here, own, k)
-        chords = _second_derivative(whole, order, chord, k)
-        arms = _second_derivative(whole[on], order[on], arm, k)
-        bent = middles(chords, arms)
-        power = (bent * np.repeat(mass, 3)) @ at_rest.T
+        bent_chords = _second_derivative(whole, moved_chords, order, chord, k)
+        bent_arms = _second_derivative(on_whole, moved_arms, order[on], arm, k)
+        bent = middles(bent_chords, bent_arms)
+        power = (bent * of_segments) @ at_rest.T
         slopes[:, :, k] = power + power.T
     return slopes
 
@@ -92,7 +94,8 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
 def inertia_change(slopes: Floats, at: Floats) -> Floats:
     """Change of the inertia of the leading coordinates at a pose (m,), bounded, (q, q)."""
     change: Floats = slopes @ at[: len(slopes)]
-    return change * min(1.0, MOST_CHANGE / max(float(np.linalg.norm(change)), 1e-300))
+    size = max(float(np.linalg.norm(change)), 1e-300)
+    return change * min(1.0, MOST_CHANGE / size)
 
 
 def _order(inner: Floats, outer: Floats, k: int) -> Floats:
@@ -106,16 +109,16 @@ def _order(inner: Floats, outer: Floats, k: int) -> Floats:
     return np.asarray(by_outer + by_inner)
 
 
-def _second_derivative(rotation: Floats, order: Floats, arm: Floats, k: int) -> Floats:
+def _second_derivative(
+    rotation: Floats, moved: Floats, order: Floats, arm: Floats, k: int
+) -> Floats:
     """
     Differentiate arms a (r, 3) by all coordinates i and the one of number k, (r, q, 3).
 
-    With rotations w (r, q, 3) and their `_order` o it is
+    With rotations w (r, q, 3), ``w_i x a`` as `moved` and their `_order` o it is
     ``[w_i x (w_k x a) + w_k x (w_i x a) + o_ik x a] / 2``.
     """
-    by_k = rotation[:, k, None]
-    arm = arm[:, None]
-    twice = cross(rotation, cross(by_k, arm))
-    twice += cross(by_k, cross(rotation, arm))
-    twice += cross(order, arm)
+    twice = cross(rotation, moved[:, k, None])
+    twice += cross(rotation[:, k, None], moved)
+    twice += cross(order, arm[:, None])
     return np.asarray(0.5 * twice)

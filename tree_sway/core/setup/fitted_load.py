@@ -18,6 +18,7 @@ from tree_sway.core.beams.beam import stacked
 from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.wind_on_branch import exposure
 from tree_sway.core.numpy_rotation import cross, cross_matrix
+from tree_sway.core.setup.numpy_branch_loads import symmetric_matrices
 from tree_sway.core.setup.slanting_winds import SlantingWinds
 
 _STRAIGHT = 0.03
@@ -28,9 +29,6 @@ _CROOKED = 1e-9
 
 _ROWS, _COLUMNS = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
 """Places of the six numbers of a symmetric matrix."""
-
-_WHOLE = [0, 3, 4, 3, 1, 5, 4, 5, 2]
-"""Which of the six numbers each entry of the matrix is, row after row."""
 
 
 class _Panels(NamedTuple):
@@ -153,18 +151,21 @@ def _mean_across(panels: _Panels) -> Floats:
     tangent = panels.tangent[:, None]
     exposed = exposure(panels.tangent)
     exposed /= (panels.panel_share * exposed).sum(axis=1, keepdims=True)
-    of_panels = (panels.share[:, None, ..., None] * panels.displacement).sum(axis=3)
-    of_panels = exposed[:, None, :, None] * of_panels
-    of_panels -= (of_panels * tangent).sum(axis=-1, keepdims=True) * tangent
-    return np.asarray(of_panels.sum(axis=2))
+    of_points = panels.share[:, None, ..., None] * panels.displacement
+    of_panels = exposed[:, None, :, None] * of_points.sum(axis=3)
+    along = (of_panels * tangent).sum(axis=-1, keepdims=True)
+    across = of_panels - along * tangent
+    return np.asarray(across.sum(axis=2))
 
 
 def _squares_across(panels: _Panels) -> Floats:
     """Sum the squared displacements of points across their panels by both axes, (k, p, g)."""
     by_keys = panels.displacement[:, :2]
-    along = (by_keys * panels.tangent[:, None, :, None]).sum(axis=-1)
-    across = np.square(by_keys).sum(axis=-1) - np.square(along)
-    return np.asarray(across.sum(axis=1))
+    tangent = panels.tangent[:, None, :, None]
+    along = (by_keys * tangent).sum(axis=-1)
+    whole_squares = np.square(by_keys).sum(axis=-1)
+    across_squares = whole_squares - np.square(along)
+    return np.asarray(across_squares.sum(axis=1))
 
 
 def _mean_rotation(panels: _Panels, squares: Floats) -> Floats:
@@ -175,12 +176,14 @@ def _mean_rotation(panels: _Panels, squares: Floats) -> Floats:
     `_squares_across`, are the weights.
     """
     n_branches, n_fields = panels.rotation.shape[:2]
-    moved = panels.share * np.sqrt(np.maximum(squares, 0.0))
+    distance = np.sqrt(np.maximum(squares, 0.0))
+    moved = panels.share * distance
     weight = moved.reshape(n_branches, 1, 1, -1)
     whole = weight.sum(axis=-1, keepdims=True)
     weight /= np.where(whole > 0.0, whole, 1.0)
     rotation = panels.rotation.reshape(n_branches, n_fields, -1, 3)
-    return np.asarray((weight @ rotation)[:, :, 0])
+    mean = weight @ rotation
+    return np.asarray(mean[:, :, 0])
 
 
 def _fit_crooked(model: BranchModel, share: Floats, record: np.void) -> None:
@@ -195,27 +198,36 @@ def _fit_crooked(model: BranchModel, share: Floats, record: np.void) -> None:
     tangent = model.beam.tangent
     slanting = SlantingWinds(model.beam.chord)
     winds = slanting.winds
-    of_panels = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
-    drag = slanting.squares(of_panels[:, _ROWS, _COLUMNS]) ** 1.5 @ share.sum(axis=1)
-    record['projector'] = slanting.nearest(drag ** (2.0 / 3.0))
-
-    projector = record['projector'][_WHOLE].reshape(3, 3)
+    record['projector'] = _nearest_projector(slanting, tangent, share)
+    projector = symmetric_matrices(record['projector'])
     across = winds @ projector
-    speed = np.sqrt(np.maximum((winds * across).sum(axis=1), 0.0))
+    square = (winds * across).sum(axis=1)
+    speed = np.sqrt(np.maximum(square, 0.0))
     force = speed[:, None] * across
     per_force = np.linalg.pinv(force, rcond=_STRAIGHT)
 
-    panel_force = winds[:, None] - (winds @ tangent.T)[..., None] * tangent
+    along = (winds @ tangent.T)[..., None] * tangent
+    panel_force = winds[:, None] - along
     panel_force *= np.linalg.norm(panel_force, axis=-1, keepdims=True)
-    point = (share[..., None] * model.beam.point).sum(axis=1)
+    of_points = share[..., None]
+    point = (of_points * model.beam.point).sum(axis=1)
     moment = cross(point, panel_force).sum(axis=1)
-    record['coupling'] += (per_force @ (moment - force @ record['coupling'].T)).T
+    missing_moment = moment - force @ record['coupling'].T
+    record['coupling'] += (per_force @ missing_moment).T
 
-    count = len(model.fields)
-    moved = np.stack([(share[..., None] * field.points).sum(axis=1) for field in model.fields])
+    load_mode = record['load_mode'][: len(model.fields)]
+    moved = np.stack([(of_points * field.points).sum(axis=1) for field in model.fields])
     work = np.einsum('dsk,csk->dc', panel_force, moved)
-    load_mode = record['load_mode'][:count]
-    load_mode += (per_force @ (work - force @ load_mode.T)).T
+    missing_work = work - force @ load_mode.T
+    load_mode += (per_force @ missing_work).T
+
+
+def _nearest_projector(slanting: SlantingWinds, tangent: Floats, share: Floats) -> Floats:
+    """Fit a projector, (6,), to the mean of ``|P u|^3`` over panels of tangents (p, 3)."""
+    of_panels = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
+    squares = slanting.squares(of_panels[:, _ROWS, _COLUMNS])
+    mean_cubes = squares**1.5 @ share.sum(axis=1)
+    return slanting.nearest(mean_cubes ** (2.0 / 3.0))
 
 
 def _fill_damping(

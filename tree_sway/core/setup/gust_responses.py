@@ -16,8 +16,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density, DragLaw
-from tree_sway.core.setup.load_derivatives import SYMMETRIC
 from tree_sway.core.setup.modes import Modes
+from tree_sway.core.setup.numpy_branch_loads import symmetric_matrices
+from tree_sway.core.setup.static_responses import direction
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (3.0, 12.0)
@@ -59,15 +60,16 @@ def gust_responses(
     gusts = np.maximum(swept, slowest) ** (-1.0 / 3.0)
     in_vacuum = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
     undamped = in_vacuum[:, :, None] * identity
-    winds = [np.array([np.cos(azimuth), np.sin(azimuth), 0.0]) for azimuth in _AZIMUTHS]
     found = []
-    for load, air in gust_slopes(branches, modes.shapes, *winds):
+    for load, air in gust_slopes(branches, modes.shapes, *direction(_AZIMUTHS, 0.0)):
         for speed in _SPEEDS:
             air_damping = drag_density(speed, *law) * speed * air
             system = 1j * swept[:, :, None] * air_damping + undamped
-            responses = gusts[:, :, None] * np.linalg.solve(system, load)
+            per_gust = np.linalg.solve(system, load)
+            responses = gusts[:, :, None] * per_gust
             parts = np.concatenate([responses.real, responses.imag])
-            amounts = parts.swapaxes(0, 1).reshape(len(circular), -1)
+            by_mode = parts.swapaxes(0, 1)
+            amounts = by_mode.reshape(len(circular), -1)
             found.append(amounts / np.linalg.norm(tips @ amounts))
     return np.hstack(found)
 
@@ -101,9 +103,11 @@ def drag_slopes(branches: Records, ahead: Floats) -> Floats:
 
     Of the force ``A |u| P u``, with ``|u|^2 = u . P u``, it is ``A (|u| P + P u (P u)^T / |u|)``.
     """
-    projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
+    projector = symmetric_matrices(branches['projector'])
     across = projector @ ahead
-    speed = np.sqrt(np.maximum(across @ ahead, 1e-12))[:, None, None]
+    square = np.maximum(across @ ahead, 1e-12)
+    speed = np.sqrt(square)[:, None, None]
     outer = across[:, :, None] * across[:, None, :]
-    area = (branches['area'] * branches['speed'])[:, None, None]
-    return np.asarray(area * (speed * projector + outer / speed))
+    area = branches['area'] * branches['speed']
+    slopes = speed * projector + outer / speed
+    return np.asarray(area[:, None, None] * slopes)

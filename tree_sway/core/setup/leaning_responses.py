@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS
-from tree_sway.core.setup.load_table import direction, harmonics_at, SPEEDS
+from tree_sway.core.setup.load_table import harmonics_at, SPEEDS
+from tree_sway.core.setup.static_responses import direction
 
 N_FREQUENCIES, _BEYOND = 20, 1.5
 """Number of frequencies, and their range beyond those of the coordinates."""
@@ -118,9 +119,10 @@ def _growth(speed: float, law: DragLaw) -> float:
     """
     slow = (1.0 - _TURN) * speed
     fast = (1.0 + _TURN) * speed
-    low = drag_density(slow, *law) * slow**2
-    high = drag_density(fast, *law) * fast**2
-    return (high - low) / (_TURN * (high + low)) if high + low > 0.0 else 0.0
+    low = law.dynamic_pressure(slow)
+    high = law.dynamic_pressure(fast)
+    total = high + low
+    return (high - low) / (_TURN * total) if total > 0.0 else 0.0
 
 
 def _by_azimuth(poses: Floats) -> Floats:

@@ -33,14 +33,12 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.numpy_rotation import cross, cross_matrix, quaternions_of
-from tree_sway.core.setup.numpy_branch_loads import of_slots
-from tree_sway.core.setup.tree_motion import joint_motion, levels_of, own_motion, sum_outward
+from tree_sway.core.setup.numpy_branch_loads import of_slots, symmetric_matrices
+from tree_sway.core.setup.tree_motion import joint_motion, own_motion, sum_outward
 
 _IDENTITY = np.eye(3)
 _CHUNK = 256
 """Branches that are summed at once, so that intermediate results stay in the cache."""
-SYMMETRIC = [0, 3, 4, 3, 1, 5, 4, 5, 2]
-"""Places in a symmetric matrix, row by row, of its entries xx, yy, zz, xy, xz, yz."""
 
 
 class _Joints(NamedTuple):
@@ -123,7 +121,7 @@ class LoadSlopes:
         count = len(branches)
         # Branches that carry others, and for each branch the place of its parent among them.
         self._bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
-        self._levels = levels_of(np.r_[-1, self._on[self._bearing[1:]]])
+        self._bearing_parents = np.r_[-1, self._on[self._bearing[1:]]]
         base = -cross_matrix(branches['base'])
         self._slide_at_rest = np.concatenate(
             [np.broadcast_to(_IDENTITY, (count, 3, 3)), base], axis=2
@@ -257,7 +255,7 @@ class LoadSlopes:
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
         """Sum the motion at the joints of branches that carry others, from the root outward."""
-        return sum_outward(self._on[self._bearing], self._levels, joints)
+        return sum_outward(self._bearing_parents, joints)
 
     def _in_slots(self, name: str) -> Floats:
         return of_slots(self._loads[name], len(self._branches))
@@ -268,7 +266,7 @@ class LoadSlopes:
 
         With the projector P across the branch, the force is area |P u| P u.
         """
-        projector = self._in_slots('projector')[:, SYMMETRIC].reshape(-1, 3, 3)
+        projector = symmetric_matrices(self._in_slots('projector'))
         across = (projector @ air[..., None])[..., 0]
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)

@@ -25,17 +25,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.model.table_record import arrays_of_record
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
 from tree_sway.core.setup.modal_arrays import Coordinates
-from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.static_responses import direction, WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
@@ -56,6 +55,9 @@ the two speeds [m/s] and above: eigenvalues of tables of trees with hanging twig
 some three on, and the equilibria of storms depend on smaller ones.
 
 """
+
+_N_CALM = int(np.searchsorted(SPEEDS, _STORM))
+"""Number of `SPEEDS` below a storm."""
 
 _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
@@ -127,10 +129,12 @@ class WindBasisTable:
         self._moments = wind_moments
         self._inertia_slopes = bank.inertia_slopes
         self._slopes = wind_moments.slopes(bank.shapes)
-        n, m = bank.shapes.shape
+        self._stiffness = bank.stiffness
         self._root = np.sqrt(bank.stiffness)
         self._damping = bank.damping
+        self._pressures = np.array([drag_law.dynamic_pressure(speed) for speed in SPEEDS])
         self._search = EquilibriumSearch(wind_moments, self._slopes, bank.shapes, bank.stiffness)
+        n, m = bank.shapes.shape
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m))
         table = self.record[0]
@@ -143,96 +147,103 @@ class WindBasisTable:
         table['motion'][:m] = bank.mean_square_motion
         fitted, table['limit'][:m] = fit_harmonics(wind_moments, bank.shapes)
         table['harmonics'][:, :m] = fitted
-        pressures = [drag_density(each, *drag_law) * each**2 for each in SPEEDS]
-        self._fill_standing(table, pressures)
+        self._fill_standing(table)
         self._fill_aslant(table)
-        table['most_pressure'] = BEYOND * pressures[-1]
+        table['most_pressure'] = BEYOND * self._pressures[-1]
         energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
-    def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
+    def _fill_standing(self, table: np.void) -> None:
         """Fill loads and their slopes at the equilibria in winds of each speed."""
         m = int(table['n_modes'])
-        stiffness = table['stiffness'][:m]
-        standing = self._standing(stiffness, pressures)
-        n_calm = int(np.searchsorted(SPEEDS, _STORM))
+        standing = self._standing()
         for azimuth in range(len(self._azimuths)):
-            for level in range(1, n_calm):
-                self._turn_inertia(standing, azimuth, level, pressures[level])
+            for level in range(1, _N_CALM):
+                self._turn_inertia(standing, azimuth, level)
         equilibrium = _between(standing.equilibrium)
         table['equilibrium'][..., :m] = equilibrium
         table['amount'][..., :m] = _between(standing.amount)
-        load = self._loads_at(equilibrium, stiffness, pressures, n_calm)
-        np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
-        table['load'][..., :m] = load - load[:, :1]
+        load = self._loads_at(equilibrium)
+        limit = table['limit'][:m]
+        largest = np.abs(load).max(axis=(0, 1))
+        np.maximum(limit, largest, out=limit)
+        calm = load[:, :1]
+        table['load'][..., :m] = load - calm
         table['turning'][..., :m, :m] = _between(standing.turning)
         table['damping'][..., :m, :m] = _without_gain(_between(standing.damping))
-        table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
-        table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
+        sizes = np.abs(table['damping'])
+        of_own_rates = np.einsum('ajii->aji', sizes)
+        table['cross_damping'] = sizes.sum(axis=2)
+        table['cross_damping'] -= of_own_rates
         table['levels'] = _rising_levels(table['equilibrium'], table['amount'])
 
-    def _standing(self, stiffness: Floats, pressures: list[float]) -> _Standing:
+    def _standing(self) -> _Standing:
         """Find the equilibria at the computed azimuths, and the slopes of the load there."""
-        found = _Standing.of_size(len(self._azimuths), len(stiffness))
+        found = _Standing.of_size(len(self._azimuths), len(self._stiffness))
         winds = direction(self._azimuths, 0.0)
         loads = self._moments.at_rest(winds, self._shapes)
         for azimuth, (wind, load) in enumerate(zip(winds, loads, strict=True)):
             # One unit of the lean is the pose in a steady wind that bends the tree a little.
-            found.amount[azimuth] = load / max(float(load @ (load / stiffness)), 1e-300)
+            compliance = float(load @ (load / self._stiffness))
+            found.amount[azimuth] = load / max(compliance, 1e-300)
             turning = found.turning[azimuth]
             damping = found.damping[azimuth]
             opposite = azimuth - len(winds) // 2
             if opposite >= 0:
-                turning[0], damping[0] = -found.turning[opposite, 0], found.damping[opposite, 0]
+                turning[0] = -found.turning[opposite, 0]
+                damping[0] = found.damping[opposite, 0]
             else:
                 turning[0], damping[0] = self._slopes(self._still, wind)
-            pose = np.zeros(len(stiffness))
-            for level in range(1, N_LEVELS):
-                weaker = pose
-                pressure_there = pressures[level]
-                pose = self._search.near(weaker, pressure_there, wind, turning[level - 1])
-                found.equilibrium[azimuth, level] = pose
-                if pose is weaker:
-                    slopes = turning[level - 1], damping[level - 1]
-                else:
-                    slopes = self._damped_slopes(pose, wind, level, pressure_there)
-                turning[level], damping[level] = slopes
+            self._fill_levels(found, azimuth, wind)
         return found
 
-    def _damped_slopes(
-        self, pose: Floats, wind: Floats, level: int, pressure_there: float
-    ) -> tuple[Floats, Floats]:
+    def _fill_levels(self, found: _Standing, azimuth: int, wind: Floats) -> None:
+        """Fill the equilibria and slopes at one azimuth, each found from that in weaker wind."""
+        turning = found.turning[azimuth]
+        damping = found.damping[azimuth]
+        pose = np.zeros(len(self._stiffness))
+        for level in range(1, N_LEVELS):
+            weaker = pose
+            below = level - 1
+            pose = self._search.near(weaker, self._pressures[level], wind, turning[below])
+            found.equilibrium[azimuth, level] = pose
+            if pose is weaker:
+                turning[level] = turning[below]
+                damping[level] = damping[below]
+            else:
+                turning[level], damping[level] = self._damped_slopes(pose, wind, level)
+
+    def _damped_slopes(self, pose: Floats, wind: Floats, level: int) -> tuple[Floats, Floats]:
         """Find the slopes at an equilibrium, without what would feed a flutter of twigs there."""
         slopes = self._slopes(self._shapes @ pose, wind)
         turning, damping = (each.astype(np.float64) for each in slopes)
         speed = SPEEDS[level]
+        pressure = self._pressures[level]
         if speed > _BREEZE:
-            air = self._damping - pressure_there / speed * np.diag(damping)
+            air = self._damping - pressure / speed * np.diag(damping)
             most = _FLUTTER[speed > _STORM]
-            feeding = self._feeding(pressure_there * turning, air, most)
-            turning -= feeding / max(pressure_there, 1e-300)
+            feeding = self._feeding(pressure * turning, air, most)
+            turning -= feeding / max(pressure, 1e-300)
         return turning, damping
 
-    def _loads_at(
-        self, equilibrium: Floats, stiffness: Floats, pressures: list[float], n_calm: int
-    ) -> Floats:
+    def _loads_at(self, equilibrium: Floats) -> Floats:
         """
         Find the loads at the equilibria, (a, l, m).
 
         In storms they are those of the springs. At lower levels the wind's own load is taken: a
         pose that is interpolated between two azimuths is not exactly at rest.
         """
-        load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
-        winds = np.repeat(direction(_AZIMUTHS, 0.0), n_calm, axis=0)
-        rotations = [poses[:n_calm] @ self._shapes.T for poses in equilibrium]
+        pressures = np.maximum(self._pressures, 1e-300)
+        load = self._stiffness * equilibrium / pressures[:, None]
+        winds = np.repeat(direction(_AZIMUTHS, 0.0), _N_CALM, axis=0)
+        rotations = [poses[:_N_CALM] @ self._shapes.T for poses in equilibrium]
         moments = self._moments.at_poses(np.concatenate(rotations), winds)
-        for moment, loads in zip(moments.reshape(len(load), n_calm, -1), load, strict=True):
-            loads[:n_calm] = moment @ self._shapes
+        by_azimuth = moments.reshape(len(load), _N_CALM, -1)
+        for azimuth, moment in enumerate(by_azimuth):
+            load[azimuth, :_N_CALM] = moment @ self._shapes
         return np.asarray(load)
 
-    def _turn_inertia(
-        self, standing: _Standing, azimuth: int, level: int, pressure_there: float
-    ) -> None:
+    def _turn_inertia(self, standing: _Standing, azimuth: int, level: int) -> None:
         """
         Apply the inertia at an equilibrium to the slopes there, in place.
 
@@ -249,7 +260,8 @@ class WindBasisTable:
         for slopes in (turning, damping):
             slopes[:, :count] = slopes[:, :count] @ inverse
         stiffness = np.square(self._root[:count, None])
-        by_springs = stiffness * (unit - inverse) / max(pressure_there, 1e-300)
+        pressure = max(self._pressures[level], 1e-300)
+        by_springs = stiffness * (unit - inverse) / pressure
         turning[:count, :count] += by_springs
 
     def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
@@ -260,11 +272,13 @@ class WindBasisTable:
         takes energy from both. Without this bound, hanging twigs flutter in gales.
         """
         circulating = 0.5 * (slopes - slopes.T)
-        scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
+        dampers = np.maximum(damping, 1e-6 * self._root)
+        scale = 1.0 / np.sqrt(dampers * self._root)
         scaled = circulating * scale * scale[:, None]
         if float(np.linalg.norm(scaled)) <= most:  # at least the spectral norm
             return np.zeros_like(slopes)
-        return circulating * max(0.0, 1.0 - most / float(np.linalg.norm(scaled, 2)))
+        ratio = float(np.linalg.norm(scaled, 2))
+        return circulating * max(0.0, 1.0 - most / ratio)
 
     def _fill_aslant(self, table: np.void) -> None:
         """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
@@ -286,13 +300,17 @@ def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]
 
     Returns harmonics, (h, m), and the largest loads, (m,), both at 1 kg/m/s^2.
     """
-    elevation, azimuth = np.meshgrid(_ELEVATIONS, _AZIMUTHS, indexing='ij')
-    directions = direction(azimuth.ravel(), elevation.ravel())
-    weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
-    weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
+    elevation = np.repeat(_ELEVATIONS, len(_AZIMUTHS))
+    azimuth = np.tile(_AZIMUTHS, len(_ELEVATIONS))
+    directions = direction(azimuth, elevation)
+    likeliness = np.exp(-0.5 * (elevation / _ELEVATION_SPREAD) ** 2) + 0.02
+    solid_angle = np.maximum(np.cos(elevation), 1.0 / N_AZIMUTHS)
+    weight = np.sqrt(likeliness)
+    weight *= np.sqrt(solid_angle)
     loads = moments.at_rest(directions, shapes)
     values = harmonics_at(directions) * weight[:, None]
-    fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
+    weighted = loads * weight[:, None]
+    fitted = np.linalg.lstsq(values, weighted, rcond=None)[0]
     return np.asarray(fitted), np.abs(loads).max(axis=0)
 
 
@@ -321,14 +339,6 @@ def _without_gain(damping: Floats) -> Floats:
     work, axes = np.linalg.eigh(0.5 * (damping + np.swapaxes(damping, -1, -2)))
     gain = (axes * np.maximum(work, 0.0)[..., None, :]) @ np.swapaxes(axes, -1, -2)
     return np.asarray(damping - gain)
-
-
-def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
-    """Return unit vectors, (..., 3)."""
-    azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
-    x = np.cos(elevation) * np.cos(azimuth)
-    y = np.cos(elevation) * np.sin(azimuth)
-    return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))
 
 
 def harmonics_at(directions: Floats) -> Floats:

@@ -68,8 +68,7 @@ class NumpyPasses:
             name: np.ascontiguousarray(branches[name]) for name in _FIELDS
         }
         self._coupling = branches['coupling'] - cross_matrix(branches['base'])
-        xx, yy, zz, xy, xz, yz = branches['projector'].T
-        self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
+        self._projector = np.ascontiguousarray(symmetric_matrices(branches['projector']))
         self.levels = levels_of(branches['parent'])
         column = np.arange(branches['load_mode'].shape[1])
         self.is_there = column < branches['n_coordinates'][:, None]
@@ -172,8 +171,9 @@ class NumpyPasses:
         load_rotation = self.load_rotation(x)
         own = _works(self._branch['load_mode'], force)
         couple = np.einsum('bij,bj->bi', self._coupling, force)
-        wrench = np.hstack([turned_by(load_rotation, force), turned_by(load_rotation, couple)])
-        world = quaternion_rotated(bases.orientation, wrench[:, :3])
+        at_base = turned_by(load_rotation, force)
+        wrench = np.hstack([at_base, turned_by(load_rotation, couple)])
+        world = quaternion_rotated(bases.orientation, at_base)
         for level in reversed(self.levels):
             branch = {name: self._branch[name][level] for name in _OF_JOINTS}
             parent = branch['parent']
@@ -213,6 +213,12 @@ def _works(modes: Floats, forces: Floats) -> Floats:
 def _dot(a: Floats, b: Floats) -> Floats:
     """Scalar products of vectors (b, 3), (b, 1)."""
     return np.asarray((a * b).sum(axis=1, keepdims=True))
+
+
+def symmetric_matrices(entries: Floats) -> Floats:
+    """Return matrices (..., 3, 3) of their entries xx, yy, zz, xy, xz, yz, (..., 6)."""
+    row_by_row = entries[..., [0, 3, 4, 3, 1, 5, 4, 5, 2]]
+    return row_by_row.reshape(*entries.shape[:-1], 3, 3)
 
 
 def copies_of(branches: Records, count: int) -> Records:

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
 from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
 from tree_sway.core.checks import one_of_each
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.branch_places import places_of
@@ -30,6 +31,29 @@ from tree_sway.core.tree.tree import Tree
 
 CUT_FOR = 15.0
 """Wind in [m/s] for whose rotations branches are cut."""
+
+LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
+"""
+Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
+limp; the share of all branches, by length, that makes a limp tree; and its largest number of
+segments, for a step takes time in proportion. Of trees that were tried those whose twigs hang or
+whip have a share of 0.25 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
+"""
+
+WHIP_TURN, MOST_WHIPPY = 0.5, 500
+"""
+The same rotation [rad] for bare trees of few segments, and their number: young whips and rods,
+which bend as a whole, have a share of 0.30 to 0.59 beyond it, and a step of theirs takes little
+time. A sapling in leaf is not among them: its stem bends as far, but the table with its leaves is
+within 0.05 of all coordinates.
+"""
+
+STRUNG = 10.0
+"""
+Weight over stiffness up to which a limp branch gets a further pair of shapes. Twigs of birches and
+whips have 0.5 to 8, and are nearer to the truth with it; those of a willow, which hang as strings,
+have 11 to 45: with it they are further from the truth in winds of 9 m/s and above.
+"""
 
 
 @dataclass(frozen=True)
@@ -101,14 +125,37 @@ class TreeReducer:
         is_cut = cut.tree.n_branches > self._tree.n_branches
         beams = self._beams_of(cut) if is_cut else self._beams
         enriched = beams.enriched(self._settings.enrich)
-        models = beams.models(subtrees=True, enriched=enriched)
+        limp = frozenset(np.flatnonzero(self._is_bent[cut.branch]).tolist())
+        models = beams.models(subtrees=True, enriched=enriched, limp=limp)
         return self._reduced(cut, models, subtrees=True)
 
     @cached_property
     def turns(self) -> Floats:
         """Rotation [rad] of each branch in the wind that branches are cut for, (b,)."""
-        dynamic_pressure = drag_density(CUT_FOR, *self._drag_law) * CUT_FOR**2
+        dynamic_pressure = self._drag_law.dynamic_pressure(CUT_FOR)
         return np.asarray(dynamic_pressure * self._beams.turns(self._species.modulus))
+
+    @cached_property
+    def is_limp(self) -> bool:
+        """Whether so much of the tree turns so far that a table of loads is too coarse."""
+        length = self._tree.branch_length
+        turned = float(length[self._is_far].sum())
+        is_small = self._tree.n_segments <= MOST_LIMP
+        return is_small and turned > LIMP_SHARE * float(length.sum())
+
+    @property
+    def _is_far(self) -> NDArray[np.bool_]:
+        """Whether each branch turns so far that it is limp, (b,)."""
+        may_whip = self._tree.n_segments <= MOST_WHIPPY and not self._settings.in_leaf
+        return np.asarray(self.turns > (WHIP_TURN if may_whip else LIMP_TURN))
+
+    @property
+    def _is_bent(self) -> NDArray[np.bool_]:
+        """Whether each branch gets a further pair: one of a limp tree, and no string, (b,)."""
+        is_asked = isinstance(self._settings.model, int) and self._settings.enrich == 'needed'
+        if not is_asked or not self.is_limp:
+            return np.zeros(self._tree.n_branches, dtype=np.bool_)
+        return self._is_far & (self._beams.weight_over_stiffness() < STRUNG)
 
     @cached_property
     def _beams(self) -> TreeBeams:

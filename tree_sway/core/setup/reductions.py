@@ -17,7 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.model.drag_law import crown_drag, drag_density, DragLaw
+from tree_sway.core.model.drag_law import crown_drag, DragLaw
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.species import Species
@@ -27,22 +27,6 @@ if TYPE_CHECKING:
     from tree_sway.core.setup.modes import Modes
     from tree_sway.core.setup.reduced_tree import ReducedTree, TreeReducer
     from tree_sway.core.setup.static_responses import WindMoments
-
-LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
-"""
-Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
-limp; the share of all branches, by length, that makes a limp tree; and its largest number of
-segments, for a step takes time in proportion. Of trees that were tried those whose twigs hang or
-whip have a share of 0.25 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
-"""
-
-WHIP_TURN, MOST_WHIPPY = 0.5, 500
-"""
-The same rotation [rad] for bare trees of few segments, and their number: young whips and rods,
-which bend as a whole, have a share of 0.30 to 0.59 beyond it, and a step of theirs takes little
-time. A sapling in leaf is not among them: its stem bends as far, but the table with its leaves is
-within 0.05 of all coordinates.
-"""
 
 FASTEST_LIMP, LEAST_SPAN = 60.0, 4.0
 """
@@ -171,16 +155,16 @@ class TreeReductions:
         moved_steadily = moved(steady)
         weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
         answers = np.hstack([natural.shapes @ mixes, weight * steady])
-        in_gale = drag_density(_GALE, *self.drag_law) * _GALE**2 / weight
-        return Responses(answers, np.hstack([tips, weight * moved_steadily]), float(in_gale))
+        in_gale = self.drag_law.dynamic_pressure(_GALE) / weight
+        all_tips = np.hstack([tips, weight * moved_steadily])
+        return Responses(answers, all_tips, float(in_gale))
 
     def _static_responses(self) -> Floats:
         """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
         from tree_sway.core.setup.static_responses import static_responses
 
-        law = self.drag_law
         solve = self.with_subtrees.reduction.factors.solve
-        return static_responses(self.wind_moments, solve, lambda u: drag_density(u, *law) * u * u)
+        return static_responses(self.wind_moments, solve, self.drag_law)
 
     @cached_property
     def wind_moments(self) -> WindMoments:
@@ -214,12 +198,7 @@ class TreeReductions:
     @property
     def is_limp(self) -> bool:
         """Whether so much of the tree turns so far that a table of loads is too coarse."""
-        length = self.tree.branch_length
-        may_whip = self.tree.n_segments <= MOST_WHIPPY and not self.settings.in_leaf
-        limp_turn = WHIP_TURN if may_whip else LIMP_TURN
-        turned = float(length[self._reducer.turns > limp_turn].sum())
-        is_small = self.tree.n_segments <= MOST_LIMP
-        return is_small and turned > LIMP_SHARE * float(length.sum())
+        return self._reducer.is_limp
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

@@ -15,14 +15,21 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.load_layouts import WORK
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.load_derivatives import LoadSlopes, SYMMETRIC
-from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
+from tree_sway.core.setup.load_derivatives import LoadSlopes
+from tree_sway.core.setup.numpy_branch_loads import (
+    copies_of,
+    into_slots,
+    NumpyPasses,
+    symmetric_matrices,
+)
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
@@ -84,8 +91,11 @@ class WindMoments:
             pairs = zip(poses, winds, strict=True)
             return np.array([self(pose, rest, wind) for pose, wind in pairs])
         together = max(1, _TOGETHER // len(self.branches))
-        parts = [slice(i, i + together) for i in range(0, len(poses), together)]
-        return np.vstack([self._in_copies(poses[part], winds[part]) for part in parts])
+        parts = []
+        for first in range(0, len(poses), together):
+            part = slice(first, first + together)
+            parts.append(self._in_copies(poses[part], winds[part]))
+        return np.vstack(parts)
 
     def _in_copies(self, poses: Floats, winds: Floats) -> Floats:
         """Find the moments of `at_poses` in numpy, on as many copies of the tree, side by side."""
@@ -137,13 +147,14 @@ class WindMoments:
         base = base_motion(branches, shapes)
         moved = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
         moved += own_motion(branches, 'load_mode', shapes)
-        projector = branches['projector'][:, SYMMETRIC].reshape(-1, 3, 3)
+        projector = symmetric_matrices(branches['projector'])
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
         area = branches['area'] * branches['speed'] ** 2
         per_velocity = area[:, None] * np.sqrt(square)
-        force = (per_velocity[:, None] * across).reshape(n_components, -1)
-        return np.asarray(force.T @ moved.reshape(n_components, -1))
+        force = per_velocity[:, None] * across
+        by_wind = force.reshape(n_components, -1).T
+        return np.asarray(by_wind @ moved.reshape(n_components, -1))
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""
@@ -151,7 +162,7 @@ class WindMoments:
 
 
 def static_responses(
-    moments: WindMoments, solve: Callable[[Floats], Floats], pressure: Callable[[float], float]
+    moments: WindMoments, solve: Callable[[Floats], Floats], law: DragLaw
 ) -> Floats:
     """
     Find the equilibria of a tree in winds: key rotations [rad], (N, k).
@@ -162,14 +173,15 @@ def static_responses(
         Loads of the tree.
     solve
         Key rotations under moments [N m], (N,): the inverse of the stiffness.
-    pressure
-        Dynamic pressure [kg/m/s^2] of a wind in [m/s].
+    law
+        Drag law of the tree.
 
     """
-    level_winds = np.array([_direction(azimuth, 0.0) for azimuth in _AZIMUTHS])
+    level_winds = direction(_AZIMUTHS, 0.0)
     at_rest = np.zeros((len(level_winds), moments.n))
     small = solve(moments.at_poses(at_rest, level_winds).T).T
-    pressures = np.tile([pressure(speed) for speed in _SPEEDS], len(level_winds))[:, None]
+    of_speeds = [drag_density(speed, *law) * speed * speed for speed in _SPEEDS]
+    pressures = np.tile(of_speeds, len(level_winds))[:, None]
     strong_winds = np.repeat(level_winds, len(_SPEEDS), axis=0)
     far = _equilibria(moments, solve, strong_winds, pressures)
     # Where air has no pressure, none of these winds bends the tree.
@@ -191,22 +203,27 @@ def _equilibria(
     poses = np.zeros((len(winds), moments.n))
     for turn in range(_TURNS):
         loads = pressures * moments.at_poses(poses, winds)
-        poses += (solve(loads.T).T - poses) / (turn + 2.0) ** 0.5
+        sprung = solve(loads.T).T
+        poses += (sprung - poses) / (turn + 2.0) ** 0.5
         farthest = np.maximum(np.abs(poses).max(axis=1, keepdims=True), 1e-12)
         poses *= np.minimum(1.0, _FARTHEST / farthest)
     return poses
 
 
-def _inclined_winds() -> list[Floats]:
-    """Return directions of winds that fall and rise, straight and aslant."""
-    winds = []
-    for elevation in (-90.0, -45.0, 45.0, 90.0):
-        is_vertical = abs(elevation) == 90.0
-        azimuths = _AZIMUTHS[:1] if is_vertical else _AZIMUTHS[::2]
-        winds += [_direction(azimuth, np.radians(elevation)) for azimuth in azimuths]
-    return winds
+def _inclined_winds() -> Floats:
+    """Return directions of winds that fall and rise, straight and aslant, (k, 3)."""
+    azimuths = _AZIMUTHS[::2]
+    falling = direction(azimuths, -np.pi / 4.0)
+    rising = direction(azimuths, np.pi / 4.0)
+    down = direction([0.0], -np.pi / 2.0)
+    up = direction([0.0], np.pi / 2.0)
+    return np.vstack([down, falling, rising, up])
 
 
-def _direction(azimuth: float, elevation: float) -> Floats:
+def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
+    """Return the unit vectors of angles in [rad], (..., 3)."""
+    azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
     level = np.cos(elevation)
-    return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
+    x = level * np.cos(azimuth)
+    y = level * np.sin(azimuth)
+    return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))

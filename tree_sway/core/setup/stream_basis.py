@@ -87,7 +87,8 @@ def stream_arrays(
     scale = _scale(branches, _largest(found[REACH], projection))
     poses = _gusty_poses(found[REACH])
     missed = _missed(poses, basis, projection, scale)
-    error = _largest_error(branches, shapes @ missed)
+    tips, _ = np.split(moved, [3 * len(branches)])
+    error = _largest_motion(tips @ missed)
     return arrays_of_stream(StateBasis(basis, projection, scale, error))
 
 
@@ -115,18 +116,22 @@ def basis_of_responses(branches: Records, responses: Floats, greatest: Floats) -
         Poses in strong winds as key rotations in [rad], (N, p).
 
     """
-    moved = _moved(branches, responses)
-    mixes, _ = principal_components(moved.T @ moved, np.eye(responses.shape[1]))
-    moved = moved @ mixes
-    tips, between = np.split(moved, [3 * len(branches)])
-    projection = tip_moments(branches, tips.reshape(len(branches), 3, mixes.shape[1]))
-    projection += _between(branches) * between
+    n_branches = len(branches)
+    of_responses = _moved(branches, responses)
+    inner = of_responses.T @ of_responses
+    mixes, _ = principal_components(inner, np.eye(len(inner)))
+    of_basis = of_responses @ mixes
+    tips, between = np.split(of_basis, [3 * n_branches])
+    moments = tip_moments(branches, tips.reshape(n_branches, 3, -1))
+    moments += _between(branches) * between
     basis = responses @ mixes
-    projection = projection.T
-    reach = np.abs(projection @ greatest).max(axis=1, initial=0.0)
+    projection = moments.T
+    amounts = projection @ greatest
+    reach = np.abs(amounts).max(axis=1, initial=0.0)
     scale = _scale(branches, reach)
     missed = _missed(greatest, basis, projection, scale)
-    return StateBasis(basis, projection, scale, _largest_error(branches, missed))
+    error = _largest_motion(tip_motion(branches, missed))
+    return StateBasis(basis, projection, scale, error)
 
 
 def _scale(branches: Records, reach: Floats) -> Floats:
@@ -136,7 +141,8 @@ def _scale(branches: Records, reach: Floats) -> Floats:
 
 def _missed(poses: Floats, basis: Floats, projection: Floats, scale: Floats) -> Floats:
     """Return what a stream in a basis leaves out of poses (m, p), and loses by rounding."""
-    streamed = rounded((projection @ poses).T, scale)
+    amounts = projection @ poses
+    streamed = rounded(amounts.T, scale)
     return poses - basis @ streamed.T
 
 
@@ -162,12 +168,14 @@ def principal_components(inner: Floats, motions: Floats) -> tuple[Floats, Floats
     ascending, mixes = np.linalg.eigh(factor.T @ inner @ factor)
     squares = np.maximum(ascending[::-1], 0.0)
     count = _count_needed(squares)
-    mixes = mixes[:, ::-1][:, :count]
-    shapes = factor @ (mixes / np.sqrt(squares[:count]))
+    largest_first = mixes[:, ::-1]
+    kept = largest_first[:, :count]
+    shapes = factor @ (kept / np.sqrt(squares[:count]))
     # The largest number of each shape is positive.
     if count > 0:
-        largest = np.abs(shapes).argmax(axis=0)
-        shapes = shapes * np.sign(shapes[largest, np.arange(count)])
+        rows = np.abs(shapes).argmax(axis=0)
+        largest = shapes[rows, np.arange(count)]
+        shapes = shapes * np.sign(largest)
     return shapes, shapes.T @ inner
 
 
@@ -175,7 +183,8 @@ def _count_needed(squares: Floats) -> int:
     """Return the smallest of `COUNTS` that covers motions, by descending squares of shapes."""
     # Below rounding a shape is none.
     most = int((squares > 1e-14 * squares.max(initial=0.0)).sum())
-    left_out = 1.0 - np.cumsum(squares) / max(float(squares.sum()), _TINY)
+    total = max(float(squares.sum()), _TINY)
+    left_out = 1.0 - np.cumsum(squares) / total
     for count in COUNTS:
         if count >= most or left_out[count - 1] <= LEFT_OUT**2:
             return min(most, count)
@@ -191,7 +200,8 @@ def _moved(branches: Records, rotations: Floats) -> Floats:
 def _between(branches: Records) -> Floats:
     """Motion between base and tip per unit of each key rotation in [m], (N, 1)."""
     length = np.linalg.norm(branches['tip'] - branches['base'], axis=1)
-    return _BETWEEN * np.repeat(length, branches['n_coordinates'])[:, None]
+    of_coordinates = np.repeat(length, branches['n_coordinates'])
+    return _BETWEEN * of_coordinates[:, None]
 
 
 def _size(branches: Records) -> float:
@@ -201,8 +211,10 @@ def _size(branches: Records) -> float:
 
 def _weighted(inner: Floats, response: Leaning) -> Floats:
     """Motions in a steady wind, (m, any), of the same size in every wind but for its weight."""
-    waves = np.moveaxis(response.gusts, 2, 0).reshape(len(inner), -1)
-    gusts = _of_size(1.0, np.hstack([waves.real, waves.imag]), inner)
+    by_coordinate = np.moveaxis(response.gusts, 2, 0)
+    waves = by_coordinate.reshape(len(inner), -1)
+    both_parts = np.hstack([waves.real, waves.imag])
+    gusts = _of_size(1.0, both_parts, inner)
     steady = _of_size(_STEADY, response.poses.T, inner)
     return WEIGHTS[response.speed] * np.hstack([steady, gusts])
 
@@ -219,20 +231,24 @@ def _largest(response: Leaning, projection: Floats) -> Floats:
     """Find the largest value of each streamed coordinate in a steady wind and its gusts, (k,)."""
     still = np.abs(response.poses @ projection.T)
     swung = np.einsum('km,afmi->afki', projection, response.gusts)
-    spread = np.sqrt(np.square(np.abs(swung)).sum(axis=(1, 3)))
-    return np.asarray((still + _GUST * spread).max(axis=0, initial=0.0))
+    variance = np.square(np.abs(swung)).sum(axis=(1, 3))
+    largest = still + _GUST * np.sqrt(variance)
+    return np.asarray(largest.max(axis=0, initial=0.0))
 
 
 def _gusty_poses(response: Leaning) -> Floats:
     """Return poses at some moments of the gusts of every azimuth, of seeded phases, (m, any)."""
     n_azimuths, n_frequencies, m, n_components = response.gusts.shape
     rng = np.random.default_rng(0)
-    phases = rng.uniform(0.0, 2.0 * np.pi, (_MOMENTS, n_azimuths, n_frequencies, n_components))
-    turned = np.einsum('afmi,tafi->tam', response.gusts, np.exp(1j * phases)).real
-    return np.asarray((response.poses + np.sqrt(2.0) * turned).reshape(-1, m).T)
+    shape = _MOMENTS, n_azimuths, n_frequencies, n_components
+    phases = rng.uniform(0.0, 2.0 * np.pi, shape)
+    swings = np.einsum('afmi,tafi->tam', response.gusts, np.exp(1j * phases)).real
+    poses = response.poses + np.sqrt(2.0) * swings
+    return np.asarray(poses.reshape(-1, m).T)
 
 
-def _largest_error(branches: Records, missed: Floats) -> float:
-    """Find the largest motion of a tip by rotations (N, p) that are left out, in [m]."""
-    moved = tip_motion(branches, missed)
-    return float(np.sqrt(np.square(moved).sum(axis=1).max(initial=0.0)))
+def _largest_motion(tips: Floats) -> float:
+    """Find the largest displacement of a tip by those of all tips in some poses, in [m]."""
+    displacement = tips.reshape(-1, 3, tips.shape[-1])
+    squares = np.square(displacement).sum(axis=1)
+    return float(np.sqrt(squares.max(initial=0.0)))

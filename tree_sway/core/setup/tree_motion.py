@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 import math
 from typing import Any, TypeAlias
 
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.numpy_rotation import CYCLES
 
 Numbers: TypeAlias = NDArray[Any]
 """Real or complex numbers."""
@@ -25,18 +25,21 @@ def tip_motion(branches: Records, rotations: Numbers) -> Numbers:
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
     """Moments on coordinates (N, m) under forces on tips (b, 3, m): `tip_motion` transposed."""
-    moments = np.zeros((int(joints['n_coordinates'].sum()), forces.shape[-1]))
-    about_root = np.cross(joints['tip'][:, :, None], forces, axis=1)
+    n_coordinates = int(joints['n_coordinates'].sum())
+    moments = np.zeros((n_coordinates, forces.shape[-1]))
+    arms = joints['tip'][:, :, None]
+    about_root = np.cross(arms, forces, axis=1)
     wrench = np.concatenate([forces, about_root], axis=1)
     for branch in reversed(range(len(joints))):
         joint = joints[branch]
         own = _own_rows(moments, joint)
         own += _of_rows(joint['tip_mode'], joint) @ forces[branch]
-        if joint['parent'] >= 0:
-            parent = joints[joint['parent']]
-            of_parent = _own_rows(moments, parent)
-            of_parent += _of_rows(joint['twist'], parent) @ wrench[branch]
-            wrench[joint['parent']] += wrench[branch]
+        parent = joint['parent']
+        if parent >= 0:
+            below = joints[parent]
+            of_parent = _own_rows(moments, below)
+            of_parent += _of_rows(joint['twist'], below) @ wrench[branch]
+            wrench[parent] += wrench[branch]
     return moments
 
 
@@ -65,53 +68,65 @@ def branch_rotations(branches: Records, rotations: Numbers) -> Numbers:
 
 
 def own_motion(branches: Records, mode: str, rotations: Numbers) -> Numbers:
-    """Sum a field of modes (b, k, 3) of branches by their own rotations (N, ...), (b, 3, ...)."""
-    motion = np.zeros((len(branches), 3, *rotations.shape[1:]), dtype=rotations.dtype)
-    for own, rows in _moved(branches, rotations):
-        motion[rows] = _sums(branches[mode][rows, : own.shape[1]], own)
-    return motion
-
-
-def _moved(branches: Records, rotations: Numbers) -> Iterator[tuple[Numbers, Ints]]:
-    """Yield rotations (k, c, ...) and rows (k,) of branches by number c of coordinates."""
-    for count in np.unique(branches['n_coordinates']):
-        rows = np.flatnonzero(branches['n_coordinates'] == count)
-        coordinates = branches['coordinate'][rows, None] + np.arange(count)
-        yield rotations[coordinates], rows
-
-
-def _sums(twists: Floats, rotations: Numbers) -> Numbers:
-    """Sum motions per unit of each coordinate, (k, c, d), to those of branches, (k, d, ...)."""
-    n_branches, n_coordinates, *further = rotations.shape
-    flat = rotations.reshape(n_branches, n_coordinates, math.prod(further))
-    moved = np.swapaxes(twists, 1, 2) @ flat
-    return moved.reshape(*moved.shape[:2], *further)
+    """Sum a field of modes (b, k, d) of branches by their own rotations (N, ...), (b, d, ...)."""
+    return _moved(branches, np.arange(len(branches)), branches[mode], rotations)
 
 
 def joint_motion(branches: Records, rotations: Numbers) -> Numbers:
     """Motion (v, w) of bases about the root by their parents' rotations only, (b, 6, ...)."""
     motion = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
-    for own, rows in _moved(branches, rotations):
-        place = np.full(len(branches) + 1, -1)  # with one for the parent of the stem
-        place[rows] = np.arange(len(rows))
-        place_of_parent = place[parents]
-        children = np.flatnonzero(place_of_parent >= 0)
-        twists = branches['twist'][children, : own.shape[1]]
-        motion[children] = _sums(twists, own[place_of_parent[children]])
+    has_parent = parents >= 0
+    twists = branches['twist'][has_parent]
+    motion[has_parent] = _moved(branches, parents[has_parent], twists, rotations)
     return motion
+
+
+def _moved(branches: Records, moving: Ints, modes: Floats, rotations: Numbers) -> Numbers:
+    """
+    Sum the motion of some bodies by small rotations of the branches that move them.
+
+    Parameters
+    ----------
+    branches
+        Records of all branches.
+    moving
+        Branch that moves each body, (p,).
+    modes
+        Motion of each body per unit of each coordinate of that branch, (p, k, d).
+    rotations
+        Small rotations of all branches, (N, ...).
+
+    Returns
+    -------
+    Numbers
+        Motion of the bodies, (p, d, ...).
+
+    """
+    n_bodies, _, n_components = modes.shape
+    columns = rotations.shape[1:]
+    flat = rotations.reshape(len(rotations), math.prod(columns))
+    motion = np.zeros((n_bodies, n_components, flat.shape[1]), dtype=rotations.dtype)
+    first = branches['coordinate'][moving]
+    counts = branches['n_coordinates'][moving]
+    for count in np.unique(counts):
+        bodies = np.flatnonzero(counts == count)
+        coordinates = first[bodies, None] + np.arange(count)
+        per_unit = np.swapaxes(modes[bodies, :count], 1, 2)
+        motion[bodies] = per_unit @ flat[coordinates]
+    return motion.reshape(n_bodies, n_components, *columns)
 
 
 def base_motion(branches: Records, rotations: Numbers) -> Numbers:
     """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     parents = branches['parent']
-    return sum_outward(parents, levels_of(parents), joint_motion(branches, rotations))
+    return sum_outward(parents, joint_motion(branches, rotations))
 
 
-def sum_outward(parents: Ints, levels: list[Ints], joints: Numbers) -> Numbers:
-    """Add the motion of the parent from the root on to that of each branch on it, (b, ...)."""
+def sum_outward(parents: Ints, joints: Numbers) -> Numbers:
+    """Add the motion of its parent to that of each branch, from the root on, (b, ...)."""
     total = joints.copy()
-    for level in levels[1:]:  # children of the stem are complete
+    for level in levels_of(parents)[1:]:  # children of the stem are complete
         total[level] += total[parents[level]]
     return total
 
@@ -119,16 +134,20 @@ def sum_outward(parents: Ints, levels: list[Ints], joints: Numbers) -> Numbers:
 def levels_of(parent: Ints) -> list[Ints]:
     """Sort the branches into levels by their distance from the stem, without the stem."""
     depth = np.zeros(len(parent), dtype=np.int64)
-    for b, below in enumerate(parent.tolist()):
-        depth[b] = depth[below] + 1 if below >= 0 else 0
-    return [np.flatnonzero(depth == k) for k in range(1, int(depth.max()) + 1)]
+    for branch, below in enumerate(parent.tolist()):
+        if below >= 0:
+            depth[branch] = depth[below] + 1
+    deepest = int(depth.max())
+    return [np.flatnonzero(depth == level) for level in range(1, deepest + 1)]
 
 
 def displacement_at(motion: Numbers, points: Floats) -> Numbers:
     """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
-    velocity, spin = np.split(motion, 2, axis=1)
-    arm = points.reshape(*points.shape, *(1,) * (motion.ndim - 2))
+    velocity = motion[:, :3]
+    spin = motion[:, 3:]
+    columns = motion.ndim - 2
+    arm = np.expand_dims(points, tuple(range(2, 2 + columns)))
     moved = velocity.copy()
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    for i, j, k in CYCLES:
         moved[:, i] += spin[:, j] * arm[:, k] - spin[:, k] * arm[:, j]
     return moved

@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.fill_records import Places
-from tree_sway.core.setup.tree_motion import levels_of, sum_outward
+from tree_sway.core.setup.tree_motion import sum_outward
 from tree_sway.core.tree.tree import Tree
 
 
@@ -31,7 +31,7 @@ def turning_of(tree: Tree, places: Places, shapes: Floats) -> Turning:
     own = _rotations(places.segment_turn, tree.branch_of_segment, places, shapes)
     joint = _rotations(places.base_rotation, parent, places, shapes)
     joint[0] = 0.0
-    return Turning(joint, sum_outward(parent, levels_of(places.parent), joint), own)
+    return Turning(joint, sum_outward(places.parent, joint), own)
 
 
 def _rotations(modes: Floats, branch: Ints, places: Places, shapes: Floats) -> Floats:

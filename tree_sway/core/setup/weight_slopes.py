@@ -56,18 +56,19 @@ def weight_slopes(
     load = np.concatenate([beyond, carried])
     rotations = np.concatenate([whole, whole[on]])
     down = np.array([0.0, 0.0, -gravity])
-    along = rotations @ down
-    across = np.einsum('rqk,rk->qr', rotations, arms)
-    crossed = (across * load) @ along
+    by_down = rotations @ down
+    by_arms = np.einsum('rqk,rk->qr', rotations, arms)
+    crossed = (by_arms * load) @ by_down
     falling = np.repeat(load * (arms @ down), 3)
     flat = rotations.swapaxes(1, 2).reshape(-1, rotations.shape[1])
-    slopes = 0.5 * (crossed + crossed.T) - flat.T @ (falling[:, None] * flat)
+    straight = flat.T @ (falling[:, None] * flat)
+    slopes = 0.5 * (crossed + crossed.T) - straight
 
     # The torque of the weight on the segments, and on all that is carried by each base.
     torque = np.cross(arms, load[:, None] * down)
-    n = len(branch)
-    on_own = torque[:n].copy()
-    np.add.at(on_own, on[1:], torque[n + 1 :])
+    of_segments, of_branches = np.split(torque, [len(branch)])
+    on_own = of_segments.copy()
+    np.add.at(on_own, on[1:], of_branches[1:])
     on_base = np.add.reduceat(on_own, first)
     for b in range(len(first) - 1, 0, -1):
         on_base[parent[b]] += on_base[b]
@@ -88,7 +89,8 @@ def _masses_beyond(places: Places, mass: Floats) -> tuple[Floats, Floats]:
     carried = np.zeros(len(places.parent))
     for b in range(len(carried) - 1, -1, -1):
         own = slice(places.first[b], places.first[b + 1])
-        onward = np.cumsum(seated[own][::-1])[::-1]
+        from_tip = seated[own][::-1]
+        onward = np.cumsum(from_tip)[::-1]
         beyond[own] = onward - seated[own] + 0.5 * mass[own]
         carried[b] = onward[0]
         if b > 0:

@@ -47,6 +47,16 @@ from tree_sway.tables import table_beside
 
 __all__ = ['Species']
 
+BROADLEAF_DAMPING = 0.05
+"""
+Damping ratio of broadleaves in leaf beside the drag of the air [-].
+
+Wood and roots damp by less than 0.05, all else is drag and contact of crowns (review by Moore &
+Maguire 2004, Trees 18, 195-203). With the drag of still air, which is computed, it is 1.5 +- 0.3
+times that of the bare tree, as of Norway maples (Netsvetov & Nikulina 2010, Dendrobiology 64,
+37-42). Conifers have the 0.08 of Douglas-firs that no neighbour touched (Moore & Maguire 2005).
+"""
+
 _ROWS = {row['key']: row for row in table_beside(__file__, 'species.csv')}
 
 NAMES: dict[str, list[str]] = {key: row.pop('names').split(', ') for key, row in _ROWS.items()}
@@ -58,6 +68,8 @@ def _species(row: dict[str, Any]) -> Species:
     look = {each.name: row.pop(each.name) for each in fields(Look)}
     if look['autumn'] == 'none':
         look['autumn'] = None
+    if row['habit'] == 'broadleaf':
+        row['damping_in_leaf'] = BROADLEAF_DAMPING
     return Species(**row, leaves=leaves, look=Look(**look))
 
 

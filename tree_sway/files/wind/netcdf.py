@@ -3,9 +3,10 @@
 """
 Wind of a reanalysis or a station in netCDF, such as ERA5 from the Climate Data Store.
 
-The components are ``u10`` and ``v10`` (or others of their usual names), on a grid of latitude and
-longitude; the point is the nearest to ``at``, or the first of the grid. Times are those of the CF
-conventions (``hours since 1900-01-01``). The extra ``netcdf`` reads them.
+The components are ``u10`` and ``v10`` (or others of their usual names), or the wind is a speed and
+the direction it comes from, as stations have it; on a grid of latitude and longitude the point is
+the nearest to ``at``, or the first of the grid. Times are those of the CF conventions (``hours
+since 1900-01-01``). The extra ``netcdf`` reads them.
 """
 
 from __future__ import annotations
@@ -19,13 +20,18 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway.extras import cure_of_missing
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import rank_of, unit_factor, UNITS
 from tree_sway.files.text_file import reason_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
 
 _MOST = 20_000_000
 """Largest number of times."""
+_COMPONENTS = ('wind_x', 'wind_y')
+_POLAR = ('wind_speed', 'wind_direction')
+_FULL_CIRCLE = 401.0
+"""Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
+_USUAL_UNITS = {'speed': 'm/s', 'angle': 'deg'}
 _WORDS = {'time': 'time', 'wind_x': 'eastward wind', 'wind_y': 'northward wind'}
 
 
@@ -38,7 +44,7 @@ def read_netcdf_wind(
     Raises
     ------
     FormatError
-        Not netCDF, no components of the wind, no time, or no good sample.
+        Not netCDF, no wind, no time, an unknown unit, or no good sample.
     ParameterError
         A point that is none.
     MissingDependencyError
@@ -74,28 +80,44 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
 def _read(
     data: Any, source: str, point: tuple[float, float] | None, turbulence: bool, seed: float
 ) -> WindRecord:
-    names = {each: _find(data, each) for each in ('time', 'wind_x', 'wind_y', 'gust')}
-    missing = [each for each in ('time', 'wind_x', 'wind_y') if names[each] is None]
-    if missing:
-        said = [_WORDS[each] for each in missing]
+    found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
+    is_polar = None in [found[each] for each in _COMPONENTS]
+    if found['time'] is None or (is_polar and None in [found[each] for each in _POLAR]):
+        said = [word for each, word in _WORDS.items() if found[each] is None]
         what = f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}'
-        raise FormatError(what, where=source, cure='choose the 10 m u and v components of wind')
-    clock, x, y, gust = (data.variables.get(name) for name in names.values())
-    notes, place = _place(data, x, point)
-    east = _series(x, clock, place)
-    north = _series(y, clock, place)
+        cure = 'choose the 10 m u and v components of wind, or its speed and direction'
+        raise FormatError(what, where=source, cure=cure)
+    clock = data.variables[found['time']]
+    first = _Variable(data, found['wind_speed' if is_polar else 'wind_x'], source)
+    second = _Variable(data, found['wind_direction' if is_polar else 'wind_y'], source)
+    notes, place = _place(data, first.variable, point)
+    if is_polar:
+        speed = first.series('speed', clock, place)
+        degrees = second.series('angle', clock, place) / (unit_factor('angle', 'deg') or 1.0)
+        velocity = _velocity_from(speed, degrees)
+    else:
+        east = first.series('speed', clock, place)
+        north = second.series('speed', clock, place)
+        velocity = np.stack([east, north, np.zeros(len(east))], axis=1)
     seconds, epoch = _seconds(clock)
     rows = WindRows(source, row_name='sample')
-    good = np.isfinite(east) & np.isfinite(north)
+    good = np.isfinite(velocity).all(axis=1)
     for index in np.flatnonzero(~good).tolist():
         rows.refuse(index + 1, 'no value')
-    velocity = np.stack([east, north, np.zeros(len(east))], axis=1)[good]
     rows.time = array('d', seconds[good])
-    rows.velocity = array('d', velocity.ravel())
+    rows.velocity = array('d', velocity[good].ravel())
     rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
-    if gust is not None:
-        rows.gust = _series(gust, clock, place)[good]
+    if found['gust'] is not None:
+        rows.gust = _Variable(data, found['gust'], source).series('speed', clock, place)[good]
     return filled_means(rows.record(epoch=epoch, notes=tuple(notes)), turbulence, seed)
+
+
+def _velocity_from(speed: Floats, degrees: Floats) -> Floats:
+    """Wind of a speed and the direction it comes from, NaN where either is none, (n, 3)."""
+    degrees = np.where(np.isnan(degrees) & (speed == 0.0), 0.0, degrees)
+    good = (speed >= 0.0) & (np.abs(degrees) < _FULL_CIRCLE)
+    bearing = np.radians(np.where(good, degrees, np.nan))
+    return np.stack([-speed * np.sin(bearing), -speed * np.cos(bearing), 0.0 * bearing], axis=1)
 
 
 def _find(data: Any, quantity: str) -> str | None:
@@ -129,15 +151,33 @@ def _place(
     return ([f'{grid}; at=LATITUDE,LONGITUDE chooses another'] if said else []), chosen
 
 
-def _series(variable: Any, clock: Any, place: dict[str, int]) -> Floats:
-    """Values over time at a place, of the first of all other dimensions; NaN where missing."""
-    if len(clock) > _MOST:
-        raise ValueError(f'{len(clock)} times')
-    index = tuple(
-        slice(None) if name in clock.dimensions else place.get(name, 0)
-        for name in variable.dimensions
-    )
-    return np.ma.filled(np.ma.asarray(variable[index], dtype=np.float64), np.nan)
+class _Variable:
+    """A variable of a netCDF file, in SI."""
+
+    def __init__(self, data: Any, name: str | None, source: str) -> None:
+        self.variable = data.variables[name]
+        self._where = f'{source}: {name}'
+
+    def series(self, kind: str, clock: Any, place: dict[str, int]) -> Floats:
+        """
+        Values over time at a place, of the first of all other dimensions; NaN where missing.
+
+        Raises a `FormatError` for a unit that is not one of the kind; without one, it is the
+        usual one of the kind, m/s or degrees.
+        """
+        if len(clock) > _MOST:
+            raise ValueError(f'{len(clock)} times')
+        unit = str(getattr(self.variable, 'units', _USUAL_UNITS[kind]))
+        factor = unit_factor(kind, unit)
+        if factor is None:
+            cure = f'use {", ".join([*UNITS[kind]][:12])}'
+            raise FormatError(f"unknown unit '{unit[:20]}'", where=self._where, cure=cure)
+        index = tuple(
+            slice(None) if name in clock.dimensions else place.get(name, 0)
+            for name in self.variable.dimensions
+        )
+        values = np.ma.asarray(self.variable[index], dtype=np.float64)
+        return factor * np.ma.filled(values, np.nan)
 
 
 def _seconds(clock: Any) -> tuple[Floats, float]:

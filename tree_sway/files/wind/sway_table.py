@@ -93,7 +93,9 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     factors = [table.factor(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
-    for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
+    with np.errstate(over='ignore'):
+        is_plausible = np.abs(values) * factors <= MAX_VALUE
+    for row, column in np.argwhere(~is_plausible)[:1]:
         what = f'{columns[column]} is {values[row, column]:.3g}, which is implausible'
         raise table.error(what, row, 'correct the cell or remove the row')
     times = _times(table, clock)

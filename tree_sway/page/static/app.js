@@ -80,7 +80,7 @@ const stream = new TreeStream(address.href, {
     if (isFirst && view) scene.camera.set(view);
     const { name, trees, nSegments, kinds } = description;
     const models = new Set(kinds.map(({ model }) => modelName(model)));
-    const counts = { trees: trees.length.toLocaleString("en"), segments: nSegments.toLocaleString("en") };
+    const counts = { trees: grouped(trees.length), segments: grouped(nSegments) };
     const error = Math.max(...kinds.map((kind) => kind.basis_error));
     write({ name, ...counts, model: [...models].join(", "), error: `± ${Number((1000 * error).toPrecision(2))} mm` });
     document.title = `${name} – tree sway`;
@@ -149,6 +149,8 @@ function stateNow() {
 function showState() {
   const [state, text] = stateNow();
   element("state").dataset.state = state;
+  // Changes would go nowhere.
+  element("controls").inert = line !== "open";
   write({ "state-text": text });
   const seconds = Math.max(0, Math.ceil((retryAt - performance.now()) / 1000));
   if (state === "lost") notice(text, word("again", seconds), true);
@@ -166,7 +168,9 @@ function showPanel() {
 /** Hide the controls that have no effect. */
 function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
-  for (const name of ["height", "age", "individual", "month"]) panel.hide(name, !status.is_grown);
+  for (const name of ["height", "individual", "month"]) panel.hide(name, !status.is_grown);
+  // Without a measured stem an age says nothing.
+  panel.hide("age", !status.is_grown || !status.stem_of);
   panel.note("age", status.stem_of ? `${word("age_of")} ${status.stem_of} (McPherson 2016)` : "");
 }
 
@@ -177,9 +181,10 @@ function notice(title, text, canRetry = false) {
   element("retry").hidden = !canRetry;
 }
 
-/** @param {string} text */
-function toast(text) {
+/** @param {string} text @param {boolean} [isProblem] */
+function toast(text, isProblem = true) {
   write({ toast: text });
+  element("toast").classList.toggle("problem", isProblem);
   element("toast").hidden = false;
   clearTimeout(toastTimer);
   toastTimer = setTimeout(() => (element("toast").hidden = true), 6000);
@@ -236,8 +241,12 @@ function fit() {
   if (scene.camera.isHome) scene.camera.home();
 }
 
+/** A whole number in groups of three digits, apart by a thin space: a comma or point is a decimal one elsewhere.
+ * @param {number} count */
+const grouped = (count) => count.toLocaleString("en").replaceAll(",", "\u202f");
+
 /** Name of a model for people. @param {string} model */
-const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) : model);
+const modelName = (model) => (/^\d+(\/\d+)?$/.test(model) ? word("coordinates", model) : model);
 
 /** @param {number} now */
 function draw(now) {
@@ -273,13 +282,15 @@ function setDay(time) {
   scene.day = DAYLIGHT[time];
 }
 
-/** Show the state of each button; a bare tree has no leaves to show. */
+/** Show the state of each button; a bare tree has no leaves to show, and glTF holds one tree. */
 function showButtons() {
   const { hasLeaves, leavesShown, isAutumn: season } = scene;
   const [pull, sound, headset] = [hands.drag?.isOn, hands.sound?.isOn, hands.headset?.session];
   const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip, pull, sound, headset };
   for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(Boolean(isSo)));
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
+  const isStand = (scene.description?.trees.length ?? 1) > 1;
+  Object.assign(element("glb"), { disabled: isStand, title: word(isStand ? "glb_of_one" : "glb") });
 }
 
 /** Follow a branch. @param {number} branch the highest if -1 @param {number} [segment] that was clicked */
@@ -305,7 +316,7 @@ async function copyLink() {
   const link = new URL(location.href);
   if (viewersToken) link.searchParams.set("token", viewersToken);
   await navigator.clipboard?.writeText(link.href).catch(() => undefined);
-  toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`);
+  toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`, false);
 }
 
 /** Change the language of the page. @param {string} chosen */
@@ -316,6 +327,7 @@ function speak(chosen) {
   showPanel();
   risk.show();
   element("error").parentElement?.setAttribute("title", word("error_of_what"));
+  element("latency").title = word("latency_of_what");
   showButtons();
   pick(scene.picked);
   showState();
@@ -355,6 +367,7 @@ const keys = {
 };
 for (const [id, action] of Object.entries(actions)) {
   const act = async () => {
+    if (/** @type {HTMLButtonElement} */ (element(id)).disabled) return;
     try {
       await action();
     } catch (error) {

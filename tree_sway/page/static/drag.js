@@ -43,6 +43,12 @@ function stiffnessAt(scene, segment) {
   return Math.min(STIFFEST, place[4] / Math.max(compliance, 1e-9));
 }
 
+/** A force in words, to three digits. @param {number} force [N] */
+export function forceText(force) {
+  const rounded = Number(force.toPrecision(3));
+  return rounded < 1000 ? `${rounded} N` : `${Number((rounded / 1000).toPrecision(3))} kN`;
+}
+
 /** One pull at a branch: its spring, then the record of the free decay. */
 export class Pull {
   /** @param {Scene} scene @param {TreeStream} stream @param {number} segment of the watched tree */
@@ -213,6 +219,6 @@ export class Drag {
     line.style.cssText = `left:${x}px;top:${y}px;width:${Math.hypot(u - x, v - y)}px;`
       + `rotate:${Math.atan2(v - y, u - x)}rad`;
     label.style.cssText = `left:${u + 14}px;top:${v - 14}px`;
-    label.textContent = `${Number(pull.force.toPrecision(3))} N`;
+    label.textContent = forceText(pull.force);
   }
 }

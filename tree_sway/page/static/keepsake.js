@@ -3,6 +3,7 @@
 /** Exports: a picture, a clip, the tree, and a link that keeps the view. */
 
 import { Quality } from "./drawing/quality.js";
+import { word } from "./words.js";
 
 const FRAMES_PER_SECOND = 30;
 
@@ -41,7 +42,9 @@ export function recordClip(canvas, name) {
 export async function saveTree(suffix, name, token) {
   // No page of another origin can send this header.
   const headers = { "X-Requested-With": "tree-sway", ...(token && { Authorization: `Bearer ${token}` }) };
-  const answer = await fetch(`tree.${suffix}`, { headers });
+  const answer = await fetch(`tree.${suffix}`, { headers }).catch(() => {
+    throw new Error(word("lost"));
+  });
   if (!answer.ok) throw new Error(await answer.text());
   save(await answer.blob(), name, suffix);
 }

@@ -127,7 +127,9 @@ export class Panel {
       this._inHand = name;
       show(valueOf());
       clearTimeout(timer);
-      timer = setTimeout(() => this.send(name, valueOf()), SEND_EVERY);
+      // The value of now: until it is sent, one from the server may have moved the slider back.
+      const value = valueOf();
+      timer = setTimeout(() => this.send(name, value), SEND_EVERY);
     });
     input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
     this._show.set(name, (value) => {

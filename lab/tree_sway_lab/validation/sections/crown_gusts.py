@@ -64,7 +64,10 @@ def measure(effort: Effort) -> Section:
         '(broadleaves) and 0.55 (conifers) of the variance below 0.6 f1 in forests and 0.64 to '
         '0.71 in the open, slopes of -2.5 to -2.6 and of -4 to -6, and a clear peak in 175 of '
         '237. A peak is '
-        f'clear here with {CLEAR_PEAK:g} times the least power between 0.3 and 0.9 f1.'
+        f'clear here with {CLEAR_PEAK:g} times the least power between 0.3 and 0.9 f1. By this '
+        'very estimator records of strain alone have a clear peak in 56 of 68 in forests and 6 '
+        'of 7 in the open, and 0.65 and 0.83 of the variance below 0.6 f1 where only what is '
+        'slower than 10 minutes is left out, as gauges drift. Crowns of a stand touch.'
     )
     head = ['species', 'site', 'coherence', 'f1 [Hz]', 'share below 0.6 f1', 'slope', 'peak']
     title = 'Gusts and the strain of the stem'

@@ -19,6 +19,12 @@ _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
 _SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
 """Letter of a class before its range, as in ``c. 9 tot 12 m.``."""
+_AND_MORE = re.compile(
+    r'\s+(?:en|y|et|und|and|or)\s+(?:hoger|meer|groter|más|plus|höher|mehr|higher|over|above|more|'
+    r'taller|larger)\.?\s*$',
+    re.IGNORECASE,
+)
+"""End of the highest class, as in ``24 m. en hoger``: its number is the least of the class."""
 _SPLIT = re.compile(r'[+;&]|,\s')
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
@@ -34,7 +40,7 @@ def cell_number(text: str) -> tuple[float, str] | None:
         return plain, ''
     if _SEVERAL.search(text):
         return None
-    text = _GROUPED.sub(_without_groups, _CLASS.sub('', text))
+    text = _GROUPED.sub(_without_groups, _AND_MORE.sub('', _CLASS.sub('', text)))
     numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None

@@ -23,7 +23,7 @@ from tree_sway.files.table_file import TextTable
 
 _DEAD = re.compile(
     r'\b(dead|stump|removed|felled|fallen|retired|vacant|tot|abgestorben|gefällt|stubben|mort|'
-    r'abattu|souche|muerto|tocón|dood|död)\b',
+    r'abattu|souche|muerto|seco|tocón|vacía|vacío|dood|död)\b',
     re.IGNORECASE,
 )
 

@@ -26,7 +26,9 @@ THICKEST = 12.0
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
 _MIDDLING = 45.0
-"""Usual height over diameter of a tree of a city."""
+"""Usual height over diameter of a tree of a city, up to a middling stem."""
+_MIDDLING_STEM = 0.25
+"""Diameter of a middling stem [m]."""
 _INCH = 0.0254
 _FOOT = 0.3048
 _CM = 0.01
@@ -50,9 +52,24 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
             columns.note(f'{name} is taken as {_SAID[factor]}{why}')
         columns.has_inches |= factor == _INCH
         own = values * factor / over
+        _note_impossible(columns, index, own)
         own[~((own > 0.0) & (own <= THICKEST))] = np.nan
         found = own if found is None else np.where(np.isnan(found), own, found)
     return found
+
+
+def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) -> None:
+    """Say which stems are thicker than any tree's and so do not count."""
+    rows = np.flatnonzero(diameter > THICKEST).tolist()
+    if not rows:
+        return
+    first = rows[0]
+    table = columns.table
+    text = table.cells(index, [first])[0]
+    columns.note(
+        f'{len(rows)} cells of {table.columns[index]} do not count: {table.row_name} '
+        f"{table.numbers[first]} is '{text[:40]}', a stem of {diameter[first]:.3g} m"
+    )
 
 
 def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) -> tuple[float, str]:
@@ -90,6 +107,19 @@ def _slenderness(height: Floats, diameter: Floats, quantile: float = 0.5) -> flo
     return float(np.quantile(height[known] / diameter[known], quantile)) if known.any() else 0.0
 
 
+def _usual_slenderness(diameter: Floats | None) -> float:
+    """
+    Return the usual height over diameter of city trees with these stems.
+
+    Trees in the open go on to thicken when they hardly grow higher: from middling stems on, the
+    height goes as the square root of the diameter.
+    """
+    known = np.empty(0) if diameter is None else diameter[np.isfinite(diameter)]
+    if not len(known):
+        return _MIDDLING
+    return _MIDDLING * math.sqrt(min(1.0, _MIDDLING_STEM / float(np.median(known))))
+
+
 def _height_column(columns: InventoryColumns) -> int | None:
     """Column of heights whose name comes first, of those that have a number."""
     found = columns.find_all('height')
@@ -114,7 +144,7 @@ def heights_of(
         ratio = 0.0 if diameter is None else _slenderness(values, diameter)
         # In the United States, and beside inches, heights are in feet or in metres.
         may_be_feet = is_in_states or columns.has_inches
-        most = _MIDDLING / math.sqrt(_FOOT) if may_be_feet else _SLENDER[1]
+        most = _usual_slenderness(diameter) / math.sqrt(_FOOT) if may_be_feet else _SLENDER[1]
         if ratio > most and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
