@@ -47,14 +47,11 @@ from tree_sway.tables import table_beside
 
 __all__ = ['Species']
 
-BROADLEAF_DAMPING = 0.05
+CONIFER_DAMPING = 0.08
 """
-Damping ratio of broadleaves in leaf beside the drag of the air [-].
+Damping ratio of conifers, and of plants in pots, in leaf beside the drag of the air [-].
 
-Wood and roots damp by less than 0.05, all else is drag and contact of crowns (review by Moore &
-Maguire 2004, Trees 18, 195-203). With the drag of still air, which is computed, it is 1.5 +- 0.3
-times that of the bare tree, as of Norway maples (Netsvetov & Nikulina 2010, Dendrobiology 64,
-37-42). Conifers have the 0.08 of Douglas-firs that no neighbour touched (Moore & Maguire 2005).
+It is that of Douglas-firs that no neighbour touched (Moore & Maguire 2005, Trees 19, 363-373).
 """
 
 _ROWS = {row['key']: row for row in table_beside(__file__, 'species.csv')}
@@ -68,8 +65,8 @@ def _species(row: dict[str, Any]) -> Species:
     look = {each.name: row.pop(each.name) for each in fields(Look)}
     if look['autumn'] == 'none':
         look['autumn'] = None
-    if row['habit'] == 'broadleaf':
-        row['damping_in_leaf'] = BROADLEAF_DAMPING
+    if row['habit'] != 'broadleaf':
+        row['damping_in_leaf'] = CONIFER_DAMPING
     return Species(**row, leaves=leaves, look=Look(**look))
 
 

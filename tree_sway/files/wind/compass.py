@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Directions of the wind as they are written: degrees, or points of the compass."""
+"""Directions of the wind as they are written, and the velocity of a wind from there."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.text_file import finite
+
+FULL_CIRCLE = 401.0
+"""Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 
 _POINTS = (
     'N', 'NNE', 'NE', 'ENE', 'E', 'ESE', 'SE', 'SSE',
@@ -43,6 +46,14 @@ def degrees_of(cells: Sequence[str]) -> Floats:
     named = (_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points)
     pairs = zip(numbers, named, strict=True)
     return np.array([point if number is None else number for number, point in pairs])
+
+
+def velocity_to(speed: Floats, bearing: Floats) -> Floats:
+    """Return air of a speed in [m/s] that moves to a bearing from north in [rad], (n, 3)."""
+    velocity = np.zeros((len(speed), 3))
+    velocity[:, 0] = speed * np.sin(bearing)
+    velocity[:, 1] = speed * np.cos(bearing)
+    return velocity
 
 
 def _point(cell: str) -> str:

@@ -22,6 +22,7 @@ from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway.extras import cure_of_missing
 from tree_sway.files.column_names import rank_of, unit_factor, UNITS
 from tree_sway.files.text_file import reason_of
+from tree_sway.files.wind.compass import FULL_CIRCLE, velocity_to
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
 
@@ -29,8 +30,6 @@ _MOST = 20_000_000
 """Largest number of times."""
 _COMPONENTS = ('wind_x', 'wind_y')
 _POLAR = ('wind_speed', 'wind_direction')
-_FULL_CIRCLE = 401.0
-"""Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 _USUAL_UNITS = {'speed': 'm/s', 'angle': 'deg'}
 _WORDS = {'time': 'time', 'wind_x': 'eastward wind', 'wind_y': 'northward wind'}
 
@@ -115,9 +114,9 @@ def _read(
 def _velocity_from(speed: Floats, degrees: Floats) -> Floats:
     """Wind of a speed and the direction it comes from, NaN where either is none, (n, 3)."""
     degrees = np.where(np.isnan(degrees) & (speed == 0.0), 0.0, degrees)
-    good = (speed >= 0.0) & (np.abs(degrees) < _FULL_CIRCLE)
+    good = (speed >= 0.0) & (np.abs(degrees) < FULL_CIRCLE)
     bearing = np.radians(np.where(good, degrees, np.nan))
-    return np.stack([-speed * np.sin(bearing), -speed * np.cos(bearing), 0.0 * bearing], axis=1)
+    return velocity_to(-speed, bearing)
 
 
 def _find(data: Any, quantity: str) -> str | None:

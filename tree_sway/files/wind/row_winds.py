@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import unit_factor
 from tree_sway.files.table_file import Column, TextTable
-from tree_sway.files.wind.compass import degrees_of
+from tree_sway.files.wind.compass import degrees_of, FULL_CIRCLE, velocity_to
 from tree_sway.files.wind.record import WindRows
 
-_FULL_CIRCLE = 401.0
-"""Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 _CALM = 1e-9
 
 
@@ -62,16 +60,13 @@ def winds_of_directions(
     for row in np.flatnonzero(speeds < 0.0).tolist():
         rows.refuse(table.numbers[row], f'speed is {speeds[row]:g}')
     good &= np.isfinite(speeds) & (speeds >= 0.0)
-    for row in np.flatnonzero(good & ~(np.abs(degrees) < _FULL_CIRCLE)).tolist():
+    for row in np.flatnonzero(good & ~(np.abs(degrees) < FULL_CIRCLE)).tolist():
         name = '' if isinstance(direction, float) else table.columns[direction.index]
         rows.refuse(table.numbers[row], _why_no_direction(name, texts[row], degrees[row]))
-    good &= np.abs(degrees) < _FULL_CIRCLE
+    good &= np.abs(degrees) < FULL_CIRCLE
     bearing = np.radians(np.where(good, degrees, 0.0)) - yaw
     against = 1.0 if convention == 'to' else -1.0
-    velocity = np.zeros((len(speeds), 3))
-    velocity[:, 0] = against * speeds * np.sin(bearing)
-    velocity[:, 1] = against * speeds * np.cos(bearing)
-    return RowWinds(velocity, good)
+    return RowWinds(velocity_to(against * speeds, bearing), good)
 
 
 def _degrees(table: TextTable, direction: Column | float) -> tuple[Floats, list[str]]:
