@@ -11,7 +11,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.kinds.shoots import Drawing, towards
 from tree_sway_lab.tip_error import record_tips, roughness, tip_error
 from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, true_tips, WOOD
-from tree_sway_lab.validation.winds import FRAME, turbulent
+from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.kernel import WHY_PLAIN
@@ -239,6 +239,19 @@ def test_gusts_reach_its_limbs_one_after_another():
         return tip_error(weeping(), apart, whole)
 
     assert effect(40) == pytest.approx(effect('full'), rel=0.2)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize('kind', ['birch', 'whips'])
+def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
+    """The table steps it there, from rest in the linear load of light shapes."""
+    tree, wind = kind_called(kind), wind_called('80', 0.5)
+    truth = record_tips(true_model(tree, QUICK), tree, wind[:3], FRAME, substeps=QUICK.substeps)
+    tips = record_tips(make_simulator(tree, WOOD, SETTINGS), tree, wind, FRAME)
+    moves = [np.linalg.norm(np.diff(each, axis=0), axis=2) for each in (truth, tips)]
+    assert moves[0].max() > 0.5
+    assert moves[1][:2].max() < 1.1 * moves[0].max()
+    assert moves[1].max() < 80.0 * FRAME
 
 
 def test_it_stands_still_in_still_air():

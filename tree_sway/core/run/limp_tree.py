@@ -69,6 +69,12 @@ wind, and this step was not tried there.
 LONGEST_STEP, MOST_TURN = 0.04, 1.0
 """Longest step [s] at the pose, and the largest rotation of a branch in it [rad]."""
 
+MOST_TURN_BY_TABLE = 0.5
+"""
+The same of a step of the table, to which it is bounded: in a storm that comes at once light shapes
+of twigs would outrun the wind.
+"""
+
 PAUSE = 1.0
 """Time [s] that the table steps after a step that would have turned a branch too far."""
 
@@ -330,7 +336,16 @@ class LimpBank(LimpStep, WindBasisBank):
 
     def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Make the step of the table; returns 1 where it was clamped to its limit."""
-        return int(self._step(wx, wy, wz, per_speed_squared))
+        eta, rate, _ = self.swing
+        before = eta.copy()
+        rotations = self.rotations().copy()
+        outside = int(self._step(wx, wy, wz, per_speed_squared))
+        turned = largest(self.rotations() - rotations)
+        if turned > MOST_TURN_BY_TABLE:
+            share = MOST_TURN_BY_TABLE / turned
+            eta[:] = before + share * (eta - before)
+            rate *= share
+        return outside
 
     def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
         """Note the wind of a step at the pose that is taken alone."""
