@@ -145,7 +145,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             gravity=settings.gravity, in_leaf=settings.in_leaf,
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        touched = replace(tallest, species=exposure.in_contact(species))
+        touched = replace(tallest, species=exposure.in_contact(species, tallest.learned))
         rig = strength_rig(touched, chosen)
         (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(

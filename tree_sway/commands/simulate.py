@@ -78,12 +78,13 @@ def run(arguments: argparse.Namespace) -> int:
     check_learn_argument(arguments)
     refuse_unused_wind(arguments)
     opened = opened_tree(arguments)
-    exposure = chosen_exposure(arguments, opened.tree, opened.species)
-    tree_file = replace(opened, species=exposure.in_contact(opened.species))
     learned_file: LearnedFile | None = None
     if arguments.learn is not None:
-        learned_file = LearnedFile(arguments.learn, tree_file, chosen_leaves(arguments))
-        tree_file = learned_file.opened
+        learned_file = LearnedFile(arguments.learn, opened, chosen_leaves(arguments))
+        opened = learned_file.opened
+    exposure = chosen_exposure(arguments, opened.tree, opened.species)
+    touched = exposure.in_contact(opened.species, opened.learned)
+    tree_file = replace(opened, species=touched)
     names = tree_file.tree.branch_names
     for name in arguments.branch:
         if name not in names:

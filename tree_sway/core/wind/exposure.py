@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,6 +37,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS, turbulence_scale
+
+if TYPE_CHECKING:
+    from tree_sway.core.observe.learned_tree import LearnedTree
 
 _INTEGRAL_SCALE = float(SCALE_RATIOS[0])
 """Integral scale of the wind along itself over the turbulence scale [-]."""
@@ -220,17 +224,19 @@ class Exposure:
             exposed=math.sqrt(self.edge_factor) if self.kind == 'edge' else 1.0,
         )  # fmt: skip
 
-    def in_contact(self, species: Species) -> Species:
+    def in_contact(self, species: Species, learned: LearnedTree | None = None) -> Species:
         """
         Return the species with the damping in leaf that a tree has among its neighbours.
 
-        A damping that is not the table's was measured where the tree stands, and is kept.
+        What motion sensors have ``learned`` is of the tree without its neighbours. Any other
+        damping that is not the table's was measured where the tree stands, and is kept.
         """
-        known = SPECIES.get(species.key, species)
-        if species.damping_in_leaf != known.damping_in_leaf:
+        expected = SPECIES.get(species.key, species).damping_in_leaf
+        own = {expected} if learned is None else {expected, learned.damping * expected}
+        if not any(math.isclose(species.damping_in_leaf, each) for each in own):
             return species
         damping = CONTACT[self.kind] * species.damping_in_leaf
-        return replace(species, damping_in_leaf=damping)
+        return replace(species, damping_in_leaf=min(damping, 1.0))
 
     def __str__(self) -> str:
         """Return where the tree stands and where its mean wind is, for people."""
