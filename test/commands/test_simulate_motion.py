@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 
 from tree_sway.commands.cli import main
+from tree_sway.commands.exposure import touched_species
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_on
@@ -107,7 +108,7 @@ def test_what_is_learned_in_a_stand_is_the_damping_without_neighbours(
     assert own == pytest.approx(found.learned.damping * expected)
     (placed,) = open_scene('own.yaml').trees
     exposure = exposure_of(placed.tree, placed.species, 'stand')
-    among = exposure.in_contact(placed.species, placed.learned)
+    among = touched_species(exposure, placed.species, placed.learned)
     assert among.damping_in_leaf == pytest.approx(CONTACT['stand'] * own)
 
 

@@ -20,7 +20,12 @@ from tree_sway.commands.arguments import (
     opened_tree,
     output_path,
 )
-from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    touched_species,
+    turbulence_of,
+)
 from tree_sway.commands.learn_argument import (
     add_learn_argument,
     check_learn_argument,
@@ -83,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
         learned_file = LearnedFile(arguments.learn, opened, chosen_leaves(arguments))
         opened = learned_file.opened
     exposure = chosen_exposure(arguments, opened.tree, opened.species)
-    touched = exposure.in_contact(opened.species, opened.learned)
+    touched = touched_species(exposure, opened.species, opened.learned)
     tree_file = replace(opened, species=touched)
     names = tree_file.tree.branch_names
     for name in arguments.branch:

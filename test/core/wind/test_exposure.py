@@ -95,10 +95,10 @@ def test_crowns_that_touch_damp_a_tree_whose_own_damping_sensors_told():
     learned = LearnedTree(0.5, 0.8, 0.03, 1.2, 0.1, 0.9, 0.2, 1.0)
     own = learned.of(oak, in_leaf=True)
     alone, stand = Exposure('open', **SITKA), Exposure('stand', **SITKA)
-    among = stand.in_contact(own, learned)
+    among = stand.in_contact(own, learned.damping)
     assert among.damping_in_leaf == pytest.approx(1.5 * 1.2 * oak.damping_in_leaf)
-    assert alone.in_contact(own, learned).damping_in_leaf == own.damping_in_leaf
-    bare = stand.in_contact(learned.of(oak, in_leaf=False), learned)
+    assert alone.in_contact(own, learned.damping).damping_in_leaf == own.damping_in_leaf
+    bare = stand.in_contact(learned.of(oak, in_leaf=False), learned.damping)
     assert bare.damping_in_leaf == pytest.approx(1.5 * oak.damping_in_leaf)
 
 

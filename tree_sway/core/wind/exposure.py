@@ -27,7 +27,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,9 +36,6 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS, turbulence_scale
-
-if TYPE_CHECKING:
-    from tree_sway.core.observe.learned_tree import LearnedTree
 
 _INTEGRAL_SCALE = float(SCALE_RATIOS[0])
 """Integral scale of the wind along itself over the turbulence scale [-]."""
@@ -224,16 +220,16 @@ class Exposure:
             exposed=math.sqrt(self.edge_factor) if self.kind == 'edge' else 1.0,
         )  # fmt: skip
 
-    def in_contact(self, species: Species, learned: LearnedTree | None = None) -> Species:
+    def in_contact(self, species: Species, learned_damping: float = 1.0) -> Species:
         """
         Return the species with the damping in leaf that a tree has among its neighbours.
 
-        What motion sensors have ``learned`` is of the tree without its neighbours. Any other
-        damping that is not the table's was measured where the tree stands, and is kept.
+        That of the table, and that by the factor which motion sensors have told, is of the tree
+        without its neighbours. Any other was measured where the tree stands, and is kept.
         """
         expected = SPECIES.get(species.key, species).damping_in_leaf
-        own = {expected} if learned is None else {expected, learned.damping * expected}
-        if not any(math.isclose(species.damping_in_leaf, each) for each in own):
+        alone = expected, learned_damping * expected
+        if not any(math.isclose(species.damping_in_leaf, each) for each in alone):
             return species
         damping = CONTACT[self.kind] * species.damping_in_leaf
         return replace(species, damping_in_leaf=min(damping, 1.0))
