@@ -14,13 +14,15 @@ from scipy.spatial.transform import Rotation
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 
 from tree_sway.commands.cli import main
+from tree_sway.commands.exposure import touched_species
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.exposure import CONTACT, exposure_of
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.files.trees.source import open_tree
+from tree_sway.files.trees.source import open_scene, open_tree
 
 DT = 1.0 / 60.0
 
@@ -88,6 +90,26 @@ def test_a_tree_with_what_was_learned_opens_like_any_tree(
     assert softer == pytest.approx(0.8, abs=0.08)
     assert main(['info', 'own.twin.yaml']) == 0
     assert f'stiffness {softer:.3g} times' in capsys.readouterr().out
+
+
+def test_what_is_learned_in_a_stand_is_the_damping_without_neighbours(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recorded(tmp_path, 75.0)
+    at = f'{builtin_tree("goldcrest").branch_names[0]}:0.6'
+    command = ['simulate', 'goldcrest', '--wind', 'wind.csv', '--motion', 'motion.csv', '--at', at]
+    stand = ['--exposure', 'stand', '--leaves', 'on']
+    assert main([*command, *stand, '--learn', 'own.yaml', '-o', 'twin.csv']) == 0
+    found = open_tree('own.yaml')
+    assert found.learned is not None
+    own = found.species.damping_in_leaf
+    expected = species_named('goldcrest').damping_in_leaf
+    assert own == pytest.approx(found.learned.damping * expected)
+    (placed,) = open_scene('own.yaml').trees
+    exposure = exposure_of(placed.tree, placed.species, 'stand')
+    among = touched_species(exposure, placed.species, placed.learned)
+    assert among.damping_in_leaf == pytest.approx(CONTACT['stand'] * own)
 
 
 def test_without_enough_sway_no_tree_is_written(

@@ -8,6 +8,7 @@ import argparse
 from typing import Any
 
 from tree_sway.commands.arguments import refuse_unused
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
@@ -45,6 +46,11 @@ def chosen_exposure(arguments: argparse.Namespace, tree: Tree, species: Species)
         tree, species, arguments.exposure, spacing=arguments.spacing,
         anemometer_height=arguments.anemometer_height,
     )  # fmt: skip
+
+
+def touched_species(exposure: Exposure, species: Species, learned: LearnedTree | None) -> Species:
+    """Return the species of a tree among its neighbours, by what motion sensors told as well."""
+    return exposure.in_contact(species, 1.0 if learned is None else learned.damping)
 
 
 def refuse_spacing_in_the_open() -> None:

@@ -24,6 +24,7 @@ from tree_sway.commands.exposure import (
     add_exposure_arguments,
     chosen_exposure,
     refuse_unused_exposure,
+    touched_species,
     turbulence_of,
 )
 from tree_sway.commands.mode_table import mode_table
@@ -145,7 +146,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             gravity=settings.gravity, in_leaf=settings.in_leaf,
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        touched = replace(tallest, species=exposure.in_contact(species))
+        touched = replace(tallest, species=touched_species(exposure, species, tallest.learned))
         rig = strength_rig(touched, chosen)
         (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(

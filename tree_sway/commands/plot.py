@@ -22,6 +22,7 @@ from tree_sway.commands.exposure import (
     add_exposure_arguments,
     chosen_exposure,
     refuse_unused_exposure,
+    touched_species,
     turbulence_of,
 )
 from tree_sway.commands.progress import bar, waiting
@@ -144,7 +145,7 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(float(placed.start[0, 2])),
         )  # fmt: skip
-        touched = replace(each, species=exposure.in_contact(each.species))
+        touched = replace(each, species=touched_species(exposure, each.species, each.learned))
         rig = strength_rig(touched, settings)
         rng = np.random.default_rng(0)
         curve = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))

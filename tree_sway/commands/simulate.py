@@ -20,7 +20,12 @@ from tree_sway.commands.arguments import (
     opened_tree,
     output_path,
 )
-from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    touched_species,
+    turbulence_of,
+)
 from tree_sway.commands.learn_argument import (
     add_learn_argument,
     check_learn_argument,
@@ -78,12 +83,13 @@ def run(arguments: argparse.Namespace) -> int:
     check_learn_argument(arguments)
     refuse_unused_wind(arguments)
     opened = opened_tree(arguments)
-    exposure = chosen_exposure(arguments, opened.tree, opened.species)
-    tree_file = replace(opened, species=exposure.in_contact(opened.species))
     learned_file: LearnedFile | None = None
     if arguments.learn is not None:
-        learned_file = LearnedFile(arguments.learn, tree_file, chosen_leaves(arguments))
-        tree_file = learned_file.opened
+        learned_file = LearnedFile(arguments.learn, opened, chosen_leaves(arguments))
+        opened = learned_file.opened
+    exposure = chosen_exposure(arguments, opened.tree, opened.species)
+    touched = touched_species(exposure, opened.species, opened.learned)
+    tree_file = replace(opened, species=touched)
     names = tree_file.tree.branch_names
     for name in arguments.branch:
         if name not in names:

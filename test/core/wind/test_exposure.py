@@ -10,6 +10,7 @@ import math
 import numpy as np
 import pytest
 
+from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.exposure import ATTENUATION, Exposure, exposure_of, EXPOSURES
@@ -87,6 +88,18 @@ def test_crowns_that_touch_damp_a_tree_in_leaf_unless_its_damping_was_measured()
     assert stand.in_contact(oak).damping_bare == oak.damping_bare
     measured = replace(oak, damping_in_leaf=0.07)
     assert stand.in_contact(measured) is measured
+
+
+def test_crowns_that_touch_damp_a_tree_whose_own_damping_sensors_told():
+    oak = species_named('oak')
+    learned = LearnedTree(0.5, 0.8, 0.03, 1.2, 0.1, 0.9, 0.2, 1.0)
+    own = learned.of(oak, in_leaf=True)
+    alone, stand = Exposure('open', **SITKA), Exposure('stand', **SITKA)
+    among = stand.in_contact(own, learned.damping)
+    assert among.damping_in_leaf == pytest.approx(1.5 * 1.2 * oak.damping_in_leaf)
+    assert alone.in_contact(own, learned.damping).damping_in_leaf == own.damping_in_leaf
+    bare = stand.in_contact(learned.of(oak, in_leaf=False), learned.damping)
+    assert bare.damping_in_leaf == pytest.approx(1.5 * oak.damping_in_leaf)
 
 
 @pytest.mark.parametrize(('ratio', 'factor'), [(0.11, 4.486), (0.2, 2.482), (0.45, 1.340)])

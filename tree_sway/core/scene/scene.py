@@ -98,10 +98,15 @@ class Scene(PlacedTrees):
         return self
 
     def of_species(self, species: Species) -> Scene:
-        """Return the scene with all trees of one species."""
+        """Return the scene with all trees of one species; nothing was learned of another one."""
         kinds = [replace(kind.tree, species=species.key) for kind in self.kinds]
         trees = [
-            replace(each, tree=kinds[number], species=species)
+            replace(
+                each,
+                tree=kinds[number],
+                species=species,
+                learned=each.learned if species == each.species else None,
+            )
             for each, number in zip(self.trees, self.kind_numbers.tolist(), strict=True)
         ]
         return replace(self, trees=trees)

@@ -220,17 +220,19 @@ class Exposure:
             exposed=math.sqrt(self.edge_factor) if self.kind == 'edge' else 1.0,
         )  # fmt: skip
 
-    def in_contact(self, species: Species) -> Species:
+    def in_contact(self, species: Species, learned_damping: float = 1.0) -> Species:
         """
         Return the species with the damping in leaf that a tree has among its neighbours.
 
-        A damping that is not the table's was measured where the tree stands, and is kept.
+        That of the table, and that by the factor which motion sensors have told, is of the tree
+        without its neighbours. Any other was measured where the tree stands, and is kept.
         """
-        known = SPECIES.get(species.key, species)
-        if species.damping_in_leaf != known.damping_in_leaf:
+        expected = SPECIES.get(species.key, species).damping_in_leaf
+        alone = expected, learned_damping * expected
+        if not any(math.isclose(species.damping_in_leaf, each) for each in alone):
             return species
         damping = CONTACT[self.kind] * species.damping_in_leaf
-        return replace(species, damping_in_leaf=damping)
+        return replace(species, damping_in_leaf=min(damping, 1.0))
 
     def __str__(self) -> str:
         """Return where the tree stands and where its mean wind is, for people."""

@@ -116,7 +116,10 @@ def _trees(
             inner = f'{error.where}: {error.what}' if error.where else error.what
             raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
         place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
-        trees.append(PlacedTree(name, file.tree, species=file.species, **place))
+        placed = PlacedTree(
+            name, file.tree, species=file.species, learned=file.learned, **place
+        )
+        trees.append(placed)
         notes += [f'{name}: {note}' for note in file.notes]
         faults += [f'{name}: {fault}' for fault in file.faults]
     return trees, notes, faults

@@ -175,7 +175,10 @@ def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
     for each in files:
         moved = np.subtract(each.origin, one.origin)
         x, y, z = (moved + each.tree.start[0]).tolist()
-        trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
+        placed = PlacedTree(
+            each.tree.name, each.tree, x, y, z, species=each.species, learned=each.learned
+        )
+        trees.append(placed)
     if len(files) == 1:
         return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
     notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]

@@ -76,6 +76,21 @@ def test_matlab_arrays_of_structs(tmp_path):
         assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file has 1 more trees'
 
 
+def test_models_of_one_tree_are_named(tmp_path):
+    here = columns_of_fork()
+    beside = columns_of_fork()
+    beside['start'] = beside['start'] + [[0.5, 0.0, 0.0]]
+    savemat(tmp_path / 'models.mat', {'a': {'cylinder': here}, 'b': {'cylinder': here}})
+    first, second = read_trees(tmp_path / 'models.mat', **AS_SCANNED)
+    assert '1 more of the 2 trees stand in the stem of this one' in first.faults[0]
+    assert 'tree=1' in first.faults[0]
+    assert second.faults == ()
+    savemat(tmp_path / 'stand.mat', {'a': {'cylinder': here}, 'b': {'cylinder': beside}})
+    for alone in (read_trees(tmp_path / 'stand.mat', **AS_SCANNED)[0],
+                  read_tree(tmp_path / 'models.mat', tree=1, **AS_SCANNED)):
+        assert alone.faults == ()
+
+
 @pytest.mark.parametrize('n_columns', [9, 10, 12, 14, 15])
 @pytest.mark.parametrize('base', [0, 1])
 @pytest.mark.parametrize('name', ['CylData', 'CylData_updated', 'cyl'])
@@ -117,12 +132,43 @@ def test_a_matrix_that_is_no_cylinders_is_refused(tmp_path):
         read_tree(tmp_path / 'matrix.mat')
 
 
-def test_matlab_7_3_says_how_to_save_it(tmp_path):
-    (tmp_path / 'new.mat').write_bytes(
-        b'MATLAB 7.3 MAT-file'.ljust(124) + b'\x00\x02IM' + bytes(400)
-    )
-    with pytest.raises(FormatError, match=r'v7\.3 files.*; save it again with the option -v7'):
-        read_tree(tmp_path / 'new.mat')
+def test_variables_of_treeqsm_2_0(tmp_path):
+    fork = columns_of_fork()
+    names = {
+        'Rad': 'radius',
+        'Len': 'length',
+        'Sta': 'start',
+        'Axe': 'axis',
+        'CPar': 'parent',
+        'CExt': 'extension',
+    }
+    variables = {name: fork[field] for name, field in names.items()}
+    savemat(tmp_path / 'old.mat', {**variables, 'TreeData': np.ones(33)})
+    assert_is_the_fork(read_tree(tmp_path / 'old.mat', **AS_SCANNED))
+
+
+def test_matlab_7_3_is_read_by_netcdf4(tmp_path):
+    netcdf = pytest.importorskip('netCDF4')
+    path = tmp_path / 'new.mat'
+    with netcdf.Dataset(path, 'w') as root:
+        cylinder = root.createGroup('QSM').createGroup('cylinder')
+        cylinder.createDimension('n', 4)
+        cylinder.createDimension('one', 1)
+        cylinder.createDimension('three', 3)
+        for name, values in columns_of_fork().items():
+            column = np.reshape(values, (4, -1))
+            axes = ('three' if column.shape[1] == 3 else 'one', 'n')
+            cylinder.createVariable(name, np.single, axes)[:] = column.T
+        empty = root['QSM'].createVariable('triangulation', np.uint64, ())
+        empty.MATLAB_empty = np.uint8(1)
+    hdf5 = path.read_bytes()
+    path.write_bytes(b'MATLAB 7.3 MAT-file'.ljust(512) + hdf5)
+    found = read_tree(path, **AS_SCANNED)
+    assert found.tree.n_branches == 2
+    assert found.tree.volume.sum() == pytest.approx(VOLUME, rel=1e-5)
+    path.write_bytes(b'MATLAB 7.3 MAT-file'.ljust(512) + bytes(400))
+    with pytest.raises(FormatError, match=r'not a MATLAB file that can be read.* option -v7'):
+        read_tree(path)
 
 
 def test_matlab_without_a_model(tmp_path):

@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Variables of a MATLAB file of versions 4 to 7, read by scipy within bounds."""
+"""
+Variables of a MATLAB file, read within bounds: by scipy, those of version 7.3 by netCDF4.
+
+Version 7.3 is HDF5: groups are structs, and the axes of arrays are in reverse order. Elements of
+cells and of arrays of structs are references there, which netCDF4 passes over.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +22,8 @@ from tree_sway.files.text_file import read_bytes
 Variables = dict[str, Any]
 """Arrays by name; a struct is a dictionary, an array of structs one with numbers as names."""
 _MAX_DEPTH = 8
+_IS_HDF5 = b'MATLAB 7.3'
+"""Beginning of a file of version 7.3."""
 
 
 def looks_like_mat(head: str) -> bool:
@@ -31,7 +38,9 @@ def read_mat(path: Path) -> Variables:
     Raises
     ------
     FormatError
-        Not a MATLAB file, of version 7.3, damaged, or above the limits of memory or time.
+        Not a MATLAB file, damaged, or above the limits of memory or time.
+    MissingDependencyError
+        A file of version 7.3, and netCDF4 is not installed.
 
     """
     read_bytes(path, at_most=1)
@@ -56,10 +65,31 @@ def numbers(value: Any, name: str) -> Floats:
 
 def numbers_of_mat(path: str) -> Arrays:
     """Yield the arrays of numbers in a file by their paths, such as ``QSM/cylinder/radius``."""
+    with Path(path).open('rb') as file:
+        is_hdf5 = file.read(len(_IS_HDF5)) == _IS_HDF5
+    if is_hdf5:
+        from netCDF4 import Dataset
+
+        with Dataset(path) as root:
+            yield from _of_hdf5('', root, 0)
+        return
     from scipy.io import loadmat
 
     found = loadmat(path, simplify_cells=True)
     yield from _of_matlab('', {name: each for name, each in found.items() if name[:2] != '__'}, 0)
+
+
+def _of_hdf5(name: str, group: Any, depth: int) -> Arrays:
+    """Arrays of numbers in a group of a file of version 7.3; an empty one holds its own shape."""
+    if depth > _MAX_DEPTH:
+        raise ValueError(f'nested deeper than {_MAX_DEPTH}')
+    for each, variable in group.variables.items():
+        variable.set_auto_mask(False)
+        if variable.dtype.kind in 'fiu' and 'MATLAB_empty' not in variable.ncattrs():
+            yield f'{name}/{each}'.lstrip('/'), variable[:].T
+    for each, inside in group.groups.items():
+        if each != '#refs#':
+            yield from _of_hdf5(f'{name}/{each}'.lstrip('/'), inside, depth + 1)
 
 
 def _of_matlab(name: str, value: Any, depth: int) -> Arrays:

@@ -8,7 +8,8 @@ version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes th
 numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent continues
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
-MATLAB: structs with a field ``cylinder``. A file may have several models, as variables or as an
+MATLAB: structs with a field ``cylinder``, or the variables ``Rad``, ``Len``, ``Sta``, ``Axe``,
+``CPar`` and ``CExt`` of version 2.0. A file may have several models, as variables or as an
 array of structs; each is a tree. A file without structs may have the columns as one array of 9 to
 15, such as the ``CylData`` of versions before 2.3 and ``CylData_updated`` of published scans; with
 9 columns there is no extension. Text: the same columns without a header, or with that of 2.4 and
@@ -35,6 +36,8 @@ from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, re
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
+_VARIABLES = dict(zip(('Rad', 'Len', 'Sta', 'Axe', 'CPar', 'CExt'), _FIELDS, strict=True))
+"""Variables of version 2.0, and the fields of later ones."""
 _COLUMNS = (
     'radius', 'length', 'start_x', 'start_y', 'start_z', 'axis_x', 'axis_y', 'axis_z', 'parent',
     'extension',
@@ -128,6 +131,8 @@ def _cells(line: str) -> list[str]:
 
 def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Name and columns of each cylinder model, by field name."""
+    if variables.keys() >= _VARIABLES.keys():
+        yield 'tree', {field: variables[name] for name, field in _VARIABLES.items()}
     for name, value in variables.items():
         structs = _structs(value)
         for number, struct in enumerate(structs, start=1):
