@@ -75,7 +75,8 @@ def test_one_tree_in_one_season_has_one_figure_in_all_commands(tmp_path, capsys)
     info = figures(capsys, 'info', *tree, '--speed', '12')
     curve = figures(capsys, 'plot', *tree, '--strength', '--speed', '12', '-o', tmp_path / 'a.png')
     table = tmp_path / 'sway.csv'
-    record = figures(capsys, 'simulate', *tree, '--speed', '12', '--seconds', '60', '-o', table)
+    gusts = ['--speed', '12', '--seconds', '600', '--rate', '30']
+    record = figures(capsys, 'simulate', *tree, *gusts, '-o', table)
     assert info == record == [curve[-1]]
     assert info[0][1] == 'bare'
     picture = tmp_path / 'b.png'
