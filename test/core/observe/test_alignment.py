@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.observe.alignment import align, GRAVITY, matrix_of, TELLS_LITTLE, turn_onto
+from tree_sway.core.observe.alignment import align, GRAVITY, TELLS_LITTLE, turn_onto
 
 N = 3000
 
@@ -117,14 +117,51 @@ def test_a_place_that_hardly_moves_is_no_evidence_against_its_sensor() -> None:
     assert 'times as much' in align(values, 0.1 * with_gravity, 0.1 * without, window=20).problem
 
 
-def test_an_orientation_gives_the_mount_itself() -> None:
-    reference = MOUNTS[2].as_quat()
+NORTH_EAST_DOWN = Rotation.from_matrix([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+
+
+@pytest.mark.parametrize(
+    'world',
+    [Rotation.identity(), Rotation.from_euler('z', 60.0, degrees=True), NORTH_EAST_DOWN],
+    ids=['east north up', 'without a compass', 'north east down'],
+)
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_an_orientation_may_have_any_azimuth_and_either_upright(
+    mount: Rotation, world: Rotation
+) -> None:
+    reference = (world * mount).as_quat()
     values = np.full((N, 9), np.nan)
     with_gravity, without = motions(1)
-    values[:, 6:] = with_gravity[:, 6:]
+    values[:, 6:] = mount.inv().apply(with_gravity[:, 6:])
     found = align(values, with_gravity, without, reference)
-    np.testing.assert_allclose(found.turn, MOUNTS[2].as_matrix(), atol=1e-12)
-    np.testing.assert_allclose(matrix_of(reference), found.turn)
+    assert not found.problem
+    np.testing.assert_allclose(found.turn, mount.as_matrix(), atol=1e-9)
+    np.testing.assert_allclose(found.motion(values)[:, 6:], with_gravity[:, 6:], atol=1e-9)
+
+
+def test_gravity_is_believed_before_an_orientation() -> None:
+    values = sensed(MOUNTS[2])
+    values[:, 6:] = 0.02 * np.random.default_rng(5).normal(size=(N, 3))
+    found = align(values, *motions(1), MOUNTS[1].as_quat())
+    assert not found.problem
+    error = Rotation.from_matrix(found.turn) * MOUNTS[2].inv()
+    assert np.degrees(error.magnitude()) < 1.5
+
+
+@pytest.mark.parametrize('gravity', [True, False])
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_an_acceleration_of_the_opposite_sign_is_recognised(
+    mount: Rotation, gravity: bool
+) -> None:
+    values = sensed(mount, gravity=gravity)
+    values[:, :3] *= -1.0
+    found = align(values, *motions(1))
+    assert not found.problem
+    assert 'acceleration of the opposite sign' in found.notes
+    error = Rotation.from_matrix(found.turn) * mount.inv()
+    assert np.degrees(error.magnitude()) < 1.5
+    wanted = motions(1)[0 if gravity else 1]
+    np.testing.assert_allclose(found.motion(values)[:, :2], wanted[:, :2], atol=0.3)
 
 
 def test_the_smallest_turn_leads_from_one_direction_to_the_other() -> None:

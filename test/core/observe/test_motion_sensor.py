@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.sensor_place import SensorPlace
@@ -89,6 +90,24 @@ def test_a_sample_of_the_past_is_refused_and_a_new_clock_accepted() -> None:
         phone.offer(3.0 + 0.01 * k, acceleration=UP)
     assert phone.counts.restarted == 1
     assert phone.newest == pytest.approx(3.09)
+
+
+def test_orientations_are_rotations_in_the_frame_of_the_sensor() -> None:
+    phone = sensor()
+    first = Rotation.from_euler('xyz', [40.0, -70.0, 110.0], degrees=True)
+    turned = first * Rotation.from_rotvec([0.03, 0.0, -0.01])
+    phone.offer(0.0, orientation=first.as_quat())
+    phone.offer(0.01, orientation=turned.as_quat())
+    found = phone.at(0.01, 0.001)
+    assert found is not None
+    np.testing.assert_allclose(found[6:], [0.03, 0.0, -0.01], atol=1e-9)
+
+
+def test_an_orientation_of_zeros_is_not_measured() -> None:
+    phone = sensor()
+    for k in range(5):
+        assert phone.offer(0.01 * k, rate=(0.1, 0.0, k), orientation=(0.0, 0.0, 0.0, 0.0))
+    assert phone.quantities == ('rate',)
 
 
 def test_orientations_are_rotations_from_the_first_one() -> None:

@@ -19,6 +19,7 @@ from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
 from tree_sway.files.models.model_writer import write_model
 
@@ -46,6 +47,18 @@ def test_every_model_leans_with_the_wind_and_goes_back_to_rest(stem, model):
     assert sim.counts.refused == 1
     sim.reset()
     np.testing.assert_allclose(sim.place(), rest, atol=1e-12)
+
+
+@pytest.mark.parametrize('model', [20, *MODELS])
+def test_a_limb_below_the_ground_at_the_stem_takes_no_wind(fork, model):
+    """So hang limbs of trees on slopes, whose wind begins at the ground of their stem."""
+    tree = fork()
+    ground = 1.01 * tree.height
+    sim = make_simulator(tree, WOOD, model=model, profile=WindProfile('log', ground=ground))
+    for _ in range(60):
+        sim.step((8.0, 0.0, 0.0), DT)
+    sim.place()
+    assert 0.0 < np.abs(sim.tip_displacement).max() < 1e-4
 
 
 def test_a_stem_leans_as_far_in_every_model(stem):

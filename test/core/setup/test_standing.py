@@ -11,7 +11,8 @@ import pytest
 
 from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.modes import buckling_factor
+from tree_sway.core.setup import standing
+from tree_sway.core.setup.modes import buckling_factor, buckling_modes
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.standing import MARGIN, standing_tree
 from tree_sway.core.tree.building import tree_from_segments
@@ -78,6 +79,21 @@ def test_only_the_limb_that_buckles_is_thickened_and_named():
     assert f"1 limb thickened, most '{tree.branch_names[branch]}', from 4 to" in change.sentence(
         tree
     )
+
+
+def test_it_is_found_to_stand_with_all_shapes_of_its_limbs(monkeypatch):
+    sizes = []
+
+    def noted(reduction, *limits):
+        sizes.append(reduction.n_coordinates)
+        return buckling_modes(reduction, *limits)
+
+    monkeypatch.setattr(standing, 'buckling_modes', noted)
+    found, _ = standing_tree(with_a_whip(0.004), WOOD, cache=None)
+    settings = Settings(in_leaf=True, enrich='all')
+    reduction = TreeReductions(found, WOOD, settings).with_subtrees.reduction
+    assert sizes[0] < sizes[-1] == reduction.n_coordinates
+    assert buckling_factor(reduction)[0] >= MARGIN
 
 
 def test_it_stands_with_its_leaves_and_without():

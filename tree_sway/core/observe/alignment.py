@@ -6,13 +6,15 @@ How a sensor is mounted, found from gravity and from the sway itself.
 Gravity tells which way is up in the sensor's frame. The azimuth is that by which the sensor's
 motion resembles the motion of the model at its place most, in least squares (Wahba 1965, SIAM
 Review 7, 409). A sensor whose acceleration has no gravity is turned by the whole of that problem
-(Kabsch 1976, Acta Crystallographica A 32, 922-923). Units follow from the size of gravity, and of
-the motion in comparison with the model's.
+(Kabsch 1976, Acta Crystallographica A 32, 922-923), unless it has an orientation, which tells what
+is upright. The azimuth of an orientation is not believed: without a compass it is any, and steel
+turns a compass. Units follow from the size of gravity, and of the motion in comparison with the
+model's; the sign of the acceleration, which some phones give as that of gravity, from the motion.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 import math
 
 import numpy as np
@@ -35,6 +37,10 @@ LEAST_NOISE = np.array([0.03, 0.004, 0.002])
 _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
+_OPPOSITE = 0.2
+"""Likeness by which the opposite sign of an acceleration must be better."""
+_UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
+"""From north, east, down, or another frame whose third axis is down, to one with it up."""
 _PER_DEGREE = math.pi / 180.0
 _MEDIAN_OF_SQUARE = 0.4549
 """Median of the square of a normal variable over its variance (chi-squared, one degree)."""
@@ -76,12 +82,13 @@ class Alignment:
         """
         Turn a sample (..., 9) into the frame of the tree, (..., 9).
 
-        Gravity is taken off the acceleration; rotations are in that frame already.
+        Gravity is taken off the acceleration.
         """
         out = values.copy()
         out[..., :3] = self.scale[0] * values[..., :3] @ self.turn.T
         out[..., 2] -= GRAVITY if self.has_gravity else 0.0
         out[..., 3:6] = self.scale[1] * values[..., 3:6] @ self.turn.T
+        out[..., 6:9] = values[..., 6:9] @ self.turn.T
         return out
 
 
@@ -105,7 +112,8 @@ def align(
     without
         The same of one whose acceleration has no gravity.
     reference
-        Orientation from which the rotations are counted, x y z w; None without.
+        Orientation from which the rotations are counted, x y z w, in any frame with an upright
+        axis; None without.
     window
         Number of steps over which motions are averaged before they are compared: the model knows
         the sway of the tree, not the gusts of a limb, which are faster.
@@ -117,29 +125,28 @@ def align(
     measures: NDArray[np.bool_] = np.all(finite, axis=1)
     scale = np.ones(2)
     has_gravity, problem = True, ''
-    turn = np.eye(3)
     if measures[0]:
         scale[0], has_gravity, problem = _gravity_of(sensed[:, :3], notes)
+    if measures[0] and has_gravity:
+        measures[2] = False  # gravity tells what is upright
     model = averaged(with_gravity if has_gravity else without, window)
     if measures[1]:
         scale[1] = _rate_unit(sensed[:, 3:6], model[:, 3:6], notes)
-    scaled = sensed.copy()
-    scaled[:, :3] *= scale[0]
-    scaled[:, 3:6] *= scale[1]
-    if measures[2] and reference is not None:
-        turn = matrix_of(reference)
-    elif measures[0] and has_gravity:
-        felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
-        turn = turn_onto(scaled[:, :3].mean(axis=0), felt)
-        turn = _azimuth(scaled, model, turn, measures) @ turn
-    elif measures[:2].any():
-        turn = _whole_turn(scaled, model, measures)
-    found = Alignment(turn, scale, has_gravity, 0.0, np.zeros(3))
+    found = _mounted(sensed, model, measures, scale, reference, has_gravity=has_gravity)
+    if measures[0]:
+        opposite = _mounted(
+            sensed, model, measures, scale * [-1.0, 1.0], reference, has_gravity=has_gravity
+        )
+        if opposite.likeness > found.likeness + _OPPOSITE:
+            notes.append('acceleration of the opposite sign')
+            found = opposite
+    scale = found.scale
+    turn = found.turn
     moved = found.motion(sensed)
     likeness, ratio = _likeness(moved, model, measures)
     if not problem and measures[0] and not has_gravity and ratio < 1.0 / 3.0:
         notes.append('acceleration in g, without gravity')
-        scale[0] = GRAVITY
+        scale[0] *= GRAVITY
         moved = found.motion(sensed)
         likeness, ratio = _likeness(moved, model, measures)
     if not problem and _is_below_noise(model, measures, window):
@@ -156,6 +163,38 @@ def align(
         )
     noise = noise_of(found.motion(raw))
     return Alignment(turn, scale, has_gravity, likeness, noise, problem, tuple(notes))
+
+
+def _mounted(
+    sensed: Floats,
+    model: Floats,
+    measures: NDArray[np.bool_],
+    scale: Floats,
+    reference: Floats | None,
+    *,
+    has_gravity: bool,
+) -> Alignment:
+    """Find the rotation of a sensor whose units are known, and how much it is like the model."""
+    scaled = sensed.copy()
+    scaled[:, :3] *= scale[0]
+    scaled[:, 3:6] *= scale[1]
+    turns = [np.eye(3)]
+    if measures[2] and reference is not None:
+        level = matrix_of(reference)
+        turns = [
+            _azimuth(scaled, model, each, measures) @ each
+            for each in (level, _UPSIDE_DOWN @ level)
+        ]
+    elif measures[0] and has_gravity:
+        felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
+        upright = turn_onto(scaled[:, :3].mean(axis=0), felt)
+        turns = [_azimuth(scaled, model, upright, measures) @ upright]
+    elif measures[:2].any():
+        turns = [_whole_turn(scaled, model, measures)]
+    found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
+    likeness = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
+    best = int(np.argmax(likeness))
+    return replace(found[best], likeness=likeness[best])
 
 
 def averaged(rows: Floats, window: int) -> Floats:
@@ -201,7 +240,7 @@ def _rate_unit(rate: Floats, model: Floats, notes: list[str]) -> float:
 def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
     """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
     across = along = 0.0
-    for quantity in np.flatnonzero(measures[:2]).tolist():
+    for quantity in np.flatnonzero(measures).tolist():
         rows = slice(3 * quantity, 3 * quantity + 3)
         upright = _centred(sensed[:, rows] @ turn.T)
         wanted = _centred(model[:, rows])

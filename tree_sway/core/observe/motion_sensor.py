@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of
+from tree_sway.core.observe.alignment import matrix_of
 from tree_sway.core.observe.sample_ring import (
     empty_ring,
     keep_sample,
@@ -103,6 +104,7 @@ class MotionSensor:
         self.ring = empty_ring()
         """Its last samples, (1,) of `RING`."""
         self._reference: Floats | None = None
+        self._first_turn: Floats = np.eye(3)
 
     @property
     def newest(self) -> float:
@@ -149,7 +151,8 @@ class MotionSensor:
         rate
             Angular rate in [rad/s] or degrees per second, (3,).
         orientation
-            Rotation of the sensor's frame to east, north, up as x y z w, (4,).
+            Rotation of the sensor's frame to any frame with an upright axis, such as east, north,
+            up, as x y z w, (4,). Four zeros in the first sample mean that it is not measured.
 
         Returns
         -------
@@ -158,7 +161,8 @@ class MotionSensor:
 
         """
         if not self.quantities:
-            self._begin(acceleration is not None, rate is not None, orientation is not None)
+            is_turned = orientation is not None and bool(np.any(orientation))
+            self._begin(acceleration is not None, rate is not None, is_turned)
         values = self._sample
         try:
             if 'acceleration' in self.quantities:
@@ -184,14 +188,19 @@ class MotionSensor:
             self._is_measured[:] = np.repeat(is_given, 3)
 
     def _turn(self, quaternion: Floats) -> Floats:
-        """Rotation vector from the first orientation, (3,); not finite for no quaternion."""
+        """
+        Rotation vector from the first orientation, in the frame of the sensor, (3,).
+
+        It is not finite for no quaternion.
+        """
         length = float(np.linalg.norm(quaternion))
         if quaternion.shape != (4,) or not 0.5 < length < 2.0:
             return np.full(3, np.nan)
         unit = quaternion / length
         if self._reference is None:
             self._reference = unit
-        return turn_between(self._reference, unit)
+            self._first_turn = matrix_of(unit)
+        return np.asarray(turn_between(self._reference, unit) @ self._first_turn)
 
     @property
     def reference(self) -> Floats | None:

@@ -96,13 +96,14 @@ def find_beyond(
 
     """
     for i in range(3):
-        acceleration, rate = 0.0, 0.0
+        acceleration, rate, rotation = 0.0, 0.0, 0.0
         for j in range(3):
             acceleration += mounting[3 * i + j] * values[j]
             rate += mounting[3 * i + j] * values[3 + j]
+            rotation += mounting[3 * i + j] * values[6 + j]
         moved[i] = mounting[9] * acceleration
         moved[3 + i] = mounting[10] * rate
-        moved[6 + i] = values[6 + i]
+        moved[6 + i] = rotation
     moved[2] -= mounting[11]
     for i in range(9):
         beyond[i] = moved[i] - mounting[12 + i] - computed[3 + i]

@@ -32,6 +32,12 @@ from tree_sway.core.tree.tree import Tree
 CUT_FOR = 15.0
 """Wind in [m/s] for whose rotations branches are cut."""
 
+_LEAST_WIND = 1e-3
+"""
+Least wind at a segment over that at the anemometer: one that no wind reaches is loaded by a
+millionth of the pressure, so that a branch at or below the ground has shapes under a load.
+"""
+
 LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
 """
 Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
@@ -105,7 +111,7 @@ class TreeReducer:
         self._drag_law = drag_law
         self._leaf_load_area = leaf_load_area
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
-        self._speed = settings.profile.over_anemometer(middle)
+        self._speed = np.maximum(settings.profile.over_anemometer(middle), _LEAST_WIND)
         """Wind at each segment's middle over that at the anemometer, (n,)."""
 
     @cached_property
@@ -152,8 +158,7 @@ class TreeReducer:
     @property
     def _is_bent(self) -> NDArray[np.bool_]:
         """Whether each branch gets a further pair: one of a limp tree, and no string, (b,)."""
-        is_asked = isinstance(self._settings.model, int) and self._settings.enrich == 'needed'
-        if not is_asked or not self.is_limp:
+        if self._settings.enrich != 'needed' or not self.is_limp:
             return np.zeros(self._tree.n_branches, dtype=np.bool_)
         return self._is_far & (self._beams.weight_over_stiffness() < STRUNG)
 

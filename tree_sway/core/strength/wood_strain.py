@@ -8,12 +8,16 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.beams.beam import BranchBeam
 from tree_sway.core.setup.reductions import TreeReductions
 
 
 class WoodStrain:
     """
     Strain of a tree's wood beyond that at rest.
+
+    Each segment has two places: its base end, where a branch cut into few segments is bent most,
+    and its middle, with the mean over the segment.
 
     Parameters
     ----------
@@ -23,32 +27,63 @@ class WoodStrain:
     """
 
     branch: Ints
-    """Branch of each segment, (m,)."""
+    """Branch of each place, (2 m,): the base ends of all segments, then their middles."""
     height: Floats
-    """Height of the middle of each segment above the base of the tree at rest in [m], (m,)."""
+    """Height of each place above the base of the tree at rest in [m], (2 m,)."""
 
     def __init__(self, reductions: TreeReductions) -> None:
         """Find the curvature by each coordinate."""
         reduced = reductions.reduced(reductions.settings.model)
-        blocks = []
+        tree = reduced.tree
+        at_base = []
+        in_middle = []
         radii = []
-        for model in reduced.models:
+        for number, model in enumerate(reduced.models):
             beam = model.beam
+            base_diameter = tree.base_diameter[tree.segments_of(number)]
             along = beam.tangent[:, None, :]
+            # A spring of the roots is in series with the wood of the first point; the wood has
+            # only its own part of the curvature there.
+            wood_share = beam.second_moment / _section(beam.diameter)
             bent = [
-                field.curvature - (field.curvature * along).sum(axis=-1, keepdims=True) * along
+                wood_share[..., None]
+                * (field.curvature - (field.curvature * along).sum(axis=-1, keepdims=True) * along)
                 for field in model.fields
             ]
-            mean = np.stack([beam.over_segments(each) for each in bent], axis=-1)
-            blocks.append(mean.reshape(-1, len(bent)))
+            bases = [_at_base_ends(beam, each, base_diameter) for each in bent]
+            means = [beam.over_segments(each) for each in bent]
+            at_base.append(np.stack(bases, axis=-1).reshape(-1, len(bent)))
+            in_middle.append(np.stack(means, axis=-1).reshape(-1, len(bent)))
             radii.append(0.5 * beam.over_segments(beam.diameter))
-        self._curvature = sparse.block_diag(blocks, format='csr')
-        self._radius = np.concatenate(radii)
-        tree = reduced.tree
-        self.branch = np.repeat(reduced.branch, [len(radius) for radius in radii])
-        self.height = 0.5 * (tree.start[:, 2] + tree.end[:, 2]) - tree.start[0, 2]
+        blocks = [sparse.block_diag(each, format='csr') for each in (at_base, in_middle)]
+        self._curvature = sparse.vstack(blocks, format='csr')
+        self._radius = np.concatenate([0.5 * tree.base_diameter, *radii])
+        branch = np.repeat(reduced.branch, [len(radius) for radius in radii])
+        self.branch = np.tile(branch, 2)
+        middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
+        self.height = np.concatenate([tree.start[:, 2], middle]) - tree.start[0, 2]
 
     def of(self, rotations: Floats) -> Floats:
-        """Largest strain over a section, mean over each segment, (m,), by key rotations (N,)."""
+        """Largest strain over the section at each place, (2 m,), by key rotations (N,)."""
         curvature = (self._curvature @ rotations).reshape(-1, 3)
         return np.asarray(np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius)
+
+
+def _section(diameter: Floats) -> Floats:
+    """Second moment of area of a round section in [m^4]."""
+    return np.asarray(np.pi / 64.0 * diameter**4)
+
+
+def _at_base_ends(beam: BranchBeam, curvature: Floats, base_diameter: Floats) -> Floats:
+    """
+    Curvature at the base end of each segment [1/m], (m, 3), from that at the points, (p, 5, 3).
+
+    The moment, curvature times second moment of area, is taken on from the points of the first
+    panel by a parabola, that of an even load.
+    """
+    moment = _section(beam.diameter)[..., None] * curvature
+    first = np.searchsorted(beam.segment, np.arange(len(base_diameter)))
+    place = (beam.place[0] - beam.node[0]) / beam.length[0]
+    to_base = np.linalg.pinv(np.vander(place, 3))[-1]
+    at_base = np.einsum('g,mgi->mi', to_base, moment[first])
+    return np.asarray(at_base / _section(base_diameter)[:, None])

@@ -16,6 +16,8 @@ from pathlib import Path
 import pkgutil
 from typing import Any
 
+import numpy as np
+
 from tree_sway.core.tree.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
@@ -77,7 +79,23 @@ def read_trees(
         raise ParameterError(what, where=str(path), cure=cure)
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
-    return tuple(wanted.applied(each, wood) for each in files)
+    read = [wanted.applied(each, wood) for each in files]
+    if same_place := _in_the_stem_of_the_first(read):
+        fault = (
+            f'{same_place} more of the {len(read)} trees stand in the stem of this one: they may '
+            'be models of the same tree, of which tree=1 reads the first alone'
+        )
+        read[0] = replace(read[0], faults=(*read[0].faults, fault))
+    return tuple(read)
+
+
+def _in_the_stem_of_the_first(files: list[TreeFile]) -> int:
+    """Count the trees whose base is within the stem of the first one."""
+    first, *others = files
+    place = first.tree.start[0] + first.origin
+    radius = 0.5 * first.tree.base_diameter[0]
+    distances = [np.linalg.norm(each.tree.start[0] + each.origin - place) for each in others]
+    return sum(distance < radius for distance in distances)
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501

@@ -76,6 +76,21 @@ def test_matlab_arrays_of_structs(tmp_path):
         assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file has 1 more trees'
 
 
+def test_models_of_one_tree_are_named(tmp_path):
+    here = columns_of_fork()
+    beside = columns_of_fork()
+    beside['start'] = beside['start'] + [[0.5, 0.0, 0.0]]
+    savemat(tmp_path / 'models.mat', {'a': {'cylinder': here}, 'b': {'cylinder': here}})
+    first, second = read_trees(tmp_path / 'models.mat', **AS_SCANNED)
+    assert '1 more of the 2 trees stand in the stem of this one' in first.faults[0]
+    assert 'tree=1' in first.faults[0]
+    assert second.faults == ()
+    savemat(tmp_path / 'stand.mat', {'a': {'cylinder': here}, 'b': {'cylinder': beside}})
+    for alone in (read_trees(tmp_path / 'stand.mat', **AS_SCANNED)[0],
+                  read_tree(tmp_path / 'models.mat', tree=1, **AS_SCANNED)):
+        assert alone.faults == ()
+
+
 @pytest.mark.parametrize('n_columns', [9, 10, 12, 14, 15])
 @pytest.mark.parametrize('base', [0, 1])
 @pytest.mark.parametrize('name', ['CylData', 'CylData_updated', 'cyl'])
