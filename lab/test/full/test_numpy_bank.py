@@ -25,7 +25,7 @@ def segments_in_all_directions(n=60):
         parent[i] = rng.integers(max(0, i - 8), i)
         start[i] = end[parent[i]] + rng.normal(0, 0.002, 3)
         end[i] = start[i] + rng.normal(0, 0.2, 3) + np.array([0, 0, 0.1])
-    return tree_from_segments(start, end, rng.uniform(0.006, 0.02, n), parent=parent)
+    return tree_from_segments(start, end, rng.uniform(0.02, 0.04, n), parent=parent)
 
 
 @pytest.fixture(scope='module')

@@ -11,6 +11,10 @@ from tree_sway_lab.full.bank import FullBank
 
 def full_bank(model: SwayModel, branches: Records, plain: bool) -> FullBank:
     """Make the oscillators of all coordinates of a tree; with ``plain`` nothing is compiled."""
+    if model.is_limp:
+        from tree_sway_lab.full.limp_bank import LimpFullBank, NumpyLimpFullBank
+
+        return (NumpyLimpFullBank if plain else LimpFullBank)(branches, model)
     if plain:
         from tree_sway_lab.full.numpy_bank import NumpyFullBank
 

@@ -11,7 +11,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.kinds.shoots import Drawing, towards
 from tree_sway_lab.tip_error import record_tips, roughness, tip_error
 from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, true_tips, WOOD
-from tree_sway_lab.validation.winds import FRAME, turbulent
+from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.kernel import WHY_PLAIN
@@ -31,6 +31,7 @@ from tree_sway.core.run.pose_inertia import (
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import Rig, simulate
+from tree_sway.core.setup import reduced_tree
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import FASTEST_LIMP, TreeReductions
 from tree_sway.core.tree.species import species_named
@@ -80,7 +81,7 @@ def step_of(sim) -> LimpStep:
 def by_table(sim):
     """Make a tree take the step of the table, as it does in a storm."""
     step = step_of(sim)
-    step._share_of_table = lambda speed: 1.0
+    step.share_of_other = lambda speed: 1.0
     return sim
 
 
@@ -240,6 +241,19 @@ def test_gusts_reach_its_limbs_one_after_another():
     assert effect(40) == pytest.approx(effect('full'), rel=0.2)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize('kind', ['birch', 'whips'])
+def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
+    """The table steps it there, from rest in the linear load of light shapes."""
+    tree, wind = kind_called(kind), wind_called('80', 0.5)
+    truth = record_tips(true_model(tree, QUICK), tree, wind[:3], FRAME, substeps=QUICK.substeps)
+    tips = record_tips(make_simulator(tree, WOOD, SETTINGS), tree, wind, FRAME)
+    moves = [np.linalg.norm(np.diff(each, axis=0), axis=2) for each in (truth, tips)]
+    assert moves[0].max() > 0.5
+    assert moves[1][:2].max() < 1.1 * moves[0].max()
+    assert moves[1].max() < 80.0 * FRAME
+
+
 def test_it_stands_still_in_still_air():
     sim = limp_tree()
     rest = sim.place()
@@ -320,14 +334,19 @@ def test_columns_renewed_in_turn_give_the_inertia_of_all_at_once(swaying):
     np.testing.assert_allclose(in_turn, step.pose.change, atol=1e-9)
 
 
-def test_twigs_that_their_own_stiffness_shapes_get_a_further_pair():
-    for kind, is_shaped in (('birch', True), ('whips', True), ('willow', False)):
-        tree = kind_called(kind)
-        counts = [
-            TreeReductions(tree, WOOD, settings).with_subtrees.reduction.n_coordinates
-            for settings in (SETTINGS, replace(SETTINGS, model='full'))
-        ]
-        assert (counts[0] > counts[1]) == is_shaped, kind
+@pytest.mark.parametrize('model', [60, 'full'])
+def test_twigs_that_their_own_stiffness_shapes_get_a_further_pair(model, monkeypatch):
+    def count(kind):
+        settings = replace(SETTINGS, model=model)
+        return TreeReductions(
+            kind_called(kind), WOOD, settings
+        ).with_subtrees.reduction.n_coordinates
+
+    kinds = 'birch', 'whips', 'willow'
+    shaped = [count(kind) for kind in kinds]
+    monkeypatch.setattr(reduced_tree, 'STRUNG', 0.0)
+    plain = [count(kind) for kind in kinds]
+    assert [a > b for a, b in zip(shaped, plain, strict=True)] == [True, True, False]
 
 
 def test_inertia_is_positive_however_old_its_columns_are(swaying):

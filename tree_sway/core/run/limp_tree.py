@@ -10,7 +10,8 @@ Its coordinates are those of the model with a table. Their load is that of every
 
 `coupled_step` solves it. **The table takes over** in storms, in long steps, of trees of which
 coordinates are hidden, and for a second after a step that would have turned a branch too far: its
-step is stable in any wind. Trees of a stand are stepped by the table too.
+step is stable in any wind. Trees of a stand are stepped by the table too. The laboratory's model
+`full` takes this step on all coordinates, and in place of a table the load on every branch.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.sway_model import SwayModel
@@ -30,7 +31,7 @@ from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
 from tree_sway.core.run.dense import copy, largest, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
-from tree_sway.core.run.modal_coordinates import FARTHEST
+from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
 from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import (
     AHEAD,
@@ -40,6 +41,7 @@ from tree_sway.core.run.pose_inertia import (
     columns_due,
     HERE,
     inertia_at_rest,
+    LEADING,
     load_of_forces,
     PoseInertia,
     renew_columns,
@@ -66,6 +68,12 @@ wind, and this step was not tried there.
 
 LONGEST_STEP, MOST_TURN = 0.04, 1.0
 """Longest step [s] at the pose, and the largest rotation of a branch in it [rad]."""
+
+MOST_TURN_BY_TABLE = 0.5
+"""
+The same of a step of the table, to which it is bounded: in a storm that comes at once light shapes
+of twigs would outrun the wind.
+"""
 
 PAUSE = 1.0
 """Time [s] that the table steps after a step that would have turned a branch too far."""
@@ -127,24 +135,44 @@ def motion_of(model: SwayModel, leading: int) -> LimpMotion:
     return LimpMotion(**room)
 
 
-class LimpStep(WindBasisBank):
-    """What a limp tree does in place of the step of a table; a base of a bank."""
+class LimpStep:
+    """
+    What a limp tree does in place of another step; a base of a bank of that step.
+
+    The bank gives the step its coordinates (`take_step`), and makes the other one.
+    """
+
+    is_plain: bool
+    branches: Records
+    leading = LEADING
+    """Largest number of coordinates whose inertia is that of the pose."""
+    most_energy = math.inf
+    """Twice the energy [J] that no step gives; the work of the wind bounds it as well."""
+
+    def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Make the other step; returns a number above 0 where it was clamped to its limit."""
+        raise NotImplementedError
+
+    def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+        """Note the wind of a step at the pose that is taken alone."""
 
     def begin(self, model: SwayModel, bank: Bank) -> None:
         """Prepare the law of a model, by a bank that places it."""
         mass = model.segment_mass
         down = np.multiply.outer(np.sqrt(mass), [0.0, 0.0, -model.settings.gravity]).ravel()
         self.middles = Middles(bank, mass, model.tree.length)
-        self.pose = inertia_at_rest(self.middles, model.shapes, down, model.weight_slopes)
+        q = min(self.leading, len(model.stiffness))
+        self.pose = inertia_at_rest(self.middles, model.shapes, down, model.weight_slopes, q)
         self.limp_motion = motion_of(model, len(self.pose.change))
-        self._segments = segment_drag(model, self.branches, self.middles.tangent)
-        self._drag = damping_at_rest(self._segments, self.pose.columns_at_rest)
+        self.segments = segment_drag(model, self.branches, self.middles.tangent)
+        self._drag = damping_at_rest(self.segments, self.pose.columns_at_rest)
         """Damping of each coordinate by still air, per drag and speed, (m,)."""
         self._law: CoupledStep | None = None
         self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
-        self._begin_anew()
+        self.begin_anew()
 
-    def _begin_anew(self) -> None:
+    def begin_anew(self) -> None:
+        """Return to rest; what the bank has of the state is its own."""
         self._pause = 0.0
         self._next_column = 0
         self.limp_motion.last_eta[:] = 0.0
@@ -156,76 +184,59 @@ class LimpStep(WindBasisBank):
         """Bound the energy from the next step on: something else than the wind has changed it."""
         self._allowed = math.inf
 
-    def set_step(self, dt: float) -> None:
-        """Refill the coefficients for a time step [s]."""
-        super().set_step(dt)
-        if not np.array_equal(self.modal.stiffness, self.limp_motion.stiffness):
-            self.limp_motion.stiffness[:] = self.modal.stiffness
+    def take_step(
+        self, modal: ModalCoordinates, half: Floats, swing: tuple[Floats, ...], wanted: Floats,
+        dt: float,
+    ) -> None:  # fmt: skip
+        """
+        Take the coefficients of a time step [s].
+
+        Parameters
+        ----------
+        modal
+            Coordinates, with the propagators of this step.
+        half
+            Coefficients of half a step, (6, m).
+        swing
+            Memory of coordinates, rates and forces, (m,).
+        wanted
+            Memory for the force of wind and weight, (m,).
+        dt
+            Length of the step [s].
+
+        """
+        if not np.array_equal(modal.stiffness, self.limp_motion.stiffness):
+            self.limp_motion.stiffness[:] = modal.stiffness
             self._forget()
-        m = len(self.modal.stiffness)
-        half = self.time_step[0]['half'][:, :m]
-        self._law = coupled_step(self.modal, half, self._drag, len(self.pose.change), dt)
-        eta, rate, force = self.swing
-        # Gusts that reach the limbs one after another are added by the force of the step.
-        wanted = self.instance['wanted'][0, :m]
+        self._law = coupled_step(modal, half, self._drag, len(self.pose.change), dt)
+        eta, rate, force = swing
         self.limp_motion = self.limp_motion._replace(
             eta=eta, rate=rate, force=force, wanted=wanted
         )
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Advance one step, as `WindBasisBank.advance`."""
-        return self.step_outside() if self._step_once(wx, wy, wz, per_speed_squared) else 0
-
-    def stepping(
-        self, wind: Floats, max_wind: float, law: DragLaw
-    ) -> Callable[[float, float, float], int]:
-        """Return a step as one call, as `WindBasisBank.stepping`."""
-        return partial(self._step_in_wind, wind, max_wind, law)
-
-    def reset(self) -> None:
-        """Return to rest."""
-        super().reset()
-        self._begin_anew()
-
-    def _step_in_wind(
-        self, stored: Floats, max_wind: float, law: DragLaw, x: float, y: float, z: float
-    ) -> int:
-        """Check a wind [m/s] and step, as `table_model.step_in_wind`."""
-        is_refused = not math.sqrt(x * x + y * y + z * z) <= max_wind
-        if not is_refused:
-            stored[:] = x, y, z
-        wx, wy, wz = stored.tolist()
-        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
-        return int(is_refused) + 2 * self._step_once(wx, wy, wz, load)
-
-    def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Step; returns 1 where the table's step was clamped to its limit."""
+    def step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Step in a wind [m/s]; returns what the other step does, 0 where it was not made."""
         speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        share = self._share_of_table(speed)
+        share = self.share_of_other(speed)
         law = self._law
         if share == 1.0 or law is None:
             self._forget()
-            return int(self._step(wx, wy, wz, per_speed_squared))
+            return self.step_otherwise(wx, wy, wz, per_speed_squared)
         if not self._step_at_pose(law, (wx, wy, wz), speed, per_speed_squared):
             self._pause = PAUSE
-            share = 1.0
             self._forget()
-            return int(self._step(wx, wy, wz, per_speed_squared))
-        instance = self.instance[0]
+            return self.step_otherwise(wx, wy, wz, per_speed_squared)
         outside = 0
         if share > 0.0:
             self._forget()
-            outside = int(self._step(wx, wy, wz, per_speed_squared))
+            outside = self.step_otherwise(wx, wy, wz, per_speed_squared)
         else:
-            instance['wind'] = (wx, wy, wz)
-            instance['drag_density'] = per_speed_squared
-            instance['outside'] = 0
-            instance['diagonal'] = 0.0
+            self.note_wind(wx, wy, wz, per_speed_squared)
         self._take(share)
         return outside
 
     def _take(self, share: float) -> None:
-        """Take the step at the pose, but for the share of a step by the table."""
+        """Take the step at the pose, but for the share of the other step."""
         motion = self.limp_motion
         state = (motion.eta, motion.rate, motion.force)
         new = (*motion.new, motion.new_force)
@@ -233,9 +244,9 @@ class LimpStep(WindBasisBank):
             now[:] = own if share == 0.0 else own + share * (now - own)
         motion.last_eta[:], motion.last_rate[:] = motion.eta, motion.rate
 
-    def _share_of_table(self, speed: float) -> float:
-        """Weight of the table's step in a wind [m/s], 0 to 1."""
-        if self.instance['left_out'][0] or self._law is None or self._law.length > LONGEST_STEP:
+    def share_of_other(self, speed: float) -> float:
+        """Weight of the other step in a wind [m/s], 0 to 1."""
+        if self._law is None or self._law.length > LONGEST_STEP:
             return 1.0
         self._pause = max(0.0, self._pause - self._law.length)
         by_wind = (speed - STRONG[0]) / (STRONG[1] - STRONG[0])
@@ -258,11 +269,10 @@ class LimpStep(WindBasisBank):
             self._forget()
         self._next_column = (first + count) % len(pose.columns)
         self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
-        most = float(self.record[0]['most_energy'])
         load = per_speed_squared, per_speed_squared * speed
         is_possible: bool = self._run(
-            _step_from_middle, law, pose, motion, self._segments, first, count, ahead, *wind,
-            *load, most,
+            _step_from_middle, law, pose, motion, self.segments, first, count, ahead, *wind,
+            *load, self.most_energy,
         )  # fmt: skip
         if is_possible:
             self.middles.fill(pose.turned, pose.placed, 1)
@@ -279,10 +289,74 @@ class LimpStep(WindBasisBank):
 
 
 class LimpBank(LimpStep, WindBasisBank):
-    """A limp tree whose branches are loaded and placed by kernels."""
+    """A limp tree whose other step is that of a table."""
+
+    def begin(self, model: SwayModel, bank: Bank) -> None:
+        """Prepare the law of a model, by a bank that places it."""
+        super().begin(model, bank)
+        self.most_energy = model.most_energy
+
+    def set_step(self, dt: float) -> None:
+        """Refill the coefficients for a time step [s]."""
+        super().set_step(dt)
+        m = len(self.modal.stiffness)
+        half = self.time_step[0]['half'][:, :m]
+        # Gusts that reach the limbs one after another are added by the force of the step.
+        self.take_step(self.modal, half, self.swing, self.instance['wanted'][0, :m], dt)
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `WindBasisBank.advance`."""
+        return self.step_outside() if self.step_once(wx, wy, wz, per_speed_squared) else 0
+
+    def stepping(
+        self, wind: Floats, max_wind: float, law: DragLaw
+    ) -> Callable[[float, float, float], int]:
+        """Return a step as one call, as `WindBasisBank.stepping`."""
+        return partial(self._step_in_wind, wind, max_wind, law)
+
+    def reset(self) -> None:
+        """Return to rest."""
+        super().reset()
+        self.begin_anew()
+
+    def _step_in_wind(
+        self, stored: Floats, max_wind: float, law: DragLaw, x: float, y: float, z: float
+    ) -> int:
+        """Check a wind [m/s] and step, as `table_model.step_in_wind`."""
+        is_refused = not math.sqrt(x * x + y * y + z * z) <= max_wind
+        if not is_refused:
+            stored[:] = x, y, z
+        wx, wy, wz = stored.tolist()
+        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
+        return int(is_refused) + 2 * self.step_once(wx, wy, wz, load)
+
+    def share_of_other(self, speed: float) -> float:
+        """Weight of the table's step in a wind [m/s], 0 to 1."""
+        return 1.0 if self.instance['left_out'][0] else super().share_of_other(speed)
+
+    def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Make the step of the table; returns 1 where it was clamped to its limit."""
+        eta, rate, _ = self.swing
+        before = eta.copy()
+        rotations = self.rotations().copy()
+        outside = int(self._step(wx, wy, wz, per_speed_squared))
+        turned = largest(self.rotations() - rotations)
+        if turned > MOST_TURN_BY_TABLE:
+            share = MOST_TURN_BY_TABLE / turned
+            eta[:] = before + share * (eta - before)
+            rate *= share
+        return outside
+
+    def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+        """Note the wind of a step at the pose that is taken alone."""
+        instance = self.instance[0]
+        instance['wind'] = (wx, wy, wz)
+        instance['drag_density'] = per_speed_squared
+        instance['outside'] = 0
+        instance['diagonal'] = 0.0
 
 
-class NumpyLimpBank(LimpStep, NumpyTableBank):
+class NumpyLimpBank(LimpBank, NumpyTableBank):
     """A limp tree in numpy."""
 
 

@@ -35,7 +35,10 @@ from tree_sway.core.run.dense import copy, dot, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 
 LEADING = 120
-"""Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
+"""
+Largest number of coordinates whose inertia is that of the pose, others keep that at rest; of
+models with a table.
+"""
 
 OLDEST, MOST_STEPS = 0.3, 8
 """
@@ -96,7 +99,7 @@ class PoseInertia(NamedTuple):
 
 
 def inertia_at_rest(
-    middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats
+    middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats, q: int
 ) -> PoseInertia:
     """
     Find the inertia of a tree at rest.
@@ -111,10 +114,11 @@ def inertia_at_rest(
         Gravity on each of the `Middles` over its factor, (3 n,).
     weight_slopes
         Derivative of the weight's force on the coordinates by each of them, at rest, (m, m).
+    q
+        Number of leading coordinates.
 
     """
     n_rotations, m = shapes.shape
-    q = min(LEADING, m)
     at_rest = _columns_at_rest(middles, shapes)
     # The model's coordinates have unit mass, that of its points to some percent.
     factor = np.asarray(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T), dtype=np.float64)

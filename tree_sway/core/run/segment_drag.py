@@ -27,6 +27,8 @@ class SegmentDrag(NamedTuple):
     """Drag area of each [m^2], (n,)."""
     speed: Floats
     """Wind speed at each over that at the anemometer, (n,)."""
+    gust: Floats
+    """Wind that reaches each beside that at the anemometer [m/s], (n, 3)."""
     root_mass: Floats
     """Square root of the mass of each [kg^0.5], (n,)."""
     tangent: Floats
@@ -60,6 +62,7 @@ def segment_drag(model: SwayModel, branches: Records, tangent: Floats) -> Segmen
     return SegmentDrag(
         area=wood * clad[branch] + tree.length * leaves[branch],
         speed=branches['speed'][branch],
+        gust=np.zeros((len(wood), 3)),
         root_mass=np.sqrt(model.segment_mass),
         tangent=tangent,
         force=np.zeros(3 * len(wood)),
@@ -95,7 +98,8 @@ def fill_drag(
 
     """
     moved = per_time * (ahead - behind).reshape(-1, 3)
-    air = drag.speed[:, None] * np.array([wx, wy, wz]) - moved / drag.root_mass[:, None]
+    wind = np.array([wx, wy, wz]) + drag.gust
+    air = drag.speed[:, None] * wind - moved / drag.root_mass[:, None]
     tangent = drag.tangent.reshape(-1, 3)
     air -= (air * tangent).sum(axis=1, keepdims=True) * tangent
     factor = drag.area * np.sqrt((air * air).sum(axis=1)) / drag.root_mass
@@ -115,9 +119,9 @@ if not WHY_PLAIN:
                 y = 3 * i + 1
                 z = 3 * i + 2
                 per_mass = per_time / drag.root_mass[i]
-                ux = drag.speed[i] * wx - per_mass * (ahead[x] - behind[x])
-                uy = drag.speed[i] * wy - per_mass * (ahead[y] - behind[y])
-                uz = drag.speed[i] * wz - per_mass * (ahead[z] - behind[z])
+                ux = drag.speed[i] * (wx + drag.gust[i, 0]) - per_mass * (ahead[x] - behind[x])
+                uy = drag.speed[i] * (wy + drag.gust[i, 1]) - per_mass * (ahead[y] - behind[y])
+                uz = drag.speed[i] * (wz + drag.gust[i, 2]) - per_mass * (ahead[z] - behind[z])
                 along = ux * tangent[x] + uy * tangent[y] + uz * tangent[z]
                 ux -= along * tangent[x]
                 uy -= along * tangent[y]

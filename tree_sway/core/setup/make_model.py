@@ -86,7 +86,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         **_stream(reductions, coordinates, arrays['momentum'].T, table),
         **table,
         **_limbs(reductions, reduced, order, shapes if table else None),
-        **(_limp(reduced, shapes, settings.gravity) if table and reductions.is_limp else {}),
+        **(_limp(reduced, shapes, settings.gravity) if shapes.size and reductions.is_limp else {}),
     )
 
 

@@ -158,8 +158,7 @@ class TreeReducer:
     @property
     def _is_bent(self) -> NDArray[np.bool_]:
         """Whether each branch gets a further pair: one of a limp tree, and no string, (b,)."""
-        is_asked = isinstance(self._settings.model, int) and self._settings.enrich == 'needed'
-        if not is_asked or not self.is_limp:
+        if self._settings.enrich != 'needed' or not self.is_limp:
             return np.zeros(self._tree.n_branches, dtype=np.bool_)
         return self._is_far & (self._beams.weight_over_stiffness() < STRUNG)
 

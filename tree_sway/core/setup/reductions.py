@@ -113,7 +113,7 @@ class TreeReductions:
         return self.frequencies[:count]
 
     def modes(self, model: int | str) -> Modes:
-        """Return all modes, or the leading ones in winds, of limp trees without the fastest."""
+        """Return all modes, or the leading ones in winds; of limp trees without the fastest."""
         from tree_sway.core.setup.modes import leading_modes
 
         reduction = self.with_subtrees.reduction
@@ -126,7 +126,7 @@ class TreeReductions:
         else:
             responses = self.responses
             leading = leading_modes(reduction, responses.rotations, responses.tips, count)
-        if isinstance(model, int) and self.is_limp:
+        if self.is_limp:
             fastest = max(FASTEST_LIMP, LEAST_SPAN * float(leading.circular.min()))
             return leading.slower_than(fastest)
         return leading
