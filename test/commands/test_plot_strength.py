@@ -20,7 +20,8 @@ def test_a_curve_is_drawn_and_printed(tmp_path, capsys):
     tree = 'test/files/data/fork.simpleforest.csv'
     options = ['--strength', '--species', 'oak', '--model', '6', '--speed', '12']
     assert main(['plot', tree, *options, '-o', str(picture)]) == 0
-    assert '<!-- fork.simpleforest, wind at 2.3 m -->' in picture.read_text(encoding='utf-8')
+    drawn = picture.read_text(encoding='utf-8')
+    assert '<!-- fork.simpleforest, in the open, wind at 2.3 m -->' in drawn
     text = capsys.readouterr().out
     shares = [float(share) for share in re.findall(r'wood ([\d.e+-]+) %', text)]
     assert len(shares) == 6
@@ -32,7 +33,19 @@ def test_what_is_unknown_is_said_in_the_picture(tmp_path):
     picture = tmp_path / 'strength.svg'
     tree = ['benjamina', '--model', '6', '--speed', '12']  # in a pot
     assert main(['plot', *tree, '--strength', '-o', str(picture)]) == 0
-    assert picture.read_text(encoding='utf-8').count(': unknown -->') == 1
+    text = picture.read_text(encoding='utf-8')
+    assert text.count(': unknown -->') == 1
+    assert text.count('<!-- of 80 % of such trees -->') == 1
+
+
+def test_a_picture_of_a_stand_says_where_the_tree_stands_and_leaves_no_neighbour_out(tmp_path):
+    picture = tmp_path / 'strength.svg'
+    tree = ['test/files/data/fork.simpleforest.csv', '--model', '6', '--speed', '12']
+    words = ['plot', *tree, '--strength', '--exposure', 'stand', '-o', str(picture)]
+    assert main(words) == 0
+    text = picture.read_text(encoding='utf-8')
+    assert 'in a stand, trees 0.41 m apart, wind at 2.3 m -->' in text
+    assert 'neighbours' not in text
 
 
 def test_a_stand_has_a_curve_of_each_kind(tmp_path, capsys):
@@ -64,6 +77,15 @@ def test_info_says_the_share_and_where_if_a_speed_is_given(capsys):
     assert main([*tree, '--speed', '-3']) == 2
 
 
+def test_a_pole_that_has_less_than_the_published_moment_is_not_called_sheltered(tmp_path, capsys):
+    pole = tmp_path / 'pole.yaml'
+    stem = '{name: stem, nodes: [[0, 0, 0, 0.2], [0, 0, 8, 0.1]]}'
+    pole.write_text(f'name: pole\nspecies: spruce\nbranches:\n  - {stem}\n')
+    assert main(['info', str(pole), '--speed', '10', '--leaves', 'off']) == 0
+    said = capsys.readouterr().out
+    assert 'outside that band: one of the two is wrong for this tree' in said
+
+
 def figures(capsys, *command):
     """Return the printed figures of wood, with their seasons."""
     assert main([str(word) for word in command]) == 0
@@ -75,7 +97,8 @@ def test_one_tree_in_one_season_has_one_figure_in_all_commands(tmp_path, capsys)
     info = figures(capsys, 'info', *tree, '--speed', '12')
     curve = figures(capsys, 'plot', *tree, '--strength', '--speed', '12', '-o', tmp_path / 'a.png')
     table = tmp_path / 'sway.csv'
-    record = figures(capsys, 'simulate', *tree, '--speed', '12', '--seconds', '60', '-o', table)
+    gusts = ['--speed', '12', '--seconds', '600', '--rate', '30']
+    record = figures(capsys, 'simulate', *tree, *gusts, '-o', table)
     assert info == record == [curve[-1]]
     assert info[0][1] == 'bare'
     picture = tmp_path / 'b.png'

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
+import json
 import math
 from pathlib import Path
 
@@ -13,10 +14,9 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
+from tree_sway.core.strength.critical_wind import ShareCurve
 from tree_sway.core.strength.strength_band import wood_band
 from tree_sway.core.wind.exposure import Exposure, EXPOSURES
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
 from tree_sway.studies import risk_command
@@ -31,16 +31,6 @@ def test_a_power_law_is_found_again() -> None:
     curve = ShareCurve(speed, (speed / 20.0) ** 1.6)
     for share in (0.05, 0.4, 1.0, 3.0):
         assert curve.speed_of(share) == pytest.approx(20.0 * share ** (1.0 / 1.6))
-
-
-def test_the_largest_of_ten_minutes_is_expected_from_two() -> None:
-    rng = np.random.default_rng(3)
-    found, expected = [], []
-    for _ in range(40):
-        wind = simulate_turbulence(10.0, rate=10.0, duration=600.0, rng=rng)[:, 0]
-        found.append(wind.max())
-        expected.append(largest_expected(wind[:1200], 10.0))
-    assert np.mean(expected) == pytest.approx(np.mean(found), rel=0.05)
 
 
 def inventory(folder: Path, text: str) -> Inventory:
@@ -118,6 +108,29 @@ def test_a_thicker_stem_uses_less_and_leaves_cost() -> None:
     assert in_leaf.wood.speed_of(1.0) < bare.wood.speed_of(1.0)
     again = compute_kind(RiskKind('oak', 12.0, 60.0)).seasons[0].wood
     np.testing.assert_array_equal(again.share, slender.seasons[0].wood.share)
+
+
+@pytest.mark.parametrize('exposure', ['open', pytest.param('stand', marks=pytest.mark.long)])
+def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
+    exposure: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = 'x,y,species,height,dbh\n0,0,spruce,12,17\n'
+    work = risk_work(inventory(tmp_path, text), exposure=exposure)
+    (kind,) = work.kinds
+    (row,) = rows_of_kind(work, compute_kind(kind))
+    wind = row['critical_wind_10m [m/s]' if exposure == 'open' else 'critical_wind_top [m/s]']
+    words = ['info', str(tmp_path / 'trees.csv'), '--exact', '--exposure', exposure]
+    assert cli.main([*words, '--count', '1', '--speed', str(wind), '--json']) == 0
+    strength = json.loads(capsys.readouterr().out)['strength']
+    part = row['limited_by'].partition(',')[0]
+    assert strength[part][0] == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_tree_that_no_storm_breaks_has_a_row() -> None:
+    result = compute_kind(RiskKind('spruce', 3.0, 15.0))
+    assert not result.error
+    (in_leaf,) = result.seasons
+    assert in_leaf.wood.speed_of(1.0) > 40.0
 
 
 @pytest.mark.long

@@ -77,8 +77,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='K',
         help='say where this many motion sensors tell most (1 to 8)',
     )
-    speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
-    add('--speed', type=float, metavar='U', help=speed)
+    strength = (
+        'report the fraction of the strength used in the largest gust of ten minutes of this mean '
+        'wind [m/s]'
+    )
+    add('--speed', type=float, metavar='U', help=strength)
     add_exposure_arguments(parser)
     add('--json', action='store_true', help='print JSON in SI units')
 
@@ -150,7 +153,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         rig = strength_rig(touched, chosen)
         (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(
-            f'{exposure}, of {arguments.speed:g} m/s: {used}; rot and wet soil are not included'
+            f'{exposure}, of {arguments.speed:g} m/s: {used}; in brackets, where 80 % of such '
+            'trees are; rot and wet soil are not included'
         )
         published = _published_moment(placed, species, arguments.speed)
         if published is not None:
@@ -208,7 +212,7 @@ def _moment_note(used: StrengthUse, published: float, exposure: str) -> str:
     low, high = (each / 1e3 for each in used.moment_band)
     if low <= published / 1e3 <= high:
         where = 'within that band'
-    elif exposure == 'stand':
+    elif exposure == 'stand' or published / 1e3 > high:
         where = 'outside that band: one of the two is wrong for this tree'
     else:
         where = (

@@ -151,7 +151,8 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         curve = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
         for speed, use in zip(speeds, curve, strict=True):
             print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
-        used[f'{each.name}, wind at {exposure.reference_height:.3g} m'] = curve
+        name = f'{each.name}, {exposure.place}, wind at {exposure.reference_height:.3g} m'
+        used[name] = curve
     plot_strength(speeds, used, output)
 
 
@@ -169,5 +170,5 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     frames = swaying(simulator, wind, _RATE, seconds)
     shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
     winds, tips = np.swapaxes(shown, 0, 1)
-    title = f'{scene.tree.name}, {arguments.model}, {source}'
+    title = f'{scene.tree.name}, model {arguments.model}, {source}'
     plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)

@@ -54,7 +54,8 @@ def plot_wind_and_tip(
         )
     figure = new_figure(10.0, 4.6)
     speed, sway = figure.subplots(2, 1, sharex=True)
-    speed.plot(t, np.linalg.norm(blowing, axis=1), label='speed')
+    speeds = np.linalg.norm(blowing, axis=1)
+    speed.plot(t, speeds, label=f'speed, {speeds.mean():.3g} m/s on average')
     speed.set(ylabel='wind [m/s]', ylim=(0.0, None))
     sway.plot(t, moved[:, 0], label='east')
     sway.plot(t, moved[:, 1], label='north')
@@ -71,8 +72,8 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     speeds
         Mean wind speeds in [m/s], (n,).
     used
-        Used shares at each speed, with the bands of the sources, by the name of each tree and the
-        height of its mean wind.
+        Used shares at each speed, with the bands of the sources, by the name of each tree, where
+        it stands and the height of its mean wind.
     path
         File to write, whose suffix is that of the format.
 
@@ -84,12 +85,15 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
             share, least, most = percent.T
             unknown = bool(np.isnan(share).all())
             (line,) = axes.plot(speeds, share, label=f'{name}: unknown' if unknown else name)
-            axes.fill_between(speeds, least, most, color=line.get_color(), alpha=0.15, lw=0)
+            axes.fill_between(
+                speeds, least, most, color=line.get_color(), alpha=0.15, lw=0,
+                label=None if unknown else 'of 80 % of such trees',
+            )  # fmt: skip
         axes.axhline(100.0, color='black', lw=0.8, ls='--')
-        axes.set(title=what, xlabel='mean wind [m/s]', ylim=(0.0, 200.0))
-    figure.axes[0].set_ylabel('share of strength in gusts [%]')
-    left_out = 'not included: rot, wounds, wet or shallow soil, sheltering by neighbours'
-    return _finished(figure, path, left_out)
+        fastest = float(np.max(np.asarray(speeds)))
+        axes.set(title=what, xlabel='mean wind [m/s]', xlim=(0.0, fastest), ylim=(0.0, 200.0))
+    figure.axes[0].set_ylabel('share of strength, largest gust of 10 min [%]')
+    return _finished(figure, path, 'not included: rot, wounds, wet or shallow soil')
 
 
 def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
@@ -111,9 +115,8 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     """
     trees: dict[str, list[tuple[float, ...]]] = {}
     for row in rows:
-        of_tree = [value for key, value in row.items() if key.startswith('tree_') and value]
         case = tuple(float(row[key]) for key in STUDY_COLUMNS)
-        trees.setdefault(', '.join(of_tree), []).append(case)
+        trees.setdefault(_tree_of(row), []).append(case)
     figure = new_figure(10.0, 4.6)
     for k, axes in enumerate(figure.subplots(1, 2), 1):
         for name, cases in trees.items():
@@ -123,10 +126,21 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     return _finished(figure, path)
 
 
+def _tree_of(row: Mapping[str, str]) -> str:
+    """Name the tree of a case, such as ``species oak, height 4.0 m, seed 0``."""
+    parts = []
+    for key, value in row.items():
+        if key.startswith('tree_') and value:
+            name, _, unit = key.removeprefix('tree_').partition(' ')
+            parts.append(f'{name} {value} {unit.strip("[]-")}'.strip())
+    return ', '.join(parts)
+
+
 def _finished(figure: Figure, path: str | Path, title: str = '') -> Path:
     """Write a figure with a grid and a legend."""
     for axes in figure.axes:
         axes.grid(alpha=0.25)
-        axes.legend(frameon=False)
+        axes.legend(frameon=False, fontsize='small')
     figure.suptitle(title)
+    figure.set_layout_engine('constrained')
     return save_figure(figure, path)

@@ -15,26 +15,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow, stem_range
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.setup.standing import standing_tree
-from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
+from tree_sway.core.strength.critical_wind import ShareCurve
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.exposure import Exposure, exposure_of, STATION_HEIGHT
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.imported_tree import TreeFile
 
 _MODEL = 20
-_RATE = 30.0
-_SECONDS = 120.0
 _FIRST = 15.0
 _SLOWEST = 4.0
-_FASTEST = 60.0
+_FASTEST = 40.0
 _USUAL_POWER = 1.5
 """Power of the wind speed that the load of a crown grows by, between 1 and 2."""
 
@@ -142,25 +138,14 @@ def _season(tree: TreeFile, seed: int, in_leaf: bool, exposure: Exposure) -> Sea
 
 
 def _shares(rig: Rig, exposure: Exposure, speed: float, seed: int) -> tuple[float, float]:
-    """Shares of wood and roots in the largest gust that is expected of a mean wind [m/s]."""
-    wind = simulate_turbulence(
-        speed,
-        rate=_RATE,
-        duration=_SECONDS,
-        rng=np.random.default_rng(seed + 1),
+    """Shares of wood and roots in the largest gust of ten minutes of a mean wind [m/s]."""
+    (used,) = rig.strength_curve(
+        [speed],
+        rng=np.random.default_rng(seed),
         height=exposure.turbulence_height,
         intensity=None if exposure.kind == 'open' else exposure.intensity,
     )
-    record = rig.run(wind, rate=_RATE)
-    along = record.base_moment @ _unit(record.base_moment.mean(axis=0))
-    largest = float(np.linalg.norm(record.base_moment, axis=1).max())
-    ratio = largest_expected(along, _RATE) / max(largest, 1e-9)
-    used = record.strength
-    return float(used.wood[0]) * ratio, float(used.roots[0]) * ratio
-
-
-def _unit(vector: Floats) -> Floats:
-    return vector / max(float(np.linalg.norm(vector)), 1e-12)
+    return float(used.wood[0]), float(used.roots[0])
 
 
 def _curve(shares: dict[float, tuple[float, float]], part: int) -> ShareCurve:

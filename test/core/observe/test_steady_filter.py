@@ -12,9 +12,10 @@ from tree_sway.core.observe.steady_filter import (
     predicted_covariance,
     stationary_covariance,
     steady_filter,
+    SteadyFilter,
     sway_law,
     SwayLaw,
-    told_shares,
+    told_shares_in_parts,
 )
 
 M, DT = 5, 1.0 / 60.0
@@ -37,6 +38,11 @@ def driven(law: SwayLaw) -> np.ndarray:
     whole = np.zeros((3 * M, 3 * M))
     whole[2 * M :, 2 * M :] = law.driven
     return whole
+
+
+def told_shares(gains: SteadyFilter, law: SwayLaw, noise: np.ndarray) -> np.ndarray:
+    found = told_shares_in_parts(gains, law, noise)
+    return next(each for each in found if each is not None)
 
 
 def test_the_law_is_the_exponential_of_the_equation_of_motion() -> None:
@@ -67,11 +73,37 @@ def test_a_sensor_of_one_coordinate_tells_nothing_of_those_it_shares_no_force_wi
     one = np.zeros((1, 3 * M))
     one[0, 2] = 1.0
     gains = steady_filter(apart, one, NOISE[:1])
-    told = told_shares(gains)
+    told = told_shares(gains, apart, NOISE[:1])
     alone = np.diag(linalg.solve_discrete_lyapunov(apart.matrix, driven(apart)))
     assert told[2] == pytest.approx(1.0 - gains.covariance[2, 2] / alone[2], rel=1e-6)
     assert told[2] > 0.05
     np.testing.assert_allclose(np.delete(told, 2), 0.0, atol=1e-8)
+
+
+def test_gains_for_a_shared_force_do_harm_where_each_coordinate_has_its_own(
+    law: SwayLaw,
+) -> None:
+    whole = np.ones((M, M)) + 1e-3 * np.eye(M)
+    shared, apart = (SwayLaw(law.step, each) for each in (whole, np.diag(np.diag(whole))))
+    one = np.zeros((1, 3 * M))
+    one[0, 0] = 1.0
+    noise = np.array([1e-3])
+    gains = steady_filter(shared, one, noise)
+    believed, told = (told_shares(gains, each, noise) for each in (shared, apart))
+    assert believed.min() > 0.5
+    assert told[0] > 0.5
+    assert told[1:].max() < 0.0
+    # The state and its estimate as one system.
+    step, gain = apart.matrix, gains.gain @ one
+    kept = np.eye(3 * M) - gain
+    both = np.block([[step, np.zeros_like(step)], [gain @ step, kept @ step]])
+    by_force = np.vstack([np.eye(3 * M), gain])
+    by_noise = np.vstack([np.zeros_like(gains.gain), gains.gain]) * noise
+    added = by_force @ driven(apart) @ by_force.T + by_noise @ by_noise.T
+    found = linalg.solve_discrete_lyapunov(both, added)
+    error = np.hstack([np.eye(3 * M), -np.eye(3 * M)])
+    left = np.diag(error @ found @ error.T)[:M]
+    np.testing.assert_allclose(told, 1.0 - left / np.diag(found)[:M], rtol=1e-6)
 
 
 def test_errors_are_as_large_as_the_covariance_says_and_smoothed_ones_smaller(

@@ -55,16 +55,18 @@ class Disturbance:
     """
     Unknown forces on the first coordinates of a model in a mean wind.
 
-    ``covariance`` is of the modal forces, (m, m), and ``gusts`` its part by unknown gusts;
-    ``air_damping`` the damping of each coordinate by the mean wind in [1/s], (m,), and ``speed``
-    that wind in [m/s]; ``drag`` is the force on each coordinate of the model against the rate of
-    another in [1/s], (all, all). Of each limb, the stem first, ``limb_slopes`` are the force on
-    each coordinate per wind, (l, 3, m), and ``reach`` how far it is from the middle of the crown
-    over the farthest one, 0 for the stem, (l,).
+    ``covariance`` is of the modal forces, (m, m), ``gusts`` its part by unknown gusts, and
+    ``apart`` what it would be if each limb met gusts of its own; ``air_damping`` is the damping of
+    each coordinate by the mean wind in [1/s], (m,), and ``speed`` that wind in [m/s]; ``drag`` is
+    the force on each coordinate of the model against the rate of another in [1/s], (all, all). Of
+    each limb, the stem first, ``limb_slopes`` are the force on each coordinate per wind, (l, 3,
+    m), and ``reach`` how far it is from the middle of the crown over the farthest one, 0 for the
+    stem, (l,).
     """
 
     covariance: Floats
     gusts: Floats
+    apart: Floats
     air_damping: Floats
     speed: float
     drag: Floats
@@ -96,19 +98,23 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     apart = np.linalg.norm(middle[:, None] - middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * apart)
-    whole = by_limb.sum(axis=0)
-    covariance = np.zeros((count, count))
-    for axis, share in enumerate((1.0, 1.0, _LIFT)):
-        covariance += share * by_limb[:, axis].T @ shared @ by_limb[:, axis]
-        covariance += share * _SHARED * np.outer(whole[axis], whole[axis])
-    covariance *= (GUST * speed) ** 2
-    by_gusts = covariance.copy()
-    gusts = np.square(GUST * speed * whole).sum(axis=0)
-    _add_wood(covariance, gusts, simulator, air_damping)
+    gust = GUST * speed
+    by_gusts = gust**2 * _forces_by(by_limb, _SHARED + shared)
+    own_gusts = gust**2 * _forces_by(by_limb, np.eye(n_limbs))
+    of_whole = np.square(gust * by_limb.sum(axis=0)).sum(axis=0)
+    covariance, apart = by_gusts.copy(), own_gusts
+    for each in (covariance, apart):
+        _add_wood(each, of_whole, simulator, air_damping)
     reach = np.linalg.norm(middle - load @ middle / load.sum(), axis=1)
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
-    return Disturbance(covariance, by_gusts, air_damping, speed, drag, by_limb, reach)
+    return Disturbance(covariance, by_gusts, apart, air_damping, speed, drag, by_limb, reach)
+
+
+def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
+    """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
+    axes = zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True)
+    return np.asarray(sum(share * along.T @ correlation @ along for share, along in axes))
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:

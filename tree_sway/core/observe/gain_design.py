@@ -5,7 +5,8 @@ Gains for the sensors in use and the present wind, found a part at each step.
 
 A sensor on the stem tells about a hanging twig only what both have in common by the law of the
 gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
-the sensors take away enough of its variance; elsewhere the tree sways in the wind alone.
+the sensors take away enough of its variance even if each limb meets gusts of its own; elsewhere
+the tree sways in the wind alone.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from tree_sway.core.observe.steady_filter import (
     filter_in_parts,
     SteadyFilter,
     SwayLaw,
-    told_shares,
+    told_shares_in_parts,
 )
 from tree_sway.core.observe.unknown_motion import UnknownMotion
 
-NOISE, _DOUBTED = 3.5, 8.0
-"""Noise for which gains, and what the sensors tell, are found, over the noise of the sensors."""
+NOISE = 3.5
+"""Noise for which gains are found, over the noise of the sensors."""
 
 _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 """
@@ -107,11 +108,12 @@ class GainDesign:
 
     def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
         """Begin to find the gains of some sensors."""
-        law = self._unknown.find()
+        law, apart = self._unknown.find(), self._unknown.apart
+        assert apart is not None
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        return LaterWork(_in_parts(used, law, sensed, noise, self._lag), _DUE, self._submit)
+        return LaterWork(_in_parts(used, law, apart, sensed, noise, self._lag), _DUE, self._submit)
 
     def felt(self, which: int) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -125,13 +127,16 @@ class GainDesign:
 
 
 def _in_parts(
-    used: tuple[int, ...], law: SwayLaw, sensed: Floats, noise: Floats, lag: int
+    used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats, lag: int
 ) -> Iterator[Gains | None]:
-    """Find the gains of some sensors; None until they are found."""
-    for doubted in filter_in_parts(law, sensed, _DOUBTED * noise):
-        yield None
-        if doubted is not None:
-            told = told_shares(doubted)
-    trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
+    """Find the gains of some sensors, judged by gusts of each limb; None until they are found."""
     for gains in filter_in_parts(law, sensed, NOISE * noise, lag):
-        yield None if gains is None else Gains(used, noise, gains, trust)
+        yield None
+        if gains is not None:
+            found = gains
+    for told in told_shares_in_parts(found, apart, NOISE * noise):
+        if told is None:
+            yield None
+            continue
+        trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
+        yield Gains(used, noise, found, trust)

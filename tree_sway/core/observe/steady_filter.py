@@ -224,12 +224,37 @@ def stationary_covariance(law: SwayLaw) -> Floats:
     return np.ascontiguousarray(pairs.transpose(2, 0, 3, 1)).reshape(3 * m, 3 * m)
 
 
-def told_shares(gains: SteadyFilter) -> Floats:
-    """Share of the variance of each displacement that the measurements take away, (m,)."""
-    steps = np.moveaxis(gains.law.step, 2, 0)
-    alone = _pair_covariances(steps, steps, np.diag(gains.law.driven))[:, 0, 0]
-    left = np.diag(gains.covariance)[: len(alone)]
-    return np.asarray(1.0 - left / np.maximum(alone, 1e-300))
+def told_shares_in_parts(
+    gains: SteadyFilter, law: SwayLaw, noise: Floats
+) -> Iterator[Floats | None]:
+    """
+    Find the share of each displacement's variance that gains take away under another law.
+
+    What a gain leaves moves as ``E = (1 - L H) (A E A' + Q) (1 - L H)' + L R L'``, whatever the
+    law that it was found for. What is yielded last are the shares, (m,), negative where the
+    correction adds; all before is None.
+
+    Parameters
+    ----------
+    gains
+        The gains.
+    law
+        How the state moves in truth.
+    noise
+        Standard deviation of the noise of each measurement, (p,).
+
+    """
+    step, m = law.matrix, law.step.shape[2]
+    with one_thread():
+        kept = np.eye(3 * m) - gains.gain @ gains.sensed
+        noisy = gains.gain * noise
+        added = noisy @ noisy.T + kept[:, 2 * m :] @ law.driven @ kept[:, 2 * m :].T
+    doublings = _doublings(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
+    while (left := next(doublings)) is None:
+        yield None
+    steps = np.moveaxis(law.step, 2, 0)
+    alone = _pair_covariances(steps, steps, np.diag(law.driven))[:, 0, 0]
+    yield np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
 
 
 def _pair_covariances(first: Floats, second: Floats, driven: Floats) -> Floats:

@@ -51,6 +51,8 @@ class UnknownMotion:
         self._found_for = 0.0
         self._found: Disturbance | None = None
         self._law: SwayLaw | None = None
+        self.apart: SwayLaw | None = None
+        """The last law, had each limb gusts of its own; None before any."""
         self._variance: Floats | None = None
         self.air_damping = np.zeros(count)
         """Damping of each by the mean wind [1/s], (count,)."""
@@ -101,8 +103,9 @@ class UnknownMotion:
         self._found_with = (self.all_stiffness, self.all_damping)
         self.air_damping = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
-        self._law = sway_law(
-            self.stiffness, self.damped, found.covariance, TIME_CONSTANT, self._dt
+        self._law, self.apart = (
+            sway_law(self.stiffness, self.damped, each, TIME_CONSTANT, self._dt)
+            for each in (found.covariance, found.apart)
         )
         self._variance = None
         return self._law

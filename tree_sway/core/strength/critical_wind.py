@@ -3,9 +3,8 @@
 """
 The mean wind at which a tree reaches its strength, from the shares that it uses in some winds.
 
-The largest load of ten minutes follows from mean and deviation of a shorter record (Davenport
-1964, Proceedings of the Institution of Civil Engineers 28, 187). The share of strength is taken as
-a power of the wind speed between two winds, near which the tree reaches it.
+The share of strength is taken as a power of the wind speed between two winds, near which the tree
+reaches it.
 """
 
 from __future__ import annotations
@@ -17,34 +16,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-PERIOD = 600.0
-"""Time over which the mean wind and the largest load are taken [s]."""
-_EULER = 0.5772
 _LEAST_POWER = 0.8
 _LARGEST_POWER = 2.5
-
-
-def largest_expected(values: Floats, rate: float, seconds: float = PERIOD) -> float:
-    """
-    Return the largest value that is expected in a time, from a shorter record of a load.
-
-    Parameters
-    ----------
-    values
-        The load over time, (n,).
-    rate
-        Samples per second [Hz].
-    seconds
-        The time [s].
-
-    """
-    mean = float(values.mean())
-    deviation = float(values.std())
-    above = values > mean
-    crossings = int(np.count_nonzero(above[1:] & ~above[:-1]))
-    count = max(crossings / (len(values) / rate) * seconds, 2.0)
-    root = math.sqrt(2.0 * math.log(count))
-    return mean + (root + _EULER / root) * deviation
 
 
 @dataclass(frozen=True)

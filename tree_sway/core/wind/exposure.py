@@ -234,14 +234,18 @@ class Exposure:
         damping = CONTACT[self.kind] * species.damping_in_leaf
         return replace(species, damping_in_leaf=min(damping, 1.0))
 
-    def __str__(self) -> str:
-        """Return where the tree stands and where its mean wind is, for people."""
-        place = {
+    @property
+    def place(self) -> str:
+        """Where the tree stands, for people."""
+        return {
             'open': 'in the open',
             'edge': f'at the edge of a stand, trees {self.spacing:.2g} m apart',
             'stand': f'in a stand, trees {self.spacing:.2g} m apart',
         }[self.kind]
-        return f'{place}; mean wind {self.reference_height:.3g} m above the ground'
+
+    def __str__(self) -> str:
+        """Return where the tree stands and where its mean wind is, for people."""
+        return f'{self.place}; mean wind {self.reference_height:.3g} m above the ground'
 
 
 def exposure_of(
