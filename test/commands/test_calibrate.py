@@ -118,6 +118,20 @@ def test_the_wood_of_the_tree_is_kept_but_for_what_was_measured(
     assert np.array_equal(before.tree.end, after.tree.end)
 
 
+def test_roots_that_change_with_the_modulus_are_said(
+    tree: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rooted = tree.with_name('rooted.yaml')
+    rooted.write_text(TREE.replace('modulus: 7.0e+9', 'modulus: 7.0e+9, root_stiffness: 4000.0'))
+    frequency = info(rooted, capsys)['frequencies'][0]
+    fitted = tree.with_name('fitted.yaml')
+    words = ['calibrate', str(rooted), '--frequency', f'{1.05 * frequency}', '-o', str(fitted)]
+    assert cli.main(words) == 0
+    after = open_tree(str(fitted)).species.root_stiffness
+    assert f'roots      4e+03 -> {after:.3g} N m/rad' in capsys.readouterr().out
+    assert after > 4000.0
+
+
 def test_a_modulus_that_no_wood_has_is_said(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -68,7 +68,10 @@ def test_the_motion_follows_the_recording(
     common = ['simulate', 'goldcrest', '--wind', 'wind.csv']
     assert main([*common, '-o', 'alone.csv']) == 0
     assert main([*common, '--motion', 'motion.csv', '--at', at, '-o', 'twin.csv']) == 0
-    assert 'samples followed, 0 refused' in capsys.readouterr().err
+    notes = capsys.readouterr().err
+    assert 'motion.csv: read ax, ay, az, gx, gy, gz' in notes
+    assert 'as it and the wind have no dates, it is taken to begin with the wind' in notes
+    assert 'samples followed, 0 refused' in notes
     after = slice(30 * 60, 44 * 60)
     errors = []
     for name in ('alone', 'twin'):

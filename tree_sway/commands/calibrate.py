@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 import sys
 import time
@@ -177,11 +178,18 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'
     spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
     season = 'damping_in_leaf' if in_leaf else 'damping_bare'
+    roots = []
+    if math.isfinite(after.root_stiffness):
+        roots = [
+            f'  roots      {before.root_stiffness:.3g} -> {after.root_stiffness:.3g} N m/rad, '
+            'in proportion to the modulus'
+        ]
     return [
         f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
         f'  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, '
         f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
         f'{" (an estimate)" if table.is_estimate else ""}',
+        *roots,
         f'  damping    {getattr(before, season):.3g} -> {getattr(after, season):.3g} '
         f'{"in leaf" if in_leaf else "bare"}; '
         'a measured one includes that of the air, whose drag the solver adds',

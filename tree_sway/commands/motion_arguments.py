@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+import sys
 
 from tree_sway.core.checks import within
 from tree_sway.core.observe.sensor_place import place_on
@@ -12,6 +14,7 @@ from tree_sway.core.scene.simulate import PlacedMotion
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import inside, ParameterError
 from tree_sway.files.motion.motion_file import read_motion
+from tree_sway.files.motion.motion_record import MotionRecord
 
 
 def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,7 +57,7 @@ def placed_motion(
     arguments: argparse.Namespace, tree: Tree, epoch: float | None
 ) -> list[PlacedMotion]:
     """
-    Read the recordings of motion sensors.
+    Read the recordings of motion sensors, and print what their readers chose.
 
     Parameters
     ----------
@@ -72,6 +75,8 @@ def placed_motion(
         with inside('--at'):
             place_on(tree, at)
         record = read_motion(path)
+        for note in (*record.notes, *_clock_note(record, epoch, starts)):
+            print(f'note: {note}', file=sys.stderr)
         found.append(
             PlacedMotion(
                 f'sensor {number} at {at}',
@@ -83,3 +88,19 @@ def placed_motion(
             )
         )
     return found
+
+
+def _clock_note(record: MotionRecord, epoch: float | None, starts: float) -> tuple[str, ...]:
+    """Say when a record begins, if no dates tell it and the user did not."""
+    if starts or (epoch is not None and record.epoch is not None):
+        return ()
+    if epoch is not None:
+        which = 'it has'
+    elif record.epoch is not None:
+        which = 'the wind has'
+    else:
+        which = 'it and the wind have'
+    return (
+        f'{Path(record.source).name}: as {which} no dates, it is taken to begin with the wind; '
+        '--motion-starts shifts it',
+    )

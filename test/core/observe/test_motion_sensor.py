@@ -103,6 +103,14 @@ def test_orientations_are_rotations_in_the_frame_of_the_sensor() -> None:
     np.testing.assert_allclose(found[6:], [0.03, 0.0, -0.01], atol=1e-9)
 
 
+def test_the_reason_of_most_refusals_is_told() -> None:
+    phone = sensor()
+    assert not phone.offer(0.0, acceleration=(math.nan, 0.0, 9.8))
+    for k in range(2):
+        assert not phone.offer(0.01 * k, acceleration=(0.0, 0.0, 1000.0))
+    assert 'give m/s^2 or g' in phone.counts.why_refused
+
+
 def test_an_orientation_of_zeros_is_not_measured() -> None:
     phone = sensor()
     for k in range(5):

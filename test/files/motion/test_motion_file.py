@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+import re
 import struct
 
 import numpy as np
@@ -72,6 +73,89 @@ def test_a_table_without_time_or_motion_is_refused(tmp_path: Path, head: str) ->
     with pytest.raises(FormatError, match=r'no (time|motion) among') as caught:
         read_motion(written(tmp_path, f'{head}\n{row}\n'))
     assert caught.value.cure
+
+
+def rows(times: list[str]) -> str:
+    """Rows of a moving sensor at times of any form."""
+    return ''.join(f'{time},{k},0,9.8\n' for k, time in enumerate(times))
+
+
+@pytest.mark.parametrize(
+    ('head', 'cells'),
+    [
+        (  # x-io
+            'Time (s),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),'
+            'Accelerometer X (g),Accelerometer Y (g),Accelerometer Z (g)',
+            '90,0,0,0,0,1',
+        ),
+        (  # WitMotion
+            'Time(s),AsX(°/s),AsY(°/s),AsZ(°/s),AccX(g),AccY(g),AccZ(g),AngleX(°)',
+            '90,0,0,0,0,1,3',
+        ),
+        (  # Movella DOT
+            'Timestamp (us),Gyr_X (dps),Gyr_Y (dps),Gyr_Z (dps),Acc_X,Acc_Y,Acc_Z',
+            '90,0,0,0,0,9.80665',
+        ),
+    ],
+)
+def test_both_quantities_of_an_imu_are_read_and_named(
+    tmp_path: Path, head: str, cells: str
+) -> None:
+    record = read_motion(written(tmp_path, f'{head}\n0,{cells}\n1,{cells}\n'))
+    assert record.acceleration is not None
+    assert record.rate is not None
+    np.testing.assert_allclose(record.acceleration[0], [0.0, 0.0, 9.80665])
+    np.testing.assert_allclose(record.rate[0], [np.pi / 2.0, 0.0, 0.0])
+    assert record.notes[0].startswith('motion.csv: read ')
+
+
+def test_axes_without_a_name_are_known_by_their_unit(tmp_path: Path) -> None:
+    text = 'elapsed (s),x-axis (deg/s),y-axis (deg/s),z-axis (deg/s)\n0,180,0,0\n1,0,0,0\n'
+    record = read_motion(written(tmp_path, text))
+    assert record.acceleration is None
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[0], [np.pi, 0.0, 0.0])
+
+
+def test_dates_come_before_seconds_of_a_record(tmp_path: Path) -> None:
+    text = 'time,seconds_elapsed,qz,qy,qx,qw\n1777802400000000000,5,0,0,0,1\n'
+    record = read_motion(written(tmp_path, text + '1777802400500000000,5.5,0,0,0,1\n'))
+    assert record.epoch == 1777802400.0
+    np.testing.assert_allclose(record.time, [0.0, 0.5])
+
+
+def test_a_table_of_a_spreadsheet_is_read_in_its_encoding(tmp_path: Path) -> None:
+    path = tmp_path / 'motion.csv'
+    path.write_text('t_ms,ax,ay,az\n0,0,0,9.8\n20,0,0,9.8\n', encoding='utf-16')
+    np.testing.assert_allclose(read_motion(path).time, [0.0, 0.02])
+
+
+@pytest.mark.parametrize(
+    ('times', 'what', 'cure'),
+    [
+        (['5000', '5020', '5040'], 'a sample every 20 s', r'time \[ms\]'),
+        (['3', '2', '1'], 'time goes back in 2 of 3 rows', 'order of time'),
+        (['12:00:01'] * 50 + ['12:00:02'] * 50, '98 of 100 rows have the time', 'fractions'),
+        (['now', 'then'], "the first is 'now'", 'seconds or dates'),
+    ],
+)
+def test_times_that_are_not_those_of_samples_are_refused(
+    tmp_path: Path, times: list[str], what: str, cure: str
+) -> None:
+    with pytest.raises(FormatError, match=what) as caught:
+        read_motion(written(tmp_path, 'time,ax,ay,az\n' + rows(times)))
+    assert re.search(cure, caught.value.cure)
+
+
+def test_rows_that_are_written_twice_are_read(tmp_path: Path) -> None:
+    text = 'time,ax,ay,az\n0,0,0,9.8\n0,0,0,9.8\n0.1,1,0,9.8\n0.1,1,0,9.8\n'
+    assert len(read_motion(written(tmp_path, text)).time) == 4
+
+
+def test_rows_of_two_sensors_are_refused(tmp_path: Path) -> None:
+    text = 'time,DeviceName,ax,ay,az\n0,WT1,0,0,1\n0,WT2,1,0,0\ntime,DeviceName,ax,ay,az\n'
+    with pytest.raises(FormatError, match='rows of 2 sensors: WT1, WT2'):
+        read_motion(written(tmp_path, text))
 
 
 def imu_message(second: int, *, turned: bool) -> bytes:

@@ -78,6 +78,17 @@ class SensorCounts:
         """Number of refused samples."""
         return self.not_finite + self.too_large + self.saturated + self.out_of_order
 
+    @property
+    def why_refused(self) -> str:
+        """Why most refused samples were, and what to do."""
+        reasons = {
+            'some values are no numbers': self.not_finite,
+            'beyond any sensor: give m/s^2 or g, and rad/s or degrees per second': self.too_large,
+            'stuck at the limit of the sensor: give it a larger range': self.saturated,
+            'their times do not rise': self.out_of_order,
+        }
+        return max(reasons, key=lambda reason: reasons[reason])
+
 
 class MotionSensor:
     """

@@ -323,7 +323,7 @@ class SensorTrack:
             return f'{name}: {TELLS_LITTLE}' if self.tells_little else ''
         counts = self.sensor.counts
         if counts.accepted == 0 and counts.refused:
-            return f'{name}: all of {counts.refused} samples were refused: check what it sends'
+            return f'{name}: all of {counts.refused} samples were refused: {counts.why_refused}'
         if counts.accepted == 0:
             return f'{name}: no sample yet'
         if self.alignment is None:

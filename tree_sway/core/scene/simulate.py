@@ -268,7 +268,7 @@ def _other_times(motion: Sequence[PlacedMotion], seconds: float) -> Iterator[str
             last = float(each.time[-1])
             yield (
                 f'{each.name}: its samples are of {first:.6g} to {last:.6g} s, and the wind of 0 '
-                f'to {seconds:.6g} s: shift one of them'
+                f'to {seconds:.6g} s: shift one of them, as by --motion-starts'
             )
 
 

@@ -116,7 +116,7 @@ def _place(name: str) -> tuple[str, str] | None:
     whole, dot, axis = name.partition('.')
     if dot and whole in _WHOLES and axis in ('x', 'y', 'z', 'w'):
         return whole, axis
-    plain = name.strip().lower().replace('gyroscope', 'gyro')
+    plain = name.strip().lower()
     if folded(plain) in _TIMES or _is_time_with_unit(plain):
         return 'time', ''
     if len(plain) == 2 and plain[0] == 'q' and plain[1] in 'xyzw':
