@@ -242,6 +242,20 @@ def test_gusts_reach_its_limbs_one_after_another():
 
 
 @pytest.mark.compiled
+def test_each_segment_has_the_gust_that_reaches_its_limb():
+    """And not a load that is added to that of a uniform wind."""
+    tree = kind_called('whips')
+    tips = [
+        record_tips(
+            make_simulator(tree, WOOD, SETTINGS, model=model, crown_coherence=0.3), tree,
+            turbulent(9.0, 4.0, 3), FRAME,
+        )
+        for model in (60, 'full')
+    ]  # fmt: skip
+    assert tip_error(tree, *tips) < 0.03
+
+
+@pytest.mark.compiled
 @pytest.mark.parametrize('kind', ['birch', 'whips'])
 def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
     """The table steps it there, from rest in the linear load of light shapes."""
