@@ -36,7 +36,6 @@ class LimpFullBank(LimpStep, FullBank):
         self._n_parts = 1
         self._wanted = np.zeros(len(model.stiffness))
         self._first = model.branch_first[:-1]
-        self._branch = np.repeat(np.arange(len(branches)), np.diff(model.branch_first))
         self.leading = len(model.stiffness)
 
     def set_step(self, dt: float) -> None:
@@ -52,7 +51,7 @@ class LimpFullBank(LimpStep, FullBank):
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `FullBank.advance`."""
         gust = of_slots(self.loads['gust'], len(self.branches))
-        self.segments.gust[:] = gust[self._branch]
+        self.segments.gust[:] = gust[self.segments.branch]
         n_clamped = 0
         for _ in range(self._n_parts):
             outcome = self.step_once(wx, wy, wz, per_speed_squared)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.observe.estimate import Estimate
+from tree_sway.core.observe.estimate import carry, carry_in_numpy, Estimate
 from tree_sway.core.observe.steady_filter import steady_filter, SteadyFilter, sway_law
 
 M, P, LAG, DT = 4, 6, 3, 1.0 / 60.0
@@ -36,6 +36,23 @@ def test_compiled_and_in_numpy_it_is_the_same(gains: SteadyFilter) -> None:
         for name in ('state', 'calm', 'innovation', 'innovations', 'sizes'):
             np.testing.assert_allclose(getattr(one, name), getattr(other, name), atol=1e-11)
         np.testing.assert_allclose(one.past_change(), other.past_change(), atol=1e-11)
+
+
+@pytest.mark.parametrize('late', [0, 5])
+def test_the_calm_motion_is_carried_to_the_present_as_in_numpy(
+    gains: SteadyFilter, late: int
+) -> None:
+    rng = np.random.default_rng(14)
+    ahead, calm = gains.law.ahead(late), rng.normal(size=(3, M))
+    wanted, before = rng.random((2, M))
+    trust = before + 0.3 * (wanted - before)
+    by_matrix = np.linalg.matrix_power(gains.law.matrix, late) @ calm.ravel()
+    expected = trust * by_matrix.reshape(3, M)[:2]
+    for each in (carry, carry_in_numpy):
+        moved, found = np.zeros((2, M)), before.copy()
+        each(ahead, calm, wanted, 0.3, found, moved)
+        np.testing.assert_allclose(found, trust, atol=1e-12)
+        np.testing.assert_allclose(moved, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize('plain', [bool(WHY_PLAIN), True])

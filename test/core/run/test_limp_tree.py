@@ -99,8 +99,9 @@ def test_only_trees_whose_twigs_hang_or_whip_are_limp():
         assert ({'segment_mass', 'weight_slopes'} <= arrays.keys()) == is_limp
 
 
-def test_a_tree_without_inertia_takes_the_table_and_says_so():
-    model = limp_model()
+@pytest.mark.parametrize('chosen', [40, 'full'])
+def test_a_tree_without_inertia_takes_another_step_and_says_so(chosen):
+    model = prepare(weeping(), WOOD, SETTINGS, model=chosen)
     weightless = replace(model, segment_mass=0.0 * model.segment_mass)
     rig = Rig(weeping(), model=12)
     rig.simulator = SwaySimulator(weightless)
@@ -239,6 +240,20 @@ def test_gusts_reach_its_limbs_one_after_another():
         return tip_error(weeping(), apart, whole)
 
     assert effect(40) == pytest.approx(effect('full'), rel=0.2)
+
+
+@pytest.mark.compiled
+def test_each_segment_has_the_gust_that_reaches_its_limb():
+    """And not a load that is added to that of a uniform wind."""
+    tree = kind_called('whips')
+    tips = [
+        record_tips(
+            make_simulator(tree, WOOD, SETTINGS, model=model, crown_coherence=0.3), tree,
+            turbulent(9.0, 4.0, 3), FRAME,
+        )
+        for model in (60, 'full')
+    ]  # fmt: skip
+    assert tip_error(tree, *tips) < 0.03
 
 
 @pytest.mark.compiled

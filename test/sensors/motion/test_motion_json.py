@@ -10,6 +10,7 @@ import socket
 import time
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tree_sway.errors import ParameterError
@@ -116,6 +117,17 @@ def test_a_clock_that_drifts_is_followed() -> None:
     for k in range(2400):
         clock.note(0.1 * k * (1.0 + 1e-4), 0.1 * k)
     assert clock.local(240.0 * (1.0 + 1e-4)) == pytest.approx(240.0, abs=0.01)
+
+
+def test_samples_of_messages_that_come_late_keep_their_order() -> None:
+    clock, told = SenderClock(1.0), list[float]()
+    stamps = 0.01 * np.arange(1, 301)
+    for batch in np.split(stamps, 10):
+        arrival = max(batch[-1], 1.2)  # the network was held up at first
+        clock.note(batch[-1], arrival, batch[0])
+        told += map(clock.local, batch.tolist())
+    assert np.diff(told).min() > 0.0
+    assert told[-1] - told[0] < stamps[-1] - stamps[0]  # the delay is being taken off
 
 
 def test_samples_come_over_udp_and_only_of_one_sender(sense: Any) -> None:

@@ -56,12 +56,12 @@ class Disturbance:
     Unknown forces on the first coordinates of a model in a mean wind.
 
     ``covariance`` is of the modal forces, (m, m), ``gusts`` its part by unknown gusts, and
-    ``apart`` what it would be if each limb met gusts of its own; ``air_damping`` is the damping of
-    each coordinate by the mean wind in [1/s], (m,), and ``speed`` that wind in [m/s]; ``drag`` is
-    the force on each coordinate of the model against the rate of another in [1/s], (all, all). Of
-    each limb, the stem first, ``limb_slopes`` are the force on each coordinate per wind, (l, 3,
-    m), and ``reach`` how far it is from the middle of the crown over the farthest one, 0 for the
-    stem, (l,).
+    ``apart`` what it would be if each limb met gusts of its own that move each coordinate as much;
+    ``air_damping`` is the damping of each coordinate by the mean wind in [1/s], (m,), and
+    ``speed`` that wind in [m/s]; ``drag`` is the force on each coordinate of the model against the
+    rate of another in [1/s], (all, all). Of each limb, the stem first, ``limb_slopes`` are the
+    force on each coordinate per wind, (l, 3, m), and ``reach`` how far it is from the middle of
+    the crown over the farthest one, 0 for the stem, (l,).
     """
 
     covariance: Floats
@@ -100,7 +100,9 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * apart)
     gust = GUST * speed
     by_gusts = gust**2 * _forces_by(by_limb, _SHARED + shared)
-    own_gusts = gust**2 * _forces_by(by_limb, np.eye(n_limbs))
+    own_gusts = _forces_by(by_limb, np.eye(n_limbs))
+    scale = np.sqrt(np.diag(by_gusts) / np.maximum(np.diag(own_gusts), 1e-300))
+    own_gusts *= np.outer(scale, scale)
     of_whole = np.square(gust * by_limb.sum(axis=0)).sum(axis=0)
     covariance, apart = by_gusts.copy(), own_gusts
     for each in (covariance, apart):

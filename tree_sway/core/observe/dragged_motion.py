@@ -26,6 +26,7 @@ from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.oscillators.propagator import held_propagator
 
 if TYPE_CHECKING:
+    from tree_sway.core.observe.disturbance import Disturbance
     from tree_sway.core.observe.observer import Observer
 
 
@@ -51,7 +52,7 @@ class DraggedMotion:
         """Displacement and rate of each coordinate, (2, m)."""
         self._law = np.zeros((2, 3, m))
         self._drag = np.zeros((m, observer.count))
-        self._found_for: tuple[object, object] = (None, None)
+        self._found_for: tuple[Disturbance | None, Floats | None] = None, None
 
     def step(self, rates: Floats, n_periods: int) -> Floats:
         """
@@ -74,10 +75,10 @@ class DraggedMotion:
         forces = observer.forces
         if forces is None:
             return self.motion
-        present = (forces, observer.damping)
-        if any(now is not then for now, then in zip(present, self._found_for, strict=True)):
+        damping = observer.damping
+        if forces is not self._found_for[0] or damping is not self._found_for[1]:
             self._find_law(forces.drag)
-            self._found_for = present
+            self._found_for = forces, damping
         self._move(self._law, self._drag, observer.trust, rates, n_periods, self._state)
         return self.motion
 

@@ -150,6 +150,43 @@ def advance(
             calm[j, i] += PACE * (state[j, i] - calm[j, i])
 
 
+@kernel
+def carry(
+    ahead: Floats, calm: Floats, wanted: Floats, share: float, trust: Floats, moved: Floats
+) -> None:
+    """
+    Bring a calm motion to the present, as far as each coordinate of it is trusted.
+
+    Parameters
+    ----------
+    ahead
+        State of the present by that of the measurements, of each coordinate, (3, 3, m).
+    calm
+        The calm state, (3, m).
+    wanted, share
+        Trust of new gains, (m,), and the share of the way towards it.
+    trust
+        Share of the correction to apply, (m,), written.
+    moved
+        Displacement and rate of the correction, (2, m), written.
+
+    """
+    for i in range(len(trust)):
+        trust[i] += share * (wanted[i] - trust[i])
+        eta, rate, force = calm[0, i], calm[1, i], calm[2, i]
+        for j in range(2):
+            present = ahead[j, 0, i] * eta + ahead[j, 1, i] * rate + ahead[j, 2, i] * force
+            moved[j, i] = trust[i] * present
+
+
+def carry_in_numpy(
+    ahead: Floats, calm: Floats, wanted: Floats, share: float, trust: Floats, moved: Floats
+) -> None:
+    """Bring a calm motion to the present as `carry`."""
+    trust += share * (wanted - trust)
+    moved[:] = trust * (ahead[:2] * calm).sum(axis=1)
+
+
 def advance_in_numpy(
     step: Floats, sensed: Floats, gain: Floats, deviation: Floats, state: Floats, calm: Floats,
     innovation: Floats, innovations: Floats, sizes: Floats, beyond: Floats,

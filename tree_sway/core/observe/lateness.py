@@ -64,9 +64,10 @@ class Lateness:
         if self._is_settled:
             return
         self._is_settled = True
-        heard = [
-            lag for lag, came in zip(self._lags, self._came, strict=True) if time - came < _SILENT
-        ]
-        needed = min(math.ceil(max(heard, default=0.0) / self._dt - 0.01), self._most)
-        if needed > self.steps or (heard and needed < self.steps - _KEPT):
+        longest, is_heard = 0.0, False
+        for lag, came in zip(self._lags, self._came, strict=True):
+            if time - came < _SILENT:
+                longest, is_heard = max(longest, lag), True
+        needed = min(math.ceil(longest / self._dt - 0.01), self._most)
+        if needed > self.steps or (is_heard and needed < self.steps - _KEPT):
             self.steps = needed

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of
+from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.observe.correction_energy import find_energies
 from tree_sway.core.observe.disturbance import Disturbance
-from tree_sway.core.observe.estimate import Estimate
+from tree_sway.core.observe.estimate import carry, carry_in_numpy, Estimate
 from tree_sway.core.observe.gain_design import GainDesign, Gains, NOISE
 from tree_sway.core.observe.late_wind import LateWind
 from tree_sway.core.observe.later_work import Submit
@@ -103,13 +103,13 @@ class Observer:
         self._estimate: Estimate | None = None
         self.trust = np.zeros(n)
         """Share of the correction of each coordinate that is applied [-], (count,)."""
-        self._wanted_trust, self._less_trust = np.zeros((2, n))
+        self._wanted_trust = np.zeros(n)
         self.noise = np.zeros(0)
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._row_of = self._sensor_of = np.zeros(0, dtype=np.intp)
         self._values, self._is_known = np.zeros(0), np.zeros(0, dtype=np.bool_)
         self._ahead: dict[int, Floats] = {}
-        self._terms, self._moved = np.zeros((3, 3, n)), np.zeros((3, n))
+        self._moved = np.zeros((2, n))
         self.energies = np.zeros(2)
         """Energies of the corrected and of the uncorrected motion, as `find_energies` has them."""
 
@@ -226,9 +226,16 @@ class Observer:
             self._judge_refused(self._estimate)
             self._fit.advance(self._design.used)
             self._correct(self._estimate, n_periods)
-        self._moved *= self.trust
         self._find_energies(self.stiffness, swing[0], swing[1], self._moved, self.energies)
-        return self._moved[:2]
+        return self._moved
+
+    @cached_property
+    def _carry(self) -> Callable[..., None]:
+        if WHY_PLAIN:
+            return carry_in_numpy
+        n = self.count
+        ahead, calm = np.zeros((3, 3, n)), np.zeros((3, n))
+        return entry_of(carry, ahead, calm, self.trust, 0.0, self.trust, self._moved)
 
     @cached_property
     def _find_energies(self) -> Callable[..., None]:
@@ -252,23 +259,21 @@ class Observer:
 
     def _correct(self, estimate: Estimate, n_periods: int) -> None:
         """Correct the estimate by the measurements of the step that is late."""
-        at = self._step - self.late
+        at, share = self._step - self.late, 0.0
         if at > self._done:
             # More than one step where sensors have become less late.
             n_periods *= min(at - self._done, LATEST)
             self._measure(estimate, n_periods)
+            share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
             if self._smoothed is not None:
                 first = max(self._done + 1, at - LATEST)
                 self._smoothed.note_estimated(first, at, estimate.state[0])
                 self._smoothed.smooth(at, self.trust, estimate.past_change())
             self._done = at
-        if not self.late:
-            self._moved[:] = estimate.calm
-            return
         if self.late not in self._ahead:
             self._ahead[self.late] = estimate.gains.law.ahead(self.late)
-        np.multiply(self._ahead[self.late], estimate.calm, out=self._terms)
-        np.add.reduce(self._terms, axis=1, out=self._moved)
+        ahead = self._ahead[self.late]
+        self._carry(ahead, estimate.calm, self._wanted_trust, share, self.trust, self._moved)
 
     def _measure(self, estimate: Estimate, n_periods: int) -> None:
         """Move the estimate on, correct it by the readings, and judge their sensors."""
@@ -278,10 +283,6 @@ class Observer:
         readings.beyond.take(self._row_of, out=self._values, mode='clip')
         readings.is_known.take(self._sensor_of, out=self._is_known, mode='clip')
         estimate.advance(self._values, self._is_known, n_periods)
-        share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
-        np.subtract(self._wanted_trust, self.trust, out=self._less_trust)
-        self._less_trust *= share
-        self.trust += self._less_trust
         sizes, first = estimate.sizes.tolist(), 0
         for k in used:
             track = self.tracks[k]
@@ -338,4 +339,4 @@ class Observer:
     def _fade(self, estimate: Estimate, n_periods: int) -> None:
         estimate.move(n_periods)
         estimate.scale(math.exp(-n_periods * self._dt / _FADE))
-        self._moved[:] = estimate.calm
+        np.multiply(estimate.calm[:2], self.trust, out=self._moved)

@@ -9,12 +9,13 @@ had then.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import math
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.observe.late_wind import LateWind, LONGEST_WAY
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.later_work import LaterWork, Submit
@@ -79,11 +80,11 @@ class SensorReadings:
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self.lateness = Lateness(len(tracks), dt, LATEST)
         """Steps by which sensors are read late."""
+        self._compute: Callable[..., None] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
         self._forces = np.zeros((_KEPT, unknown.count))
         self.forces = self._forces[0]
         """Force of the wind on each coordinate at the step that was read, (n,)."""
-        self._swing = np.zeros(3 * len(unknown.all_stiffness))
         self.beyond = np.zeros((len(tracks), 9))
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
         self._beyond = list(self.beyond)
@@ -95,17 +96,22 @@ class SensorReadings:
         """Read stiffness and damping of the model again."""
         law = self._unknown.all_stiffness, self._unknown.all_damping
         rows = [sensed_rows(each, *law) for each in self._places]
-        self._rows = np.array(rows).reshape(-1, len(self._swing))
+        m = len(self._unknown.all_stiffness)
+        self._rows = np.array(rows).reshape(-1, 3 * m).T.reshape(3, m, -1).copy()
 
     def note(self, step: int, swing: tuple[Floats, ...]) -> None:
         """Note displacement, rate and force of each coordinate in the wind alone, (m,)."""
-        m, slot, n = len(swing[0]), step % _KEPT, self._unknown.count
-        state, forces = self._swing, self._forces[slot]
-        state[:m], state[m : 2 * m], state[2 * m :] = swing
-        np.dot(self._rows, state, out=self._sensed[slot].reshape(-1))
-        # The force of the wind on a tree that stands still.
-        np.multiply(self._unknown.air_damping, swing[1][:n], out=forces)
-        forces += swing[2][:n]
+        if self._compute is None:
+            self._compute = self._computing(swing)
+        damping, slot = self._unknown.air_damping, step % _KEPT
+        self._compute(self._rows, damping, *swing, slot, self._sensed, self._forces)
+
+    def _computing(self, swing: tuple[Floats, ...]) -> Callable[..., None]:
+        """Return `compute` for arrays as these."""
+        if WHY_PLAIN:
+            return compute_in_numpy
+        damping = self._unknown.air_damping
+        return entry_of(compute, self._rows, damping, *swing, 0, self._sensed, self._forces)
 
     def read(self, time: float, step: int, done: int) -> bool:
         """
@@ -143,8 +149,10 @@ class SensorReadings:
     def _find_mounting(self) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""
         if self._search is None:
-            due = next((track for track in self._tracks if track.is_due), None)
-            if due is None:
+            for due in self._tracks:
+                if due.is_due:
+                    break
+            else:
                 return
             search = due.search(self._lags_of(due))
             self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
@@ -170,3 +178,45 @@ class SensorReadings:
             least = max(round(_LEAST_LAG / self._dt), track.window)
         earliest = -math.floor(delay / self._dt)
         return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)
+
+
+@kernel
+def compute(
+    rows: Floats, air_damping: Floats, eta: Floats, rate: Floats, force: Floats, slot: int,
+    sensed: Floats, still: Floats,
+) -> None:  # fmt: skip
+    """
+    Compute what sensors would measure, and the force of the wind on a tree that stands still.
+
+    Parameters
+    ----------
+    rows
+        Rows of all sensors by displacement, rate and force of each coordinate, (3, m, r).
+    air_damping
+        Damping of the first coordinates by the air [1/s], (n,).
+    eta, rate, force
+        Displacement, rate and force of each coordinate, (m,).
+    slot
+        Number of the step among those that are kept.
+    sensed, still
+        Measurements, (s, k, r / k), and forces, (s, n), of the steps that are kept, written.
+
+    """
+    found = sensed[slot].reshape(rows.shape[2])
+    found[:] = 0.0
+    for j in range(rows.shape[1]):
+        for r in range(rows.shape[2]):
+            found[r] += rows[0, j, r] * eta[j] + rows[1, j, r] * rate[j] + rows[2, j, r] * force[j]
+    for i in range(len(air_damping)):
+        still[slot, i] = air_damping[i] * rate[i] + force[i]
+
+
+def compute_in_numpy(
+    rows: Floats, air_damping: Floats, eta: Floats, rate: Floats, force: Floats, slot: int,
+    sensed: Floats, still: Floats,
+) -> None:  # fmt: skip
+    """Compute what sensors would measure as `compute`."""
+    found = sum(each @ by for each, by in zip((eta, rate, force), rows, strict=True))
+    sensed[slot] = np.reshape(found, sensed.shape[1:])
+    n = len(air_damping)
+    still[slot] = air_damping * rate[:n] + force[:n]

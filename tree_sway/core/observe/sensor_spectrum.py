@@ -9,12 +9,15 @@ series at each step.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.observe.spectrum_change import WATCHED_BAND
 
 Waves = NDArray[np.complex128]
@@ -94,10 +97,7 @@ class SensorSpectrum:
 
     def add(self, motion: Floats, force: Floats, watched: Floats) -> None:
         """Add motions, (3,), and forces of the known wind, (count,), of a step."""
-        row = self._series[:, self._now, self._filled]
-        row[:2] = motion[:2]
-        row[2:-2] = force
-        row[-2:] = watched[:2]
+        self._keep(self._series, self._now, self._filled, motion, force, watched)
         self._filled += 1
         self.seconds += self._dt
         if self._next < len(self._series):
@@ -107,6 +107,13 @@ class SensorSpectrum:
             self._now, self._filled = (self._now + 1) % _HALVES, 0
             if self._n_halves > 1:
                 self._next = 0
+
+    @cached_property
+    def _keep(self) -> Callable[..., None]:
+        if WHY_PLAIN:
+            return keep_in_numpy
+        three, force = np.zeros(3), np.zeros(self._n_products - 2)
+        return entry_of(keep, self._series, 0, 0, three, force, three)
 
     @property
     def until_first(self) -> float:
@@ -162,3 +169,41 @@ class SensorSpectrum:
     def products(self) -> Waves:
         """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
         return self._products / max(self.count, 1)
+
+
+@kernel
+def keep(
+    series: Floats, half: int, step: int, motion: Floats, force: Floats, watched: Floats
+) -> None:
+    """
+    Keep what was measured at a step.
+
+    Parameters
+    ----------
+    series
+        East, north, forces, and the watched motion to east and north, of the steps of some halves
+        of a stretch, (n + 4, h, t), written.
+    half, step
+        Number of the half, and of the step in it.
+    motion, watched
+        Motions, (3,).
+    force
+        Force on each coordinate, (n,).
+
+    """
+    n = len(force)
+    for axis in range(2):
+        series[axis, half, step] = motion[axis]
+        series[2 + n + axis, half, step] = watched[axis]
+    for i in range(n):
+        series[2 + i, half, step] = force[i]
+
+
+def keep_in_numpy(
+    series: Floats, half: int, step: int, motion: Floats, force: Floats, watched: Floats
+) -> None:
+    """Keep what was measured at a step as `keep`."""
+    row = series[:, half, step]
+    row[:2] = motion[:2]
+    row[2:-2] = force
+    row[-2:] = watched[:2]

@@ -3,7 +3,8 @@
 """
 Gusts that reach the limbs of a tree one after another.
 
-Models that step branches give each limb its own wind. The table of `table_model` has uniform winds
+Models that step branches give each limb its own wind, and so does the step of a limp tree at its
+pose. The table of `table_model` has uniform winds
 only: it is read at the mean of the limbs' winds, weighted by their loads. Then the difference of
 load between the wind of each delay and the mean is added for the limbs of this delay. It is found
 on the tree at rest and reduced as the load on the bent tree is.
@@ -24,6 +25,7 @@ from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.records import Instances, Table, Tables, TimeSteps
 from tree_sway.core.model.spherical_harmonics import fill_harmonics
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.run.limp_tree import LimpBank
 from tree_sway.core.run.numpy_table import harmonics, Views, views_of
 from tree_sway.core.setup.numpy_branch_loads import into_slots
 from tree_sway.core.wind.crown_wind import CrownWind
@@ -63,6 +65,10 @@ class CrownGusts:
         if oscillators.loads is not None:
             into_slots(apart[self._delay], oscillators.loads['gust'])
             return int(oscillators.advance(x, y, z, per_speed_squared))
+        if isinstance(oscillators, LimpBank):
+            speed = math.sqrt(x * x + y * y + z * z)
+            if oscillators.takes_gusts(apart[self._delay], speed):
+                return int(oscillators.advance(x, y, z, per_speed_squared))
         mean = (self._share @ apart).tolist()
         in_mean = x + mean[0], y + mean[1], z + mean[2]
         outcome = int(oscillators.advance(*in_mean, per_speed_squared))

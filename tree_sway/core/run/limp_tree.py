@@ -334,6 +334,18 @@ class LimpBank(LimpStep, WindBasisBank):
         """Weight of the table's step in a wind [m/s], 0 to 1."""
         return 1.0 if self.instance['left_out'][0] else super().share_of_other(speed)
 
+    def takes_gusts(self, gusts: Floats, speed: float) -> bool:
+        """
+        Take the wind of each branch beside the mean wind [m/s], (b, 3), for the next step.
+
+        Returns False where a part of this step is by the table, which has uniform winds only.
+        """
+        is_by_table = self.instance['left_out'][0] or self._pause > 0.0 or speed > STRONG[0]
+        is_long = self._law is None or self._law.length > LONGEST_STEP
+        is_at_pose = not (is_by_table or is_long)
+        self.segments.gust[:] = gusts[self.segments.branch] if is_at_pose else 0.0
+        return is_at_pose
+
     def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Make the step of the table; returns 1 where it was clamped to its limit."""
         eta, rate, _ = self.swing

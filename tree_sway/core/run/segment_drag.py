@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.kernel import LOOP_OPTIONS, WHY_PLAIN
 from tree_sway.core.model.sway_model import SwayModel
 
@@ -29,6 +29,8 @@ class SegmentDrag(NamedTuple):
     """Wind speed at each over that at the anemometer, (n,)."""
     gust: Floats
     """Wind that reaches each beside that at the anemometer [m/s], (n, 3)."""
+    branch: Ints
+    """Number of the branch of each, (n,)."""
     root_mass: Floats
     """Square root of the mass of each [kg^0.5], (n,)."""
     tangent: Floats
@@ -63,6 +65,7 @@ def segment_drag(model: SwayModel, branches: Records, tangent: Floats) -> Segmen
         area=wood * clad[branch] + tree.length * leaves[branch],
         speed=branches['speed'][branch],
         gust=np.zeros((len(wood), 3)),
+        branch=branch,
         root_mass=np.sqrt(model.segment_mass),
         tangent=tangent,
         force=np.zeros(3 * len(wood)),

@@ -148,7 +148,7 @@ class LiveMotion(LiveSource):
         """Bring samples to the clock of this machine, and pass them on."""
         stamps = [each.time for each in readings if each.time is not None]
         self._sent = now
-        if stamps and not self._clock.note(max(stamps), now):
+        if stamps and not self._clock.note(max(stamps), now, min(stamps)):
             if self._clock.ticks is not None:
                 self._refuse('its clock jumped', len(readings))
             elif self._clock.problem:

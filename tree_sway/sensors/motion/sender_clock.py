@@ -50,24 +50,27 @@ class SenderClock:
         self._offset = self._low = self._low_before = math.inf
         self._window_ends = -math.inf
         self._jumped_at: float | None = None
-        self._arrival = -math.inf
+        self._newest = -math.inf
 
-    def note(self, stamp: float, arrival: float) -> bool:
+    def note(self, stamp: float, arrival: float, earliest: float | None = None) -> bool:
         """
         Note the newest stamp of a message and its arrival in [s]; whether `local` is known.
 
-        It is not while the unit is being found, and after a jump until it has lasted.
+        A message of several samples has an earliest stamp, too. `local` is not known while the
+        unit is being found, and after a jump until it has lasted.
         """
         if self.ticks is None and not self._find_ticks(stamp, arrival):
             return False
         assert self.ticks is not None
         difference = arrival - stamp / self.ticks
         if math.isinf(self._offset):
-            self._begin(difference, arrival)
+            self._begin(difference, arrival, stamp)
         elif abs(difference - self._offset) > _JUMP:
-            return self._is_set_anew(difference, arrival)
+            return self._is_set_anew(difference, arrival, stamp)
         self._jumped_at = None
-        self._follow(difference, arrival)
+        first = stamp if earliest is None else earliest
+        self._follow(difference, arrival, (first - self._newest) / self.ticks)
+        self._newest = max(self._newest, stamp)
         return True
 
     def local(self, stamp: float) -> float:
@@ -96,28 +99,28 @@ class SenderClock:
         self.problem = ''
         return True
 
-    def _begin(self, difference: float, arrival: float) -> None:
+    def _begin(self, difference: float, arrival: float, stamp: float) -> None:
         self._offset = self._low = self._low_before = difference
         self._window_ends = arrival + _WINDOW
-        self._arrival = arrival
+        self._newest = stamp
 
-    def _is_set_anew(self, difference: float, arrival: float) -> bool:
+    def _is_set_anew(self, difference: float, arrival: float, stamp: float) -> bool:
         if self._jumped_at is None:
             self._jumped_at = arrival
         if arrival - self._jumped_at < _PATIENCE:
             return False
         self.jumps += 1
         self._jumped_at = None
-        self._begin(difference, arrival)
+        self._begin(difference, arrival, stamp)
         return True
 
-    def _follow(self, difference: float, arrival: float) -> None:
+    def _follow(self, difference: float, arrival: float, passed: float) -> None:
+        """Follow the smallest difference, slower than the time that passed between samples."""
         if arrival > self._window_ends:
             self._low_before = self._low
             self._low = difference
             self._window_ends = arrival + _WINDOW
         self._low = min(self._low, difference)
         wanted = min(self._low, self._low_before) - self._offset
-        most = _SLEW * max(arrival - self._arrival, 0.0)
+        most = _SLEW * max(passed, 0.0)
         self._offset += min(max(wanted, -most), most)
-        self._arrival = arrival

@@ -58,6 +58,24 @@ def test_loose_branches_are_set_on_the_nearest_cylinder():
     )
 
 
+def test_positions_with_too_few_digits_for_their_place_are_named():
+    rng = np.random.default_rng(0)
+    places = np.array([531_000.0, 5_340_000.0, 300.0]) + rng.uniform(0.0, 0.3, (20, 3))
+    places[:, 2] += np.arange(20.0)
+
+    def faults(nodes):
+        pairs = zip(nodes[:-1].tolist(), nodes[1:].tolist(), strict=True)
+        return built([(*pair, 0.2, row - 1) for row, pair in enumerate(pairs)]).faults
+
+    assert faults(places) == ()
+    assert faults(places - places[0]) == ()
+    rounded = places.copy()
+    rounded[:, 1] = 5_340_000.0 + np.arange(20.0) % 2.0
+    assert faults(rounded)[0].startswith('its positions come in steps of 1 m, as its numbers')
+    single = places.astype(np.float32)
+    assert 'in steps of 0.' in faults(single.astype(np.float64))[0]
+
+
 def test_two_trees_are_not_one():
     other = [((9, 0, 0), (9, 0, 1), 0.15, -1)]
     with pytest.raises(TreeError, match='cylinder 2: 2 roots: a forest of trees'):

@@ -20,6 +20,7 @@ from tree_sway.core.tree.parents_first import checked_order
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.assembly import built_tree
+from tree_sway.files.trees.cylinders.coarse_positions import coarse_positions
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.joining import branch_keys, join_loose_branches
 from tree_sway.files.trees.cylinders.zero_length import without_zero_length
@@ -40,6 +41,7 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
         raise FormatError('no cylinders', where=source)
     numbers = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
     check_numbers(numbers, cylinders.labels)
+    faults = coarse_positions(cylinders.start)
     order = checked_order(cylinders.parent, cylinders.labels)
     if (joined := join_loose_branches(cylinders, order)) is not None:
         cylinders = replace(cylinders, parent=joined.parent)
@@ -57,4 +59,4 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
         branch=branch_keys(cylinders), labels=cylinders.labels, name=cylinders.name or path.stem,
         species=species.key,
     )  # fmt: skip
-    return TreeFile(tree, species, source, tuple(notes))
+    return TreeFile(tree, species, source, tuple(notes), faults)
