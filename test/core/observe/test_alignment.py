@@ -13,8 +13,8 @@ from tree_sway.core.observe.alignment import align, GRAVITY, TELLS_LITTLE, turn_
 N = 3000
 
 
-def motions(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the motion of a model at a place, with gravity felt and without, (n, 9)."""
+def motions(seed: int, height: float = 4.0) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion of a model at a height, with gravity felt and without, (n, 9)."""
     rng = np.random.default_rng(seed)
     time = np.arange(N) / 60.0
     phases = rng.uniform(0.0, 6.0, size=(4, 2))
@@ -23,7 +23,7 @@ def motions(seed: int) -> tuple[np.ndarray, np.ndarray]:
     with_gravity = np.zeros((N, 9))
     rate = np.gradient(tilt, 1.0 / 60.0, axis=0)
     with_gravity[:, 3:5] = rate
-    moved = 4.0 * np.gradient(rate, 1.0 / 60.0, axis=0)
+    moved = height * np.gradient(rate, 1.0 / 60.0, axis=0)
     without = with_gravity.copy()
     without[:, 0], without[:, 1] = moved[:, 1], -moved[:, 0]
     with_gravity[:, :3] = without[:, :3]
@@ -33,9 +33,11 @@ def motions(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return with_gravity, without
 
 
-def sensed(mount: Rotation, *, gravity: bool = True, noise: float = 0.02) -> np.ndarray:
+def sensed(
+    mount: Rotation, *, gravity: bool = True, noise: float = 0.02, height: float = 4.0
+) -> np.ndarray:
     """Return what a sensor measures there, whose frame is turned to the tree's by a mount."""
-    with_gravity, without = motions(1)
+    with_gravity, without = motions(1, height)
     values = (with_gravity if gravity else without).copy()
     values[:, 2] += GRAVITY if gravity else 0.0
     rng = np.random.default_rng(2)
@@ -162,6 +164,18 @@ def test_an_acceleration_of_the_opposite_sign_is_recognised(
     assert np.degrees(error.magnitude()) < 1.5
     wanted = motions(1)[0 if gravity else 1]
     np.testing.assert_allclose(found.motion(values)[:, :2], wanted[:, :2], atol=0.3)
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_an_acceleration_that_lost_its_mean_still_feels_tilts(mount: Rotation) -> None:
+    values = sensed(mount, height=0.3)
+    values[:, :3] -= values[:, :3].mean(axis=0)
+    found = align(values, *motions(1, 0.3))
+    assert not found.problem
+    assert found.has_gravity
+    assert 'acceleration without its mean, but with the gravity of tilts' in found.notes
+    error = Rotation.from_matrix(found.turn) * mount.inv()
+    assert np.degrees(error.magnitude()) < 1.5
 
 
 def test_the_smallest_turn_leads_from_one_direction_to_the_other() -> None:

@@ -99,8 +99,9 @@ def test_only_trees_whose_twigs_hang_or_whip_are_limp():
         assert ({'segment_mass', 'weight_slopes'} <= arrays.keys()) == is_limp
 
 
-def test_a_tree_without_inertia_takes_the_table_and_says_so():
-    model = limp_model()
+@pytest.mark.parametrize('chosen', [40, 'full'])
+def test_a_tree_without_inertia_takes_another_step_and_says_so(chosen):
+    model = prepare(weeping(), WOOD, SETTINGS, model=chosen)
     weightless = replace(model, segment_mass=0.0 * model.segment_mass)
     rig = Rig(weeping(), model=12)
     rig.simulator = SwaySimulator(weightless)

@@ -37,8 +37,11 @@ LEAST_NOISE = np.array([0.03, 0.004, 0.002])
 _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
+_WITHOUT = 'acceleration without gravity'
 _OPPOSITE = 0.2
 """Likeness by which the opposite sign of an acceleration must be better."""
+_TILTED = 0.1
+"""Likeness by which tilted gravity must be better than none in a signal without its mean."""
 _UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
 """From north, east, down, or another frame whose third axis is down, to one with it up."""
 _PER_DEGREE = math.pi / 180.0
@@ -140,6 +143,16 @@ def align(
         if opposite.likeness > found.likeness + _OPPOSITE:
             notes.append('acceleration of the opposite sign')
             found = opposite
+    if measures[0] and not has_gravity:
+        felt = averaged(with_gravity, window)
+        tilted = _mounted(sensed, felt, measures, found.scale, reference, has_gravity=False)
+        if tilted.likeness > found.likeness + _TILTED:
+            notes.remove(_WITHOUT)
+            notes.append('acceleration without its mean, but with the gravity of tilts')
+            # A sample is compared with its mean, so that it does not matter that gravity is off.
+            found = replace(tilted, has_gravity=True)
+            has_gravity = True
+            model = felt
     scale = found.scale
     turn = found.turn
     moved = found.motion(sensed)
@@ -215,7 +228,7 @@ def _gravity_of(acceleration: Floats, notes: list[str]) -> tuple[float, bool, st
         notes.append('acceleration in g')
         return GRAVITY, True, ''
     if steady < _NO_GRAVITY:
-        notes.append('acceleration without gravity')
+        notes.append(_WITHOUT)
         return 1.0, False, ''
     return (
         1.0,

@@ -33,7 +33,7 @@ LOADED = (
 """Fields of a branch's record that are arrays of the model."""
 
 _NO_INERTIA = (
-    'twigs hang or whip, but the segments have no inertia to solve with at their pose: the table '
+    'twigs hang or whip, but the segments have no inertia to solve with at their pose: the law '
     'of a stiffer tree moves them; check diameters and lengths'
 )
 
@@ -54,8 +54,9 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
         try:
             oscillators.begin(model, bank)
         except np.linalg.LinAlgError:
-            on_table = _on_table(model, branches, plain, is_limp=False)
-            return replace(bank, oscillators=on_table, doubt=_NO_INERTIA)
+            stiffer = replace(model, segment_mass=np.zeros(0))
+            others = _oscillators(stiffer, branches, plain)
+            return replace(bank, oscillators=others, doubt=_NO_INERTIA)
     return bank
 
 
@@ -73,7 +74,7 @@ def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillator
         from tree_sway.core.run.rigid import RigidBank
 
         return RigidBank(branches, model)
-    return _on_table(model, branches, plain, is_limp=model.is_limp)
+    return _on_table(model, branches, plain)
 
 
 def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
@@ -89,13 +90,13 @@ def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     return kind(branches, *(array.copy() for array in given))
 
 
-def _on_table(model: SwayModel, branches: Records, plain: bool, *, is_limp: bool) -> Oscillators:
+def _on_table(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     """Make the coordinates that a table loads."""
     from tree_sway.core.model.table_record import table_record
     from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
     coordinates = ModalCoordinates(branches, model)
-    if is_limp:
+    if model.is_limp:
         from tree_sway.core.run.limp_tree import LimpBank, NumpyLimpBank
 
         return (NumpyLimpBank if plain else LimpBank)(coordinates, table_record(model))
