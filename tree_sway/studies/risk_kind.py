@@ -28,6 +28,8 @@ from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.imported_tree import TreeFile
 
 _MODEL = 20
+_RATE = 20.0
+"""Steps per second [Hz]; longer than those in which hanging twigs are solved, which take much."""
 _FIRST = 15.0
 _SLOWEST = 4.0
 _FASTEST = 40.0
@@ -142,6 +144,7 @@ def _shares(rig: Rig, exposure: Exposure, speed: float, seed: int) -> tuple[floa
     (used,) = rig.strength_curve(
         [speed],
         rng=np.random.default_rng(seed),
+        rate=_RATE,
         height=exposure.turbulence_height,
         intensity=None if exposure.kind == 'open' else exposure.intensity,
     )

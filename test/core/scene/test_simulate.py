@@ -74,6 +74,8 @@ def test_the_record_as_columns(fork):
     assert read == pytest.approx(rows, rel=1e-8, abs=1e-12)
     assert (rows[:, 7:10] == record.tips[:, 0]).all()
     assert len(repr(record)) < 120
+    assert 'mean wind 3 m/s, tip of' in repr(record)
+    assert repr(simulate(fork(), STEADY[:5], branches=[], model=12)).endswith('mean wind 3 m/s')
 
 
 def test_a_data_frame_has_its_columns(fork, monkeypatch):

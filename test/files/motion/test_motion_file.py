@@ -158,9 +158,8 @@ def test_rows_of_two_sensors_are_refused(tmp_path: Path) -> None:
         read_motion(written(tmp_path, text))
 
 
-def imu_message(second: int, *, turned: bool) -> bytes:
+def imu_message(second: int, *, turned: bool = False, frame: bytes = b'imu\0') -> bytes:
     """Serialise a sensor_msgs/Imu in CDR, as the standard lays it out."""
-    frame = b'imu\0'
     head = b'\0\1\0\0' + struct.pack('<iII', second, 500_000_000, len(frame)) + frame
     none = [-1.0, *[0.0] * 8]
     known = [0.01, *[0.0] * 8]
@@ -186,6 +185,33 @@ def test_a_bag_with_imu_is_read(tmp_path: Path, turned: bool) -> None:
     np.testing.assert_allclose(record.time, np.arange(3))
     assert record.epoch == 1_700_000_000.5
     assert (record.orientation is not None) is turned
+
+
+def bag_of(path: Path, topics: list[str], frames: list[bytes]) -> Path:
+    """Write a bag with a message of each frame on each topic."""
+    writer = pytest.importorskip('rosbags.rosbag2')
+    stores = pytest.importorskip('rosbags.typesys')
+    store = stores.get_typestore(stores.Stores.ROS2_JAZZY)
+    with writer.Writer(path, version=9) as bag:
+        for name in topics:
+            topic = bag.add_connection(name, 'sensor_msgs/msg/Imu', typestore=store)
+            for k, frame in enumerate(frames):
+                bag.write(topic, 10**9 * k + 7, imu_message(1_700_000_000 + k, frame=frame))
+    return path
+
+
+def test_one_of_several_topics_of_a_bag_is_named_behind_it(tmp_path: Path) -> None:
+    path = bag_of(tmp_path / 'bag', ['/limb/imu', '/tree/imu'], [b'imu\0'] * 2)
+    with pytest.raises(FormatError, match='on 2 topics') as caught:
+        read_motion(str(path))
+    assert 'as bag?topic=/limb/imu' in caught.value.cure
+    assert read_motion(f'{path}?topic=/tree/imu').notes[0].startswith('topic /tree/imu')
+
+
+def test_a_topic_of_two_sensors_is_refused(tmp_path: Path) -> None:
+    path = bag_of(tmp_path / 'bag', ['/imu'], [b'top\0', b'low\0'])
+    with pytest.raises(FormatError, match='messages of 2 frames: low, top'):
+        read_motion(path)
 
 
 def test_a_bag_without_imu_is_refused(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def test_what_is_no_number_is_kept_for_the_sensor_to_refuse() -> None:
     ('document', 'cause'),
     [
         ({'ax': 1.0, 'ay': 2.0}, 'acceleration without all of its axes'),
-        ({'t': 'soon', 'acc': [0, 0, 9.8]}, 'its time is no number'),
+        ({'t': 'soon', 'acc': [0, 0, 9.8]}, 'its time is neither a number nor a date'),
         ([{'acc': [0, 0, 9.8]}] * 501, 'more than 500 samples'),
     ],
 )
@@ -128,6 +128,27 @@ def test_samples_of_messages_that_come_late_keep_their_order() -> None:
         told += map(clock.local, batch.tolist())
     assert np.diff(told).min() > 0.0
     assert told[-1] - told[0] < stamps[-1] - stamps[0]  # the delay is being taken off
+
+
+def test_a_time_may_be_a_date() -> None:
+    sample = {'timestamp': '2026-05-03T12:00:00.250+02:00', 'acc': [0, 0, 9.8]}
+    (reading,) = read_motion_json(Message(json.dumps(sample).encode()))
+    assert isinstance(reading, MotionReading)
+    assert reading.time == 1777802400.25
+
+
+def test_quantities_in_messages_of_their_own_are_told(sense: Any) -> None:
+    with socket.create_server(('127.0.0.1', 0)) as probe:
+        port = probe.getsockname()[1]
+    sensed = sense(f'udp:{port}')
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+
+        def send() -> None:
+            for sample in ({'acc': [0, 0, 9.8]}, {'gyro': [0, 0, 0.1]}):
+                sender.sendto(json.dumps(sample).encode(), ('127.0.0.1', port))
+
+        sensed.until(lambda: len(sensed.samples) > 5 and len(sensed.live.refused) > 0, send)
+    assert list(sensed.live.refused) == ['angular rate alone: send all of a sample in one message']
 
 
 def test_samples_come_over_udp_and_only_of_one_sender(sense: Any) -> None:

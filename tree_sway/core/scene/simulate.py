@@ -37,8 +37,6 @@ from tree_sway.errors import ParameterError
 
 MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
-_STRENGTH_RATE = 30.0
-"""Steps per second for the largest loads of a tree [Hz]."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
 
@@ -227,7 +225,7 @@ class Rig:
 
     def strength_curve(
         self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 600.0,
-        height: float = 10.0, intensity: float | None = None,
+        rate: float = 30.0, height: float = 10.0, intensity: float | None = None,
     ) -> list[StrengthUse]:  # fmt: skip
         """
         Find the shares of strength used in the largest gust of each of some mean speeds.
@@ -245,6 +243,8 @@ class Rig:
         seconds
             Length of each wind in [s]; ten minutes, the time of a mean wind (WMO guide no. 8), if
             left out.
+        rate
+            Steps per second [Hz].
         height, intensity
             Height and intensity of the turbulence, as in `Turbulence`.
 
@@ -252,10 +252,10 @@ class Rig:
         used = []
         for speed in np.asarray(speeds, dtype=np.float64).tolist():
             wind = simulate_turbulence(
-                speed, rate=_STRENGTH_RATE, duration=seconds, rng=deepcopy(rng), height=height,
+                speed, rate=rate, duration=seconds, rng=deepcopy(rng), height=height,
                 intensity=intensity,
             )  # fmt: skip
-            record = self.run(wind, rate=_STRENGTH_RATE, branches=())
+            record = self.run(wind, rate=rate, branches=())
             used.append(record.strength)
         return used
 
@@ -285,6 +285,8 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
                 f'{track.sensor.name}: {counts.accepted} samples followed, {counts.refused} '
                 f'refused{"; " + noted if noted else ""}'
             )
+    if simulator.late_wind.note:
+        found.append(simulator.late_wind.note)
     if (fit := simulator.observer.fit) is not None:
         found.append(
             f'the tree is {fit.stiffness:.3g} times as stiff as the model, within '

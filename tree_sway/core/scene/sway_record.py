@@ -105,9 +105,13 @@ class SwayRecord:
         return '\n'.join([head, *(','.join(f'{x:.9g}' for x in row) for row in rows), ''])
 
     def __repr__(self) -> str:
-        """Name tree, model, length and the largest motion of the first tip on one line."""
-        largest = float(np.linalg.norm(self.tips[:, 0], axis=1).max())
-        return (
+        """Name tree, model, length, wind and the largest motion of the first tip on one line."""
+        speed = float(np.linalg.norm(self.wind, axis=1).mean())
+        said = (
             f'SwayRecord of {self.tree}, model {self.model}: {len(self.time)} steps, '
-            f'{self.time[-1]:.4g} s, tip of {self.branch_names[0]} up to {largest:.3g} m'
+            f'{self.time[-1]:.4g} s, mean wind {speed:.3g} m/s'
         )
+        if not self.branch_names:
+            return said
+        largest = float(np.linalg.norm(self.tips[:, 0], axis=1).max())
+        return f'{said}, tip of {self.branch_names[0]} up to {largest:.3g} m'

@@ -43,19 +43,27 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     topics = sorted(name for name, kind in bag.types.items() if kind == IMU)
     chosen = [each for each in topics if topic is None or each.lstrip('/') == topic.lstrip('/')]
     if len(chosen) != 1:
-        cure = f'choose a topic: {", ".join(topics)}' if topics else f'record a topic of {IMU}'
+        cure = f'record a topic of {IMU}'
+        if topics:
+            cure = f'choose one of {", ".join(topics)}, as {path.name}?topic={topics[0]}'
         what = f"no topic '{topic}'" if topic else f'{IMU} on {len(topics)} topics'
         raise FormatError(what, where=str(path), cure=cure)
     rows = []
+    frames = set[str]()
     for recorded, data in bag.messages[chosen[0]]:
         try:
-            rows.append(_sample(data, recorded))
+            stamp, frame, numbers = _sample(data, recorded)
+            rows.append((stamp, numbers))
+            frames.add(frame)
         except struct.error:
             rows.append((recorded, np.full(_NUMBERS, np.nan)))
     if not rows:
         what = f'no message on {chosen[0]}'
         cure = 'record while the sensor publishes'
         raise FormatError(what, where=str(path), cure=cure)
+    if len(frames) > 1:
+        what = f'{chosen[0]} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}'
+        raise FormatError(what, where=str(path), cure='record each sensor on a topic of its own')
     epoch = rows[0][0] * 1e-9
     time = np.array([(each - rows[0][0]) * 1e-9 for each, _ in rows])
     values = np.stack([each for _, each in rows])
@@ -67,11 +75,16 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     return MotionRecord(time, parts[0], parts[1], parts[2], str(path), epoch, notes)
 
 
-def _sample(data: bytes, recorded: int) -> tuple[int, Floats]:
-    """Stamp in [ns], that of recording where it is zero, and the numbers of a message of CDR."""
+def _sample(data: bytes, recorded: int) -> tuple[int, str, Floats]:
+    """
+    Read a message of CDR.
+
+    The stamp in [ns] is that of recording where it is zero; the frame and the numbers follow.
+    """
     order = '<' if data[1:2] == b'\1' else '>'
     second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
     at = -(-(12 + size) // 8) * 8
     numbers = struct.unpack_from(f'{order}{_NUMBERS}d', data, _BODY + at)
     stamp = second * 1_000_000_000 + nanosecond
-    return stamp or recorded, np.array(numbers)
+    frame = data[_BODY + 12 : _BODY + 12 + size].rstrip(b'\0').decode('utf-8', 'replace')
+    return stamp or recorded, frame, np.array(numbers)

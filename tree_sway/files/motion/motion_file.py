@@ -21,7 +21,8 @@ def read_motion(path: str | Path, topic: str | None = None) -> MotionRecord:
     Parameters
     ----------
     path
-        Table, or the folder or file of a bag with ``sensor_msgs/Imu``.
+        Table, or the folder or file of a bag with ``sensor_msgs/Imu``. One topic of several may be
+        named behind it: ``bag?topic=/tree/imu``.
     topic
         Topic of a bag; None if there is one.
 
@@ -31,6 +32,9 @@ def read_motion(path: str | Path, topic: str | None = None) -> MotionRecord:
         A file without time or motion.
 
     """
+    if topic is None and isinstance(path, str):
+        path, _, behind = path.partition('?topic=')
+        topic = behind or None
     file = path_of(path)
     if file.is_dir() or file.suffix in _BAGS:
         return read_imu_bag(file, topic)

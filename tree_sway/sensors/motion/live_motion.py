@@ -11,7 +11,7 @@ compared again (`SenderClock`).
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 import math
 import time
 from typing import NamedTuple
@@ -155,6 +155,9 @@ class LiveMotion(LiveSource):
                 self._refuse('its clock is of an unknown unit', len(readings))
             return
         for each in readings:
+            if not set(self.quantities) <= set(each.quantities):
+                self._leave_out(each.quantities)
+                continue
             at = now if each.time is None else self._clock.local(each.time)
             sample = MotionSample(at, each.acceleration, each.rate, each.orientation)
             self.accepted += 1
@@ -166,6 +169,14 @@ class LiveMotion(LiveSource):
             self._samples.append(sample)
             if self._heard is not None:
                 self._heard(sample)
+
+    def _leave_out(self, quantities: Sequence[str]) -> None:
+        """Refuse a sample without a quantity that the first one had."""
+        measured = ' and '.join(_WORDS[name] for name in quantities)
+        cause = f'{measured} alone: send all of a sample in one message'
+        if cause not in self.refused:
+            self._log(f'{self.name}: refused {cause}')
+        self._refuse(cause)
 
 
 _WORDS = {

@@ -17,7 +17,10 @@ from functools import lru_cache
 import math
 from typing import Any
 
+import numpy as np
+
 from tree_sway.files.column_names import COLUMNS, folded, MOTIONS
+from tree_sway.files.time_stamps import dates
 from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
 from tree_sway.sensors.readers.json_path import parse_json
 from tree_sway.sensors.readers.values import number
@@ -63,7 +66,7 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
         place = _place(name)
         if place == ('time', ''):
             has_time = True
-            time = number(value)
+            time = _time(value)
         elif place is not None:
             known = number(value)
             parts[place[0]][place[1]] = math.nan if known is None else known
@@ -73,8 +76,17 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
         named = [name for name, axes in parts.items() if axes]
         return Refusal(_KIND, f'{named[0]} without all of its axes') if named else None
     if has_time and time is None:
-        return Refusal(_KIND, 'its time is no number')
+        return Refusal(_KIND, 'its time is neither a number nor a date')
     return MotionReading(time, acceleration, rate, orientation)
+
+
+def _time(value: Any) -> float | None:
+    """Return a number of any unit, or the seconds of a date since 1970."""
+    found = number(value)
+    if found is None and isinstance(value, str):
+        times = dates([value[:_LONGEST]])
+        found = times.epoch if np.isfinite(times.seconds).all() else None
+    return found
 
 
 def _axes(found: Mapping[str, float], names: str) -> Numbers | None:
