@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 import re
 
@@ -84,6 +85,19 @@ def test_a_pole_that_has_less_than_the_published_moment_is_not_called_sheltered(
     assert main(['info', str(pole), '--speed', '10', '--leaves', 'off']) == 0
     said = capsys.readouterr().out
     assert 'outside that band: one of the two is wrong for this tree' in said
+
+
+@pytest.mark.parametrize('anemometer', [10.0, 20.0, 40.0])
+def test_the_published_moment_is_of_the_wind_at_the_top(tmp_path, capsys, anemometer):
+    """Hale et al. (2012): 111.7 d^2 h U^2."""
+    pole = tmp_path / 'pole.yaml'
+    stem = '{name: stem, nodes: [[0, 0, 0, 0.3], [0, 0, 20, 0.3]]}'
+    pole.write_text(f'name: pole\nspecies: spruce\nbranches:\n  - {stem}\n')
+    words = ['info', str(pole), '--speed', '10', '--anemometer-height', str(anemometer), '--json']
+    assert main(words) == 0
+    at_top = 10.0 * math.log(20.0 / 0.03) / math.log(anemometer / 0.03)
+    published = json.loads(capsys.readouterr().out)['published_moment']
+    assert published == pytest.approx(111.7 * 0.3**2 * 20.0 * at_top**2)
 
 
 def figures(capsys, *command):

@@ -80,6 +80,17 @@ def test_the_motion_follows_the_recording(
     assert errors[1] < 0.5 * errors[0]
 
 
+def test_a_clock_that_is_late_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recorded(tmp_path)
+    at = f'{builtin_tree("goldcrest").branch_names[0]}:0.6'
+    line = ['simulate', 'goldcrest', '--wind', 'wind.csv', '--motion', 'motion.csv', '--at', at]
+    assert main([*line, '--motion-starts', '3', '-o', 'twin.csv']) == 0
+    assert 'the tree moves 3.0 s after the wind: ' in capsys.readouterr().err
+
+
 def test_a_tree_with_what_was_learned_opens_like_any_tree(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

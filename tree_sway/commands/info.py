@@ -156,7 +156,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             f'{exposure}, of {arguments.speed:g} m/s: {used}; in brackets, where 80 % of such '
             'trees are; rot and wet soil are not included'
         )
-        published = _published_moment(placed, species, arguments.speed)
+        at_top = float(exposure.profile().over_anemometer(np.array(exposure.height)))
+        published = _published_moment(placed, species, at_top * arguments.speed)
         if published is not None:
             notes.append(_moment_note(used, published, exposure.kind))
     frequencies = [mode['frequency'] for mode in modes]

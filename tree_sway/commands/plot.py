@@ -163,7 +163,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         source = Path(arguments.wind).name
         seconds = min(seconds, wind.length)
     else:
-        source = f'simulated westerly, mean {simulated_speed(arguments):g} m/s'
+        source = f'simulated westerly, mean of ten minutes {simulated_speed(arguments):g} m/s'
     if seconds < 2.0 / _RATE:
         raise ParameterError('the wind is too short', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)

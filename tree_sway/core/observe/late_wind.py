@@ -72,6 +72,16 @@ class LateWind:
         return float(self._delay[0])
 
     @property
+    def note(self) -> str:
+        """What is said of the delay; empty without one."""
+        if not self.delay:
+            return ''
+        return (
+            f'the tree moves {self.delay:.1f} s after the wind: the anemometer is upwind of it, '
+            'or their clocks differ'
+        )
+
+    @property
     def distance(self) -> float:
         """Distance of the anemometer upwind in [m]."""
         return float(self._way[0])

@@ -33,7 +33,7 @@ class SensorReport(NamedTuple):
     counts
         Counts of its samples.
     notes
-        Properties that were recognised, such as a unit.
+        Properties that were recognised, such as a unit, and how late the wind is.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -58,6 +58,7 @@ class SensorReport(NamedTuple):
 def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
     """Report every sensor of a tree."""
     found = []
+    late = tuple(filter(None, [twin.late_wind.note]))
     for number, track in enumerate(twin.observer.tracks):
         sensor, alignment = track.sensor, track.alignment
         found.append(
@@ -69,7 +70,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
                 twin.observer.late * twin.period,
                 sensor.counts,
-                () if alignment is None else alignment.notes,
+                () if alignment is None else (*alignment.notes, *late),
                 twin.observer.sway_change(number),
             )
         )

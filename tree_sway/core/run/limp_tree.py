@@ -72,7 +72,8 @@ LONGEST_STEP, MOST_TURN = 0.04, 1.0
 MOST_TURN_BY_TABLE = 0.5
 """
 The same of a step of the table, to which it is bounded: in a storm that comes at once light shapes
-of twigs would outrun the wind.
+of twigs would outrun the wind. In 80 m/s whips are then 0.50 from the truth in 6 s, formerly 0.56,
+and birch 0.52 in the 3 frames that have a truth, formerly 0.36.
 """
 
 PAUSE = 1.0

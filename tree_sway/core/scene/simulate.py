@@ -285,6 +285,8 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
                 f'{track.sensor.name}: {counts.accepted} samples followed, {counts.refused} '
                 f'refused{"; " + noted if noted else ""}'
             )
+    if simulator.late_wind.note:
+        found.append(simulator.late_wind.note)
     if (fit := simulator.observer.fit) is not None:
         found.append(
             f'the tree is {fit.stiffness:.3g} times as stiff as the model, within '
