@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+import json
 import math
 from typing import Any
 
@@ -61,8 +63,6 @@ def test_a_gyroscope_that_the_phone_lacks_is_done_without(phone: Any, sense: Any
     no_values = {'size': 0, 'updateMode': 'partial', 'buffer': []}
 
     def get(asked: Any) -> str:
-        import json
-
         answer = json.loads(whole(asked))
         answer['buffer'] |= {
             name: no_values for name in GYROSCOPE['gyroscope'] if name in answer['buffer']
@@ -132,6 +132,26 @@ def test_hostile_answers_end_nothing(phone: Any, sense: Any, answer: bytes) -> N
     assert not sensed.samples
     server.answer = None
     sensed.until(lambda: sensed.samples)
+
+
+@pytest.mark.parametrize('buffer', ['acc_time', 'accY'])
+def test_samples_come_once_where_the_phone_answers_while_it_writes_one(
+    phone: Any, sense: Any, buffer: str
+) -> None:
+    server = phone(ACCELERATION)
+    whole = server.get
+
+    def get(asked: Mapping[str, str]) -> str:
+        answer = json.loads(whole(asked))
+        del answer['buffer'].get(buffer, {'buffer': []})['buffer'][-1:]
+        return json.dumps(answer)
+
+    server.get = get
+    sensed = sense(server.url)
+    sensed.until(lambda: len(sensed.samples) > 200)
+    steps = np.diff([each.time for each in sensed.samples])
+    assert 0.0 < steps.min()
+    assert steps.max() < 0.0101
 
 
 def test_values_that_are_no_numbers_are_kept_for_the_sensor_to_refuse(

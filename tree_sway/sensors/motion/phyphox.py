@@ -36,6 +36,8 @@ _LOOK_AGAIN = 2.0
 _WAITING = 2000
 _PATIENCE = 3.0
 """Time [s] after which an experiment's sensor without any sample is one that the phone lacks."""
+_AHEAD = 2
+"""Samples by which a buffer may be longer than another: the phone answers while it fills them."""
 _SENSORS = (
     ('acceleration', ('accelerometer', 'linear_acceleration')),
     ('rate', ('gyroscope',)),
@@ -138,9 +140,11 @@ class PhyphoxPhone:
         """Note the newest times of an answer; whether it has new samples."""
         is_new = False
         for name, each in self._buffers.items():
-            times = [value for value in values_of(answer, each.time) if math.isfinite(value)]
-            if times:
-                self._newest[name] = times[-1]
+            rows = rows_of(answer, each)
+            times = values_of(answer, each.time) if rows is None else [at for at, _ in rows]
+            known = [value for value in times if math.isfinite(value)]
+            if known:
+                self._newest[name] = known[-1]
                 is_new = True
         return is_new
 
@@ -175,11 +179,9 @@ class PhyphoxPhone:
         document = {'buffer': parse_json(message.data)}
         found = list[MotionReading | Refusal]()
         for name, each in self._buffers.items():
-            columns = [values_of(document, axis) for axis in each.axes]
-            times = values_of(document, each.time)
-            if any(len(column) != len(times) for column in columns):
+            rows = rows_of(document, each)
+            if rows is None:
                 return [Refusal(_KIND, f'buffers of the {name} differ in length')]
-            rows = list(zip(times, zip(*columns, strict=True), strict=True))
             good = [row for row in rows if math.isfinite(row[0])]
             found += [Refusal(_KIND, 'its time is no number')] * (len(rows) - len(good))
             self._waiting[name].extend(good)
@@ -241,6 +243,20 @@ def buffers_of(config: Any) -> dict[str, Buffers]:
         if known is not None:
             found[quantity] = known
     return found
+
+
+def rows_of(answer: Any, buffers: Buffers) -> list[Sample] | None:
+    """
+    Return the new samples of a sensor in an answer; None if its buffers differ in length by many.
+
+    All values of an answer are later than one moment, so buffers agree from their first value on.
+    """
+    times = values_of(answer, buffers.time)
+    columns = [values_of(answer, axis) for axis in buffers.axes]
+    lengths = [len(each) for each in (times, *columns)]
+    if max(lengths) - min(lengths) > _AHEAD:
+        return None
+    return list(zip(times, zip(*columns, strict=False), strict=False))
 
 
 def values_of(answer: Any, name: str) -> list[float]:
