@@ -157,7 +157,7 @@ class BranchBeam(Batched):
 
         thinning = (tip_diameter - base_diameter)[..., on, None]
         self.diameter = base_diameter[..., on, None] + thinning * along
-        self.second_moment = np.pi / 64.0 * self.diameter**4
+        self.second_moment = round_section(self.diameter)
         """
         Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the
         first panel, with the spring in series.
@@ -440,3 +440,8 @@ def many_of(ones: Sequence[_Kind], **others: Any) -> _Kind:
     for name, value in others.items():
         setattr(many, name, value)
     return many
+
+
+def round_section(diameter: Floats) -> Floats:
+    """Second moment of area of a round section [m^4] by its diameter [m]."""
+    return np.asarray(np.pi / 64.0 * diameter**4)

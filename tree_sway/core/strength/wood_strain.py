@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.beams.beam import BranchBeam
+from tree_sway.core.beams.beam import BranchBeam, round_section
 from tree_sway.core.setup.reductions import TreeReductions
 
 
@@ -41,15 +41,7 @@ class WoodStrain:
         for number, model in enumerate(reduced.models):
             beam = model.beam
             base_diameter = tree.base_diameter[tree.segments_of(number)]
-            along = beam.tangent[:, None, :]
-            # A spring of the roots is in series with the wood of the first point; the wood has
-            # only its own part of the curvature there.
-            wood_share = beam.second_moment / _section(beam.diameter)
-            bent = [
-                wood_share[..., None]
-                * (field.curvature - (field.curvature * along).sum(axis=-1, keepdims=True) * along)
-                for field in model.fields
-            ]
+            bent = [_bending_of_wood(beam, field.curvature) for field in model.fields]
             bases = [_at_base_ends(beam, each, base_diameter) for each in bent]
             means = [beam.over_segments(each) for each in bent]
             at_base.append(np.stack(bases, axis=-1).reshape(-1, len(bent)))
@@ -69,9 +61,17 @@ class WoodStrain:
         return np.asarray(np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius)
 
 
-def _section(diameter: Floats) -> Floats:
-    """Second moment of area of a round section in [m^4]."""
-    return np.asarray(np.pi / 64.0 * diameter**4)
+def _bending_of_wood(beam: BranchBeam, curvature: Floats) -> Floats:
+    """
+    Part of a curvature (p, 5, 3) at the points that bends the wood: without twist.
+
+    A spring of the roots is in series with the wood of the first point; the wood has only its own
+    part of the curvature there.
+    """
+    along = beam.tangent[:, None, :]
+    twist = (curvature * along).sum(axis=-1, keepdims=True)
+    wood_share = beam.second_moment / round_section(beam.diameter)
+    return np.asarray(wood_share[..., None] * (curvature - twist * along))
 
 
 def _at_base_ends(beam: BranchBeam, curvature: Floats, base_diameter: Floats) -> Floats:
@@ -81,9 +81,9 @@ def _at_base_ends(beam: BranchBeam, curvature: Floats, base_diameter: Floats) ->
     The moment, curvature times second moment of area, is taken on from the points of the first
     panel by a parabola, that of an even load.
     """
-    moment = _section(beam.diameter)[..., None] * curvature
+    moment = round_section(beam.diameter)[..., None] * curvature
     first = np.searchsorted(beam.segment, np.arange(len(base_diameter)))
     place = (beam.place[0] - beam.node[0]) / beam.length[0]
     to_base = np.linalg.pinv(np.vander(place, 3))[-1]
     at_base = np.einsum('g,mgi->mi', to_base, moment[first])
-    return np.asarray(at_base / _section(base_diameter)[:, None])
+    return np.asarray(at_base / round_section(base_diameter)[:, None])

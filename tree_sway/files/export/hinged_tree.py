@@ -24,6 +24,7 @@ from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.beams.beam import round_section
 from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density, SHARED_AT
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.reductions import TreeReductions
@@ -245,8 +246,7 @@ def _springs(tree: Tree, wood: Species, root_stiffness: float, n_axes: int) -> F
 def _compliance(tree: Tree, modulus: float) -> Floats:
     """Rotation of each hinge per moment [rad/N/m], (n,)."""
     points = _Points.of(tree)
-    second_moment = np.pi / 64.0 * points.diameter**4
-    bend = points.part / (modulus * second_moment)
+    bend = points.part / (modulus * round_section(points.diameter))
     parent = tree.segment_parent
     branch = tree.branch_of_segment
     # The moment is constant in a segment with children, and that of a uniform load in the last.
