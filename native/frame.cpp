@@ -1,0 +1,15 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// The work of a frame for one target: SWAY_TARGET is its name, SWAY_FRAME that of its functions.
+#include "frame.h"
+
+#include "place.h"
+#include "table.h"
+
+namespace sway {
+
+extern const Frame SWAY_FRAME;
+const Frame SWAY_FRAME = {SWAY_TARGET, step_table, find_keys, place};
+
+}  // namespace sway

@@ -1,0 +1,56 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Memory that is taken while something is opened and returned when it is closed.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+namespace sway {
+
+class Memory {
+ public:
+  // Zeros for a number of values, at the beginning of a cache line. Where memory is short,
+  // `is_short` is set and nothing is returned.
+  template <class T>
+  __attribute__((always_inline))
+  T *take(size_t count) {
+    const size_t room = sizeof(Block) + LINE;
+    if (is_short || count > (SIZE_MAX - room) / sizeof(T)) {
+      is_short = true;
+      return nullptr;
+    }
+    const size_t size = count * sizeof(T);
+    Block *block = static_cast<Block *>(calloc(1, size + room));
+    if (!block) {
+      is_short = true;
+      return nullptr;
+    }
+    block->next = blocks;
+    blocks = block;
+    const uintptr_t first = reinterpret_cast<uintptr_t>(block + 1) + LINE - 1;
+    return reinterpret_cast<T *>(first / LINE * LINE);
+  }
+
+  __attribute__((always_inline)) void release() {
+    while (blocks) {
+      Block *next = blocks->next;
+      free(blocks);
+      blocks = next;
+    }
+  }
+
+  bool is_short = false;
+
+ private:
+  static constexpr size_t LINE = 64;
+  struct Block {
+    Block *next;
+  };
+  Block *blocks = nullptr;
+};
+
+}  // namespace

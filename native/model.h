@@ -1,0 +1,101 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// A model as it is stepped and placed: the arrays of doc/sway_model.md, laid out for vectors.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "memory.h"
+#include "sway.h"
+
+namespace sway {
+
+constexpr int AZIMUTHS = 24, LEVELS = 7, HARMONICS = 21;
+
+// Sizes of arrays that are names, as in `MEANINGS`.
+enum Size : int64_t {
+  SIZE_n = -1,            // segments
+  SIZE_b = -2,            // branches
+  SIZE_b_plus_1 = -3,     //
+  SIZE_k = -4,            // most key rotations of a branch
+  SIZE_N = -5,            // key rotations
+  SIZE_m = -6,            // coordinates
+  SIZE_q = -7,            // leading coordinates
+  SIZE_s = -8,            // streamed coordinates
+  SIZE_delays = -9,       // delays of limbs
+  SIZE_any = -10,
+  SIZES = 11,
+};
+
+enum Group {
+  NUMBERS, TREE, PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS, LIMP,
+};
+
+// The arrays as they are in the bytes of a model; those that it lacks are null.
+struct Arrays {
+#define SWAY_ARRAY(type, name, group, ...) const type *name;
+#include "arrays.inc"
+#undef SWAY_ARRAY
+  int64_t size[SIZES];  // by -Size
+};
+
+// Segments at the same place in sixteen branches are placed at once: a slot each.
+constexpr int WIDTH = 16;
+
+// Segments of the branches of a block, the same number from the base of each.
+struct Segment {
+  double slope[WIDTH];
+  double tip_slope[WIDTH];  // under a load at the tip, less `slope`
+  double chord[3][WIDTH];   // in the frame of the segment [m]
+  double rest[4][WIDTH];    // orientation at rest, w x y z
+  double *turn;             // rotation vector per unit of each key rotation (rows, 3, WIDTH)
+  int64_t n_slots;          // branches that have this segment, in the first slots
+};
+
+// Sixteen branches; parents are in earlier blocks than their children.
+struct Block {
+  int64_t first_record, n_records;  // its segments
+  int64_t n_slots;
+  int64_t n_parents;      // slots up to the last branch that has children
+  int64_t n_rows;         // most key rotations of a branch
+  int64_t n_parent_rows;  // most key rotations of a parent
+  int64_t is_joined;      // 1 where each segment starts at the end of the one before
+  int64_t is_at_axes;     // 1 where all bases are on the axes of their base segments
+  int64_t branch[WIDTH], parent[WIDTH], coordinate[WIDTH], parent_coordinate[WIDTH];
+  int64_t base_segment[WIDTH], first[WIDTH];
+  double axes[2][3][WIDTH];  // e1, e2 of `branch_frame`
+  double skew[WIDTH], tip_skew[WIDTH];  // the second less the first
+  double offset[3][WIDTH];
+  double bound_factor[WIDTH];  // key rotations less one
+  double *steepest;            // largest squared rotation of a segment per unit (rows, WIDTH)
+  double *base_rotation;       // per unit of each key rotation of the parent (rows, 3, WIDTH)
+};
+
+// The table of winds; rows of coordinates have `padded` numbers, zeros after the last.
+struct WindTable {
+  const double *levels;  // (AZIMUTHS, LEVELS)
+  const double *limit, *motion, *harmonics, *amount, *equilibrium, *load, *cross_damping;
+  const float *lean, *turning, *damping, *steep_turning, *steep_damping;  // (.., m, padded)
+  double most_pressure, most_energy;
+};
+
+}  // namespace sway
+
+struct sway_model {
+  sway::Memory memory;
+  sway_sizes sizes;
+  int64_t rows;    // room for key rotations of a branch, k
+  int64_t padded;  // coordinates, up to whole vectors
+  double drag_law[3];
+  double root[3];  // root node of the tree [m]
+
+  int64_t n_blocks, n_records;
+  const sway::Block *blocks;
+  const sway::Segment *segments;
+
+  const double *stiffness, *own_damping;  // (padded), 1 and 0 after the last
+  const float *shapes;                    // (keys / 64, m, 64), rounded up
+  sway::WindTable table;
+};

@@ -1,0 +1,269 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Trees at their places: their states, their steps and the order of work of a frame.
+#include <math.h>
+
+#include "frame.h"
+#include "propagate.h"
+#include "text.h"
+
+using namespace sway;
+
+namespace {
+
+// Largest relative difference of scales of trees that have the same time step.
+constexpr double FINEST_SCALE = 0.01;
+
+struct Tree {
+  int64_t model, step;  // numbers of its model and its step
+  Place place;
+  double speed;  // wind at its height over that at the height of its model
+};
+
+// A length of steps of the trees of a model and, to `FINEST_SCALE`, of a scale.
+struct OwnStep {
+  int64_t model;
+  double scale;
+  Step step;
+};
+
+// A model in a stand, as it is tuned.
+struct Kind {
+  const sway_model *model;
+  double *stiffness, *damping;
+};
+
+}  // namespace
+
+struct sway_stand {
+  Memory memory;
+  const Frame *frame;
+  size_t n_trees, n_models, n_rooms, n_steps;
+  Tree *trees;
+  Kind *kinds;
+  OwnStep *steps;
+  Room *rooms;
+  double *states;
+  size_t stride, width;
+};
+
+namespace {
+
+// Numbers of a state beside its rows: wind, drag density, clamped, left out, at rest, one spare.
+constexpr size_t ROWS = 6, SCALARS = 8;
+
+State state_of(const sway_stand &stand, size_t tree) {
+  double *first = stand.states + tree * stand.stride;
+  const size_t width = stand.width;
+  double *scalars = first + ROWS * width;
+  return {first,   first + width, first + 2 * width, first + 3 * width, first + 4 * width,
+          first + 5 * width, scalars, scalars + 3, scalars + 4, scalars + 5, scalars + 6};
+}
+
+bool is_tree(const sway_tree &tree, size_t n_models) {
+  const double numbers[] = {tree.at[0], tree.at[1], tree.at[2], tree.yaw, tree.scale, tree.speed};
+  for (double number : numbers)
+    if (!isfinite(number)) return false;
+  return tree.scale > 0.0 && tree.speed >= 0.0 && tree.model >= 0 &&
+         static_cast<size_t>(tree.model) < n_models;
+}
+
+// The number of the step of a tree, added if no tree before it has the same.
+int64_t step_of(sway_stand &stand, const sway_tree &tree) {
+  const double scale = exp(FINEST_SCALE * rint(log(tree.scale) / FINEST_SCALE));
+  for (size_t i = 0; i < stand.n_steps; i++)
+    if (stand.steps[i].model == tree.model && stand.steps[i].scale == scale)
+      return static_cast<int64_t>(i);
+  const int64_t rows = 6 * stand.kinds[tree.model].model->padded;
+  stand.steps[stand.n_steps] = {tree.model, scale,
+                                {stand.memory.take<double>(rows), stand.memory.take<double>(rows)}};
+  return static_cast<int64_t>(stand.n_steps++);
+}
+
+void open_room(sway_stand &stand, Room &room) {
+  int64_t keys = 0, branches = 0, segments = 0, rows = 0, padded = 0;
+  for (size_t i = 0; i < stand.n_models; i++) {
+    const sway_model &model = *stand.kinds[i].model;
+    if (model.sizes.keys > keys) keys = model.sizes.keys;
+    if (model.sizes.branches > branches) branches = model.sizes.branches;
+    if (model.sizes.segments > segments) segments = model.sizes.segments;
+    if (model.rows > rows) rows = model.rows;
+    if (model.padded > padded) padded = model.padded;
+  }
+  Memory &memory = stand.memory;
+  room.keys = memory.take<double>(keys + 64 + KEYS_BEYOND);
+  room.bases = memory.take<double>(8 * branches);
+  room.poses = memory.take<double>(7 * segments);
+  room.slots = memory.take<double>(slots_of(rows + 4));
+  double **doubles[] = {&room.middle, &room.middle_rate, &room.change, &room.shown};
+  for (double **each : doubles) *each = memory.take<double>(padded);
+  float **singles[] = {&room.turned, &room.damped, &room.single_rate};
+  for (float **each : singles) *each = memory.take<float>(padded);
+  room.distance = memory.take<float>(4 * padded);
+}
+
+void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
+  kind.model = model;
+  kind.stiffness = stand.memory.take<double>(model->padded);
+  kind.damping = stand.memory.take<double>(model->padded);
+  if (!model->sizes.is_stepped || stand.memory.is_short) return;
+  memcpy(kind.stiffness, model->stiffness, model->padded * sizeof(double));
+  memcpy(kind.damping, model->own_damping, model->padded * sizeof(double));
+}
+
+bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
+  stand.kinds = stand.memory.take<Kind>(stand.n_models);
+  stand.trees = stand.memory.take<Tree>(stand.n_trees);
+  stand.steps = stand.memory.take<OwnStep>(stand.n_trees);
+  stand.rooms = stand.memory.take<Room>(stand.n_rooms);
+  if (stand.memory.is_short) return false;
+  for (size_t i = 0; i < stand.n_models; i++) {
+    open_kind(stand, stand.kinds[i], models[i]);
+    const size_t width = static_cast<size_t>(models[i]->padded);
+    if (width > stand.width) stand.width = width;
+  }
+  stand.stride = ROWS * stand.width + SCALARS;
+  stand.states = stand.memory.take<double>(stand.n_trees * stand.stride);
+  for (size_t i = 0; i < stand.n_rooms; i++) open_room(stand, stand.rooms[i]);
+  for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
+    const sway_tree &given = trees[i];
+    Tree &tree = stand.trees[i];
+    tree.model = given.model;
+    tree.speed = given.speed;
+    tree.place = {cos(0.5 * given.yaw), sin(0.5 * given.yaw), given.scale,
+                  {given.at[0], given.at[1], given.at[2]}};
+    tree.step = step_of(stand, given);
+  }
+  return !stand.memory.is_short;
+}
+
+// The wind at the height of a tree, in the frame of its model; calm if it is not finite.
+void wind_in_frame(const Tree &tree, const double *wind, double out[3]) {
+  const double cosine = tree.place.cosine * tree.place.cosine - tree.place.sine * tree.place.sine;
+  const double sine = 2.0 * tree.place.cosine * tree.place.sine;
+  const bool is_finite = isfinite(wind[0] + wind[1] + wind[2]);
+  out[0] = is_finite ? tree.speed * (cosine * wind[0] + sine * wind[1]) : 0.0;
+  out[1] = is_finite ? tree.speed * (cosine * wind[1] - sine * wind[0]) : 0.0;
+  out[2] = is_finite ? tree.speed * wind[2] : 0.0;
+}
+
+bool is_finite(const State &state, int64_t count) {
+  double found = 0.0;  // a difference of equal numbers is 0 unless they are not finite
+  for (int64_t i = 0; i < count; i++)
+    found += (state.eta[i] - state.eta[i]) + (state.rate[i] - state.rate[i]);
+  return found == 0.0;
+}
+
+void come_to_rest(const State &state, int64_t count) {
+  for (int64_t i = 0; i < count; i++) state.eta[i] = state.rate[i] = state.force[i] = 0.0;
+}
+
+}  // namespace
+
+extern "C" {
+
+const char *sway_target(void) { return frame_of_machine().target; }
+
+sway_stand *sway_stand_open(const sway_model *const *models, size_t n_models,
+                            const sway_tree *trees, size_t n_trees, size_t rooms, char *error,
+                            size_t room) {
+  Text text(error, room);
+  for (size_t i = 0; i < n_trees; i++)
+    if (!is_tree(trees[i], n_models)) {
+      text.add("a tree whose numbers are not finite, or whose model does not exist");
+      return nullptr;
+    }
+  sway_stand *stand = static_cast<sway_stand *>(calloc(1, sizeof(sway_stand)));
+  if (stand) {
+    stand->frame = &frame_of_machine();
+    stand->n_models = n_models;
+    stand->n_trees = n_trees;
+    stand->n_rooms = rooms < 1 ? 1 : rooms;
+    if (open(*stand, models, trees)) return stand;
+  }
+  sway_stand_close(stand);
+  text.add("memory is short");
+  return nullptr;
+}
+
+void sway_stand_close(sway_stand *stand) {
+  if (!stand) return;
+  stand->memory.release();
+  free(stand);
+}
+
+double *sway_state(sway_stand *stand, size_t *stride, size_t *width) {
+  *stride = stand->stride;
+  *width = stand->width;
+  return stand->states;
+}
+
+int sway_tune(sway_stand *stand, size_t model, const double *stiffness, const double *damping) {
+  if (model >= stand->n_models) return -1;
+  Kind &kind = stand->kinds[model];
+  const int64_t m = kind.model->sizes.coordinates;
+  for (int64_t i = 0; i < m; i++)
+    if (!(stiffness[i] >= 0.0 && damping[i] >= 0.0 && isfinite(stiffness[i] + damping[i])))
+      return -1;
+  memcpy(kind.stiffness, stiffness, m * sizeof(double));
+  memcpy(kind.damping, damping, m * sizeof(double));
+  return 0;
+}
+
+int sway_set_step(sway_stand *stand, double dt) {
+  if (!(dt > 0.0 && isfinite(dt))) return -1;
+  for (size_t i = 0; i < stand->n_steps; i++) {
+    const OwnStep &own = stand->steps[i];
+    const Kind &kind = stand->kinds[own.model];
+    if (kind.model->sizes.is_stepped)
+      fill_step(*kind.model, kind.stiffness, kind.damping, dt / own.scale, own.step);
+  }
+  return 0;
+}
+
+int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const double *winds,
+              int64_t counts[2]) {
+  int64_t n_clamped = 0, n_restarted = 0;
+  for (size_t i = 0; i < count; i++) {
+    const Tree &tree = stand->trees[first + i];
+    const Kind &kind = stand->kinds[tree.model];
+    const sway_model &model = *kind.model;
+    if (!model.sizes.is_stepped) continue;
+    State state = state_of(*stand, first + i);
+    double wind[3];
+    wind_in_frame(tree, winds + 3 * i, wind);
+    n_clamped += stand->frame->step(model, kind.stiffness, stand->steps[tree.step].step, state,
+                                    stand->rooms[room], wind);
+    if (is_finite(state, model.padded)) continue;
+    come_to_rest(state, model.padded);
+    n_restarted++;
+  }
+  if (counts) counts[0] = n_clamped, counts[1] = n_restarted;
+  return (n_clamped ? SWAY_CLAMPED : SWAY_OK) | (n_restarted ? SWAY_RESTARTED : SWAY_OK);
+}
+
+void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count, double *poses) {
+  Room &own = stand->rooms[room];
+  for (size_t i = 0; i < count; i++) {
+    const Tree &tree = stand->trees[rows[2 * i]];
+    const sway_model &model = *stand->kinds[tree.model].model;
+    stand->frame->find_keys(model, state_of(*stand, rows[2 * i]), own);
+    stand->frame->place(model, tree.place, own, poses + 7 * rows[2 * i + 1]);
+  }
+}
+
+void sway_keys(sway_stand *stand, size_t room, size_t tree, double *keys) {
+  const sway_model &model = *stand->kinds[stand->trees[tree].model].model;
+  stand->frame->find_keys(model, state_of(*stand, tree), stand->rooms[room]);
+  memcpy(keys, stand->rooms[room].keys, model.sizes.keys * sizeof(double));
+}
+
+void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *keys,
+                     double *poses) {
+  const Tree &own = stand->trees[tree];
+  const sway_model &model = *stand->kinds[own.model].model;
+  memcpy(stand->rooms[room].keys, keys, model.sizes.keys * sizeof(double));
+  stand->frame->place(model, own.place, stand->rooms[room], poses);
+}
+}
