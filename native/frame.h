@@ -30,8 +30,9 @@ struct Room {
   double *poses;  // one tree (n, 7)
   double *slots;  // values of the sixteen branches of a block
   // A step; rows of coordinates.
-  double *middle, *middle_rate, *change, *shown;
-  float *turned, *damped, *single_rate, *distance;
+  double *middle, *middle_rate, *change;
+  float *turned, *damped, *single_rate, *distance, *shown;
+  float *single_keys;  // (16)
 };
 
 // Where a tree stands.

@@ -326,21 +326,26 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
   }
 }
 
-// Write the key rotations of a state to the room: shapes times what is shown of the coordinates.
+// Write the key rotations of a state to the room: shapes times what is shown of the coordinates. The
+// shapes of a tree of many branches are its largest table: they are summed in single precision.
 static void find_keys(const sway_model &model, const State &state, Room &room) {
   const int64_t m = model.sizes.coordinates;
   const int64_t n_shown = m - static_cast<int64_t>(*state.left_out);
-  for (int64_t i = 0; i < model.padded; i += LANES)
-    store(room.shown + i, load(state.eta + i) - load(state.hidden + i));
-  constexpr int TOGETHER = LANES < 8 ? 8 * LANES : 64;
+  for (int64_t i = 0; i < n_shown; i++)
+    room.shown[i] = static_cast<float>(state.eta[i] - state.hidden[i]);
+  constexpr int PARTS = LANES < 8 ? 8 : 4, SINGLES = 2 * LANES, TOGETHER = PARTS * SINGLES;
   for (int64_t first = 0; first < model.sizes.keys; first += TOGETHER) {
     const float *shapes = model.shapes + first / 64 * m * 64 + first % 64;
-    Vec keys[TOGETHER / LANES] = {};
+    Singles keys[PARTS] = {};
     for (int64_t i = 0; i < n_shown; i++)
-      for (int part = 0; part < TOGETHER / LANES; part++)
-        keys[part] += room.shown[i] * load_singles(shapes + 64 * i + part * LANES);
-    for (int part = 0; part < TOGETHER / LANES; part++)
-      store(room.keys + first + part * LANES, keys[part]);
+      for (int part = 0; part < PARTS; part++)
+        keys[part] += room.shown[i] * load(shapes + 64 * i + part * SINGLES);
+    for (int part = 0; part < PARTS; part++) {
+      store(room.single_keys, keys[part]);
+      double *out = room.keys + first + part * SINGLES;
+      for (int half = 0; half < SINGLES; half += LANES)
+        store(out + half, load_singles(room.single_keys + half));
+    }
   }
 }
 

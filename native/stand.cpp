@@ -96,11 +96,12 @@ void open_room(sway_stand &stand, Room &room) {
   room.bases = memory.take<double>(8 * branches);
   room.poses = memory.take<double>(7 * segments);
   room.slots = memory.take<double>(slots_of(rows + 4));
-  double **doubles[] = {&room.middle, &room.middle_rate, &room.change, &room.shown};
+  double **doubles[] = {&room.middle, &room.middle_rate, &room.change};
   for (double **each : doubles) *each = memory.take<double>(padded);
-  float **singles[] = {&room.turned, &room.damped, &room.single_rate};
+  float **singles[] = {&room.turned, &room.damped, &room.single_rate, &room.shown};
   for (float **each : singles) *each = memory.take<float>(padded);
   room.distance = memory.take<float>(4 * padded);
+  room.single_keys = memory.take<float>(16);
 }
 
 void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {

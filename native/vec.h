@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #if defined(__AVX512F__)
+#include <immintrin.h>
 #define SWAY_LANES 8
 #elif defined(__AVX2__)
 #define SWAY_LANES 4
@@ -44,7 +45,13 @@ INLINE Singles load(const float *from) { return *reinterpret_cast<const SinglesA
 INLINE void store(float *to, Singles value) { *reinterpret_cast<SinglesAt *>(to) = value; }
 
 INLINE Vec load_singles(const float *from) {
-  return __builtin_convertvector(*reinterpret_cast<const HalfSinglesAt *>(from), Vec);
+  const HalfSingles singles = *reinterpret_cast<const HalfSinglesAt *>(from);
+#if defined(__AVX512F__)
+  // GCC 12 to 14 convert the two halves one after the other.
+  return reinterpret_cast<Vec>(_mm512_maskz_cvtps_pd(0xff, reinterpret_cast<__m256>(singles)));
+#else
+  return __builtin_convertvector(singles, Vec);
+#endif
 }
 
 INLINE Vec all(double value) { return value - Vec{}; }
