@@ -2,11 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
+import os
 from pathlib import Path
+import platform
 import re
+import shutil
 import sys
+from importlib.util import find_spec
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
+from setuptools.errors import CompileError, LinkError
+
+try:
+    from setuptools.command.bdist_wheel import bdist_wheel
+except ImportError:  # an older setuptools, which builds no wheel of this package
+    bdist_wheel = None
 
 PACKAGE = 'tree_sway_ros'
 LIBRARY = 'tree_sway'
@@ -52,6 +63,91 @@ data_files = [
 ]
 if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
+
+NATIVE = 'tree_sway.core.native._sway'
+SOURCES = ('model', 'place_layout', 'propagate', 'stand', 'target')
+#: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
+TARGETS = {
+    'x86_64': {
+        'baseline': [],
+        'v3': ['-march=x86-64-v3'],
+        'v4': ['-march=x86-64-v4', '-mprefer-vector-width=512'],
+    },
+}
+OPTIONS = '-std=c++17 -O3 -fvisibility=hidden -fno-exceptions -fno-rtti -ffp-contract=fast'
+OPTIONS += ' -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi'
+COMPILER = 'install a C++ compiler (Debian, Ubuntu: sudo apt install g++), or pip install ziglang'
+
+
+class BuildNative(build_ext):
+    """Compile the native core: C++ without its run-time library, opened by ctypes."""
+
+    def get_ext_filename(self, fullname):
+        """Return a name without the version of Python, which the core does not know."""
+        return fullname.replace('.', '/') + ('.dll' if sys.platform == 'win32' else '.so')
+
+    def build_extension(self, ext):
+        """Compile each source, that of a frame for each target, and link them."""
+        compiler = self.compiler
+        choose_compiler(compiler)
+        options = [*OPTIONS.split(), *([] if sys.platform == 'win32' else ['-fPIC'])]
+        folder = Path(self.build_temp, 'native')
+        try:
+            objects = compiler.compile(
+                [str(ROOT / 'native' / f'{name}.cpp') for name in SOURCES], str(folder), extra_postargs=options
+            )
+            for name, own in targets().items():
+                objects += compiler.compile(
+                    [str(ROOT / 'native' / 'frame.cpp')],
+                    str(folder / name),
+                    macros=[('SWAY_FRAME', f'frame_{name}'), ('SWAY_TARGET', f'"{name}"')],
+                    extra_postargs=[*options, *own],
+                )
+            target = self.get_ext_fullpath(ext.name)
+            Path(target).parent.mkdir(parents=True, exist_ok=True)
+            libraries = [] if sys.platform == 'win32' else ['m']
+            compiler.link_shared_object(objects, target, libraries=libraries, target_lang='c')
+        except (CompileError, LinkError) as error:
+            raise SystemExit(f'the native core is not built ({error}); {COMPILER}') from None
+
+
+def targets():
+    """Return the options of each target of this machine; the baseline alone on other machines."""
+    return TARGETS.get(platform.machine().lower().replace('amd64', 'x86_64'), {'baseline': []})
+
+
+def choose_compiler(compiler):
+    """Compile by the system's C++ compiler, or by that of the package ziglang if there is none."""
+    named = os.environ.get('CXX', '').split()
+    found = next(filter(shutil.which, ('c++', 'g++', 'clang++')), None)
+    linker = []
+    if not named and found:
+        named = [found]
+    elif not named and find_spec('ziglang'):
+        named = [sys.executable, '-m', 'ziglang', 'c++']
+        linker = [*named[:-1], 'cc']
+    if not named or sys.platform == 'win32' and not linker:
+        return
+    options = ['-dynamiclib'] if sys.platform == 'darwin' else ['-shared']
+    if sys.platform == 'linux':
+        options.append('-Wl,--as-needed')  # nothing of the run-time library of C++ is needed
+    compiler.set_executables(
+        compiler_so=named, compiler_so_cxx=named, linker_so=[*(linker or named), *options]
+    )
+
+
+commands = {'build_ext': BuildNative}
+if bdist_wheel is not None:
+
+    class AnyPython(bdist_wheel):
+        """A wheel for every Python 3 of one kind of machine."""
+
+        def get_tag(self):
+            """Return the tag of a wheel whose library knows nothing of Python."""
+            return 'py3', 'none', super().get_tag()[2]
+
+    commands['bdist_wheel'] = AnyPython
+
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 #: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
@@ -142,6 +238,8 @@ setup(
         NUMBA,
     ],
     extras_require=extras,
+    ext_modules=[Extension(NATIVE, [])],
+    cmdclass=commands,
     zip_safe=False,
     entry_points={
         'console_scripts': [
