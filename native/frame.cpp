@@ -4,12 +4,12 @@
 // The work of a frame for one target: SWAY_TARGET is its name, SWAY_FRAME that of its functions.
 #include "frame.h"
 
+#include "limbs.h"
 #include "place.h"
-#include "table.h"
 
 namespace sway {
 
 extern const Frame SWAY_FRAME;
-const Frame SWAY_FRAME = {SWAY_TARGET, step_table, find_keys, place};
+const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place};
 
 }  // namespace sway

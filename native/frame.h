@@ -13,6 +13,7 @@ namespace sway {
 struct Step {
   double *whole;  // over the step
   double *half;   // over half of it, to where the load is found
+  double dt;      // length of the step [s]
 };
 
 // State of a tree: rows of `width` numbers (`sway_state`).
@@ -20,6 +21,7 @@ struct State {
   double *eta, *rate, *force, *hidden, *diagonal, *wanted;
   double *wind;  // (3), then:
   double *drag_density, *is_clamped, *left_out, *at_rest;
+  double *crown;  // memory of its gusts (`crown_of`); null if they reach all limbs at once
 };
 
 // Memory of one thread.

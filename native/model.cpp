@@ -9,6 +9,7 @@
 // little-endian, in the order of C.
 #include "model.h"
 
+#include "gusts.h"
 #include "place_layout.h"
 #include "text.h"
 
@@ -219,6 +220,7 @@ class Reader {
         return refuse("branch_coordinate", "a key rotation that does not exist");
       key += a.branch_keys[i];
     }
+    if (a.size[-SIZE_delays] > DELAYS) return refuse("limb_share", "more delays than there are");
     if (a.limb_delay)
       for (int64_t i = 0; i < b; i++)
         if (a.limb_delay[i] < 0 || a.limb_delay[i] >= a.size[-SIZE_delays])
@@ -287,7 +289,7 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.branches = a.size[-SIZE_b];
   sizes.keys = a.size[-SIZE_N];
   sizes.coordinates = a.shapes ? a.size[-SIZE_m] : 0;
-  sizes.delays = a.size[-SIZE_delays];
+  sizes.delays = a.limb_harmonics && a.limb_spread && a.crown_coherence ? a.size[-SIZE_delays] : 0;
   sizes.is_stepped = has_table(a);
   model.rows = a.size[-SIZE_k];
   model.padded = (sizes.coordinates + 15) / 16 * 16;
@@ -309,6 +311,12 @@ void lay_out(sway_model &model, const Arrays &a) {
   model.stiffness = stiffness;
   model.own_damping = damping;
   lay_out_table(model, a);
+  if (!sizes.delays) return;
+  model.limb_share = padded_rows(model.memory, a.limb_share, 1, sizes.delays, sizes.delays);
+  model.limb_harmonics = padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m,
+                                     model.padded);
+  model.limb_spread = *a.limb_spread;
+  model.crown_coherence = *a.crown_coherence;
 }
 
 }  // namespace

@@ -98,4 +98,8 @@ struct sway_model {
   const double *stiffness, *own_damping;  // (padded), 1 and 0 after the last
   const float *shapes;                    // (keys / 64, m, 64), rounded up
   sway::WindTable table;
+
+  const double *limb_share;      // (delays)
+  const double *limb_harmonics;  // (delays, HARMONICS, padded)
+  double limb_spread, crown_coherence;
 };

@@ -4,7 +4,7 @@
 // Trees at their places: their states, their steps and the order of work of a frame.
 #include <math.h>
 
-#include "frame.h"
+#include "gusts.h"
 #include "propagate.h"
 #include "text.h"
 
@@ -46,6 +46,7 @@ struct sway_stand {
   Room *rooms;
   double *states;
   size_t stride, width;
+  bool has_crowns;
 };
 
 namespace {
@@ -57,8 +58,11 @@ State state_of(const sway_stand &stand, size_t tree) {
   double *first = stand.states + tree * stand.stride;
   const size_t width = stand.width;
   double *scalars = first + ROWS * width;
+  const sway_model &model = *stand.kinds[stand.trees[tree].model].model;
+  double *crown = model.sizes.delays ? scalars + SCALARS : nullptr;
   return {first,   first + width, first + 2 * width, first + 3 * width, first + 4 * width,
-          first + 5 * width, scalars, scalars + 3, scalars + 4, scalars + 5, scalars + 6};
+          first + 5 * width, scalars, scalars + 3, scalars + 4, scalars + 5, scalars + 6,
+          crown};
 }
 
 bool is_tree(const sway_tree &tree, size_t n_models) {
@@ -77,7 +81,7 @@ int64_t step_of(sway_stand &stand, const sway_tree &tree) {
       return static_cast<int64_t>(i);
   const int64_t rows = 6 * stand.kinds[tree.model].model->padded;
   stand.steps[stand.n_steps] = {tree.model, scale,
-                                {stand.memory.take<double>(rows), stand.memory.take<double>(rows)}};
+                                {stand.memory.take<double>(rows), stand.memory.take<double>(rows), 0.0}};
   return static_cast<int64_t>(stand.n_steps++);
 }
 
@@ -125,6 +129,11 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     if (width > stand.width) stand.width = width;
   }
   stand.stride = ROWS * stand.width + SCALARS;
+  for (size_t i = 0; i < stand.n_models; i++)
+    if (models[i]->sizes.delays && !stand.has_crowns) {
+      stand.has_crowns = true;
+      stand.stride += CROWN + 1;  // an even number
+    }
   stand.states = stand.memory.take<double>(stand.n_trees * stand.stride);
   for (size_t i = 0; i < stand.n_rooms; i++) open_room(stand, stand.rooms[i]);
   for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
@@ -215,10 +224,11 @@ int sway_tune(sway_stand *stand, size_t model, const double *stiffness, const do
 int sway_set_step(sway_stand *stand, double dt) {
   if (!(dt > 0.0 && isfinite(dt))) return -1;
   for (size_t i = 0; i < stand->n_steps; i++) {
-    const OwnStep &own = stand->steps[i];
+    OwnStep &own = stand->steps[i];
+    own.step.dt = dt / own.scale;
     const Kind &kind = stand->kinds[own.model];
     if (kind.model->sizes.is_stepped)
-      fill_step(*kind.model, kind.stiffness, kind.damping, dt / own.scale, own.step);
+      fill_step(*kind.model, kind.stiffness, kind.damping, own.step.dt, own.step);
   }
   return 0;
 }

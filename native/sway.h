@@ -89,7 +89,8 @@ SWAY_API void sway_stand_close(sway_stand *stand);
  * [1/s^2], what is hidden of each coordinate, the derivative of the force by the own rate and the
  * force of the wind; then wind [m/s] (3), drag density [kg/m^3], whether the last step was clamped,
  * the number of last coordinates that are neither shown nor loaded, and the number of last
- * coordinates that are kept at rest. */
+ * coordinates that are kept at rest; then one number more, and the history of the wind where gusts
+ * reach limbs one after another. */
 SWAY_API double *sway_state(sway_stand *stand, size_t *stride, size_t *width);
 
 /* Set stiffness [1/s^2] and damping [1/s] of the coordinates (m) of a model of the stand, from the
@@ -117,6 +118,20 @@ SWAY_API void sway_keys(sway_stand *stand, size_t room, size_t tree, double *key
 /* Place a tree by key rotations (N) [rad], in rows `poses` of its own (n, 7). */
 SWAY_API void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *keys,
                               double *poses);
+
+/* Winds of places that gusts reach after a delay. `history` has 2 + 4 `size` numbers, at first 0.
+ * Unless `finest` is negative a step of dt [s] in a mean wind [m/s] is added to it, joined with the
+ * one before if both are not longer than `finest` [s]. `delays` [s] (count) move towards `wanted`,
+ * at most `longest`; `out` (count, 3) has the mean of the past wind over the step of each. */
+SWAY_API void sway_past_winds(double *history, size_t size, double finest, const double *wanted,
+                              double *delays, size_t count, double longest, const double *wind,
+                              double dt, double *out);
+
+/* Winds of the limbs of a tree by delay, less the wind: the last 48 of 1109 numbers of `memory`, at
+ * first 0, after a step of dt [s]. `spread` [m] is the longest delay times the wind speed,
+ * `coherence` the share of the wind that reaches all limbs at once. */
+SWAY_API void sway_limb_winds(double *memory, double spread, double coherence, const double *wind,
+                              double dt);
 
 #ifdef __cplusplus
 }

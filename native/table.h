@@ -323,13 +323,14 @@ INLINE void keep_at_rest(const sway_model &model, State &state) {
     state.eta[i] = state.rate[i] = 0.0;
 }
 
-// Step a tree in a wind [m/s] in its own frame. Returns whether wind or energy were clamped.
+// Step a tree in a uniform wind [m/s] in its own frame, of a drag density [kg/m^3]. Returns whether
+// wind or energy were clamped.
 static bool step_table(const sway_model &model, const double *stiffness, const Step &step,
-                       State &state, Room &room, const double velocity[3]) {
+                       State &state, Room &room, const double velocity[3],
+                       double per_speed_squared) {
   const WindTable &table = model.table;
   const double x = velocity[0], y = velocity[1], z = velocity[2];
   const double speed = __builtin_sqrt(x * x + y * y + z * z);
-  const double per_speed_squared = drag_density(model.drag_law, speed);
   const double pressure = per_speed_squared * speed * speed;
   bool is_clamped = pressure > table.most_pressure;
   const Wind wind = {speed > 0.0 ? x / speed : 1.0, speed > 0.0 ? y / speed : 0.0,

@@ -1,0 +1,53 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Gusts travel: a place feels the wind of the anemometer after a delay ("Gusts" of
+// doc/sway_model.md).
+#pragma once
+
+#include "frame.h"
+
+namespace sway {
+
+// Delays with which gusts reach the limbs of a tree, and steps of their history.
+constexpr int DELAYS = 16, HISTORY = 256;
+
+// The last wind: `run` has time [s] and the integral of the wind [m] at the ends of steps, in a
+// ring of `size` rows of which `count` are used, the last at `last`.
+struct History {
+  double *last, *count;  // whole numbers
+  double *run;           // (size, 4)
+  int64_t size;
+};
+
+// Add a step of dt [s] in a wind [m/s]; steps shorter than `finest` [s] are joined.
+void remember(const History &history, double finest, const double wind[3], double dt);
+
+// Follow the mean wind over a time [s]: east, north, and the time that it spans (3).
+void follow_mean(double mean[3], const double wind[3], double dt, double averaging);
+
+// Move delays [s] towards those wanted, at most `longest`, and write the mean of the past wind over
+// the step of each (count, 3).
+void past_winds(const History &history, const double *wanted, double *delays, int64_t count,
+                double longest, const double wind[3], double dt, double *out);
+
+// Wind of the limbs of a tree: memory of its state.
+struct Crown {
+  History history;
+  double *mean;    // (3)
+  double *wanted;  // delays by the mean wind [s] (DELAYS)
+  double *delay;   // delays in use [s] (DELAYS)
+  double *apart;   // wind of each delay less the wind [m/s] (DELAYS, 3)
+};
+
+// Numbers of the memory of a crown.
+constexpr int64_t CROWN = 2 + 4 * HISTORY + 3 + 5 * DELAYS;
+
+Crown crown_of(double *memory);
+
+// Add a step in a wind; `spread` [m] is the longest delay times the wind speed, `coherence` the
+// share of the wind that reaches the whole crown at once.
+void push_crown(const Crown &crown, double spread, double coherence, const double wind[3],
+                double dt);
+
+}  // namespace sway

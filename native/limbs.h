@@ -1,0 +1,89 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Gusts that reach the limbs of a tree one after another.
+//
+// The table has uniform winds only: it is read at the mean of the limbs' winds, weighted by their
+// loads. Then the difference of load between the wind of each delay and the mean is added for the
+// limbs of this delay. It is found on the tree at rest and reduced as the load on the bent tree is.
+#pragma once
+
+#include "gusts.h"
+#include "table.h"
+
+namespace {
+
+// Write the harmonics of a wind [m/s] times its dynamic pressure.
+static void fill_pressures(const sway_model &model, const double wind[3], double per_speed_squared,
+                           double out[HARMONICS]) {
+  const double square = wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2];
+  const double speed = most(__builtin_sqrt(square), 1e-12);
+  const double pressure = least(per_speed_squared * speed * speed, model.table.most_pressure);
+  fill_harmonics(wind[0] / speed, wind[1] / speed, wind[2] / speed, out);
+  for (int number = 0; number < HARMONICS; number++) out[number] *= pressure;
+}
+
+// Add to a step what the winds of the limbs of each delay do beside their mean.
+static void add_gusts(const sway_model &model, const double *stiffness, const Step &step,
+                      State &state, Room &room, const double *apart, const double wind[3],
+                      const double mean[3], double per_speed_squared) {
+  const int64_t M = model.padded;
+  double in_mean[HARMONICS], own[HARMONICS];
+  const double mean_wind[] = {wind[0] + mean[0], wind[1] + mean[1], wind[2] + mean[2]};
+  fill_pressures(model, mean_wind, per_speed_squared, in_mean);
+  double *force = room.change;
+  for (int64_t i = 0; i < M; i++) force[i] = 0.0;
+  for (int64_t delay = 0; delay < model.sizes.delays; delay++) {
+    const double *more = apart + 3 * delay;
+    const double limb_wind[] = {wind[0] + more[0], wind[1] + more[1], wind[2] + more[2]};
+    fill_pressures(model, limb_wind, per_speed_squared, own);
+    const double *moments = model.limb_harmonics + delay * HARMONICS * M;
+    for (int number = 0; number < HARMONICS; number++) {
+      const double change = own[number] - in_mean[number];
+      for (int64_t i = 0; i < M; i += LANES)
+        store(force + i, load(force + i) + change * load(moments + number * M + i));
+    }
+  }
+  // How much less than upright the tree that is bent is loaded, weighed by its deflection.
+  Vec bent = {}, upright = {};
+  for (int64_t i = 0; i < M; i += LANES) {
+    Vec at_rest = {};
+    for (int number = 0; number < HARMONICS; number++)
+      at_rest += in_mean[number] * load(model.table.harmonics + number * M + i);
+    const Vec deflection = at_rest / load(stiffness + i);
+    bent += deflection * load(state.wanted + i);
+    upright += deflection * at_rest;
+  }
+  const double share = least(most(sum(bent) / (sum(upright) + 1e-300), 0.0), 1.0);
+  for (int64_t i = 0; i < M; i += LANES) {
+    // As the force of the step.
+    const Vec implicit = 1.0 - load(state.diagonal + i) * load(step.half + 5 * M + i);
+    const Vec added = share * load(force + i) / implicit;
+    store(state.eta + i, load(state.eta + i) + load(step.whole + 2 * M + i) * added);
+    store(state.rate + i, load(state.rate + i) + load(step.whole + 5 * M + i) * added);
+    store(state.force + i, load(state.force + i) + added);
+  }
+}
+
+// Step a tree on its table in a wind [m/s] in its own frame, limb by limb where gusts reach them
+// one after another. Returns whether wind or energy were clamped.
+static bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
+                             State &state, Room &room, const double wind[3]) {
+  const double speed =
+      __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
+  const double per_speed_squared = drag_density(model.drag_law, speed);
+  if (!state.crown) return step_table(model, stiffness, step, state, room, wind, per_speed_squared);
+  const Crown crown = crown_of(state.crown);
+  push_crown(crown, model.limb_spread, model.crown_coherence, wind, step.dt);
+  double mean[3] = {};
+  for (int64_t delay = 0; delay < model.sizes.delays; delay++)
+    for (int axis = 0; axis < 3; axis++)
+      mean[axis] += model.limb_share[delay] * crown.apart[3 * delay + axis];
+  const double in_mean[] = {wind[0] + mean[0], wind[1] + mean[1], wind[2] + mean[2]};
+  const bool is_clamped =
+      step_table(model, stiffness, step, state, room, in_mean, per_speed_squared);
+  add_gusts(model, stiffness, step, state, room, crown.apart, wind, mean, per_speed_squared);
+  return is_clamped;
+}
+
+}  // namespace

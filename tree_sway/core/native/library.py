@@ -1,0 +1,69 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The library of the native core: ``native/sway.h`` says what each function does.
+
+A test compares the signatures with the header.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+import sys
+from typing import Any
+
+from numpy.typing import NDArray
+
+from tree_sway.errors import MissingDependencyError
+
+VERSION = 1
+"""Version of the interface, and of the bytes of a model."""
+
+_FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
+
+_pointer, _size, _number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
+
+SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    'sway_version': (ctypes.c_int, ()),
+    'sway_target': (ctypes.c_char_p, ()),
+    'sway_model_open': (_pointer, (_pointer, _size, _pointer, _size)),
+    'sway_model_close': (None, (_pointer,)),
+    'sway_model_sizes': (None, (_pointer, _pointer)),
+    'sway_stand_open': (
+        _pointer,
+        (_pointer, _size, _pointer, _size, _size, _pointer, _size),
+    ),
+    'sway_stand_close': (None, (_pointer,)),
+    'sway_state': (_pointer, (_pointer, _pointer, _pointer)),
+    'sway_tune': (ctypes.c_int, (_pointer, _size, _pointer, _pointer)),
+    'sway_set_step': (ctypes.c_int, (_pointer, _number)),
+    'sway_step': (ctypes.c_int, (_pointer, _size, _size, _size, _pointer, _pointer)),
+    'sway_place': (None, (_pointer, _size, _pointer, _size, _pointer)),
+    'sway_keys': (None, (_pointer, _size, _size, _pointer)),
+    'sway_place_keys': (None, (_pointer, _size, _size, _pointer, _pointer)),
+}
+"""Result and arguments of every function."""
+
+
+def _opened() -> ctypes.CDLL:
+    cure = 'pip install . in the source of tree_sway_ros; it needs a C++ compiler'
+    try:
+        library = ctypes.CDLL(str(_FILE))
+    except OSError as error:
+        raise MissingDependencyError('the native core is not built', cure=cure) from error
+    for name, (result, arguments) in SIGNATURES.items():
+        function = getattr(library, name, None)
+        if function is None or library.sway_version() != VERSION:
+            raise MissingDependencyError('the native core is of another version', cure=cure)
+        function.restype = result
+        function.argtypes = arguments
+    return library
+
+
+LIBRARY = _opened()
+
+
+def address(array: NDArray[Any]) -> int:
+    """Return where the numbers of an array begin."""
+    return int(array.ctypes.data)

@@ -1,0 +1,162 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Trees of the native core: their states, steps and poses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import ctypes
+from typing import NamedTuple
+import weakref
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.model import NativeModel
+from tree_sway.errors import ParameterError
+
+_ROOM = 300
+_TREE = np.dtype(
+    [('model', 'i8'), ('at', 'f8', 3), ('yaw', 'f8'), ('scale', 'f8'), ('speed', 'f8')]
+)
+"""``sway_tree`` of the header."""
+
+
+class States(NamedTuple):
+    """States of the trees of a stand, views of its memory; M is the width of a row."""
+
+    eta: Floats
+    """Coordinates, (t, M)."""
+    rate: Floats
+    force: Floats
+    """Force of the last step, (t, M)."""
+    hidden: Floats
+    """Part of each coordinate that is not shown, (t, M)."""
+    diagonal: Floats
+    """Derivative of the force by the own rate, (t, M)."""
+    wanted: Floats
+    """Force of the wind, (t, M)."""
+    wind: Floats
+    """Wind of the last step [m/s], (t, 3)."""
+    drag_density: Floats
+    """Drag per area and squared speed [kg/m^3], (t,)."""
+    is_clamped: Floats
+    """1 where the last step was clamped, (t,)."""
+    left_out: Floats
+    """Number of last coordinates that are neither shown nor loaded, (t,)."""
+    at_rest: Floats
+    """Number of last coordinates that are kept at rest, (t,)."""
+
+
+class NativeStand:
+    """
+    Trees of some models, each at a place.
+
+    Parameters
+    ----------
+    models
+        Models of the native core.
+    kinds
+        Number of the model of each tree, (t,).
+    places
+        x, y, z [m] of the root node, turn about the vertical [rad] and scale, (t, 5).
+    speeds
+        Wind of each tree over that of its model, (t,).
+
+    Raises
+    ------
+    ParameterError
+        Numbers of trees that are not finite, or models that do not exist.
+
+    """
+
+    def __init__(
+        self, models: Sequence[NativeModel], kinds: Ints, places: Floats, speeds: Floats
+    ) -> None:
+        self._models = tuple(models)
+        trees = np.zeros(len(kinds), dtype=_TREE)
+        trees['model'] = kinds
+        trees['at'] = places[:, :3]
+        trees['yaw'] = places[:, 3]
+        trees['scale'] = places[:, 4]
+        trees['speed'] = speeds
+        handles = (ctypes.c_void_p * len(models))(*(each.handle for each in models))
+        error = ctypes.create_string_buffer(_ROOM)
+        self._handle = LIBRARY.sway_stand_open(
+            handles, len(models), address(trees), len(trees), 1, error, _ROOM
+        )
+        if not self._handle:
+            raise ParameterError(error.value.decode(), where='trees')
+        weakref.finalize(self, LIBRARY.sway_stand_close, self._handle)
+        self.states = self._views(len(trees))
+        self._counts = np.zeros(2, dtype=np.int64)
+        self._wind = (ctypes.c_double * 3)()
+        self._first_row = np.zeros((1, 2), dtype=np.int64)
+
+    def _views(self, count: int) -> States:
+        """Return views of the states; they keep the stand alive."""
+        stride, width = ctypes.c_size_t(), ctypes.c_size_t()
+        first = LIBRARY.sway_state(self._handle, ctypes.byref(stride), ctypes.byref(width))
+        memory = (ctypes.c_double * (count * stride.value)).from_address(first)
+        memory.stand = self  # type: ignore[attr-defined]
+        rows = np.frombuffer(memory).reshape(count, stride.value)
+        m = width.value
+        scalars = rows[:, 6 * m :]
+        coordinates = [rows[:, row * m : (row + 1) * m] for row in range(6)]
+        return States(*coordinates, scalars[:, :3], *(scalars[:, k] for k in range(3, 7)))
+
+    def set_step(self, dt: float) -> None:
+        """Set the length of the steps [s], above 0 and finite."""
+        LIBRARY.sway_set_step(self._handle, dt)
+
+    def tune(self, kind: int, stiffness: Floats, damping: Floats) -> None:
+        """
+        Set stiffness [1/s^2] and damping [1/s] of the coordinates of a model, (m,).
+
+        They count from the next `set_step` on; raises a `ParameterError` for negative numbers.
+        """
+        own = np.ascontiguousarray(stiffness), np.ascontiguousarray(damping)
+        if LIBRARY.sway_tune(self._handle, kind, *map(address, own)):
+            raise ParameterError('stiffness or damping that no tree has', where='tune')
+
+    def step_first(self, x: float, y: float, z: float) -> int:
+        """Step the first tree in a wind [m/s]; returns the bits of ``sway_step``."""
+        wind = self._wind
+        wind[0] = x
+        wind[1] = y
+        wind[2] = z
+        return int(LIBRARY.sway_step(self._handle, 0, 0, 1, wind, None))
+
+    def step(self, winds: Floats) -> tuple[int, int]:
+        """
+        Step every tree in its wind [m/s], (t, 3).
+
+        Returns
+        -------
+        tuple
+            Trees whose wind or energy was clamped, and trees whose motion was not finite and that
+            go on from rest.
+
+        """
+        LIBRARY.sway_step(
+            self._handle, 0, 0, len(winds), address(winds), address(self._counts)
+        )
+        clamped, restarted = self._counts.tolist()
+        return clamped, restarted
+
+    def place_first(self, out: Floats) -> None:
+        """Place the first tree, (n, 7); ``out`` is contiguous."""
+        LIBRARY.sway_place(self._handle, 0, address(self._first_row), 1, address(out))
+
+    def place(self, rows: Ints, out: Floats) -> None:
+        """Place trees: their numbers and first rows in a pose block, (w, 2)."""
+        LIBRARY.sway_place(self._handle, 0, address(rows), len(rows), address(out))
+
+    def keys(self, tree: int, out: Floats) -> None:
+        """Write the key rotations of a tree [rad], (N,)."""
+        LIBRARY.sway_keys(self._handle, 0, tree, address(out))
+
+    def place_keys(self, tree: int, keys: Floats, out: Floats) -> None:
+        """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
+        LIBRARY.sway_place_keys(self._handle, 0, tree, address(keys), address(out))
