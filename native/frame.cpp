@@ -10,6 +10,6 @@
 namespace sway {
 
 extern const Frame SWAY_FRAME;
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place};
+const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place, write_middles};
 
 }  // namespace sway

@@ -54,6 +54,9 @@ struct Frame {
   void (*find_keys)(const sway_model &model, const State &state, Room &room);
   // Place a tree by the key rotations in the room, to (n, 7).
   void (*place)(const sway_model &model, const Place &place, Room &room, double *poses);
+  // Write the middles of the segments of poses, each times a factor, and their directions.
+  void (*middles)(int64_t n, const double *poses, const double *factor, const double *half_length,
+                  double *out, double *tangent);
 };
 
 // The work of a frame by the best instructions that this machine has.

@@ -72,6 +72,12 @@ int number_of(const char *name) {
   return -1;
 }
 
+bool has_table(const Arrays &a) {
+  return a.drag_law && a.most_pressure && a.most_energy && a.stiffness && a.own_damping &&
+         a.levels && a.limit && a.motion && a.harmonics && a.amount && a.equilibrium && a.load &&
+         a.cross_damping && a.turning && a.damping && a.lean && a.steep_turning && a.steep_damping;
+}
+
 class Reader {
  public:
   Reader(const char *bytes, size_t size, Text &error) : bytes_(bytes), size_(size), error_(error) {}
@@ -150,7 +156,9 @@ class Reader {
     size[-SIZE_m] = length("stiffness");
     size[-SIZE_q] = length("inertia_slopes");
     size[-SIZE_s] = length("stream_scale");
+    if (size[-SIZE_m] > MOST_COORDINATES) return refuse("stiffness", "too many coordinates");
     size[-SIZE_delays] = length("limb_share");
+    if (is_table_alone()) return true;
     const Found &keys = found_[number_of("branch_keys")];
     if (!keys.data) return refuse("branch_keys", "missing");
     const int64_t *each = reinterpret_cast<const int64_t *>(keys.data);
@@ -161,7 +169,14 @@ class Reader {
     }
     if (size[-SIZE_n] < 1 || size[-SIZE_n] > MOST_SEGMENTS) return refuse("tree_start", "no tree");
     if (size[-SIZE_k] < 2 || size[-SIZE_k] > 64) return refuse("branch_twist", "no tree");
-    if (size[-SIZE_m] > MOST_COORDINATES) return refuse("stiffness", "too many coordinates");
+    return true;
+  }
+
+  // Whether there is nothing to be placed: the model of a receiver that solves a tree by its table.
+  bool is_table_alone() const {
+    for (int number = 0; number < N_MEANINGS; number++)
+      if (found_[number].data && (MEANINGS[number].group == TREE || MEANINGS[number].group == PLACING))
+        return false;
     return true;
   }
 
@@ -198,6 +213,7 @@ class Reader {
   }
 
   bool check_indices(const Arrays &a) {
+    if (is_table_alone()) return has_table(a) || refuse("turning", "missing, and no tree");
     const int64_t n = a.size[-SIZE_n], b = a.size[-SIZE_b], N = a.size[-SIZE_N];
     for (int number = 0; number < N_MEANINGS; number++) {
       const Group group = MEANINGS[number].group;
@@ -244,13 +260,6 @@ const T *padded_rows(Memory &memory, const T *from, int64_t rows, int64_t m, int
   return rows_out;
 }
 
-bool has_table(const Arrays &a) {
-  return a.drag_law && a.most_pressure && a.most_energy && a.stiffness && a.own_damping &&
-         a.shapes && a.levels && a.limit && a.motion && a.harmonics && a.amount && a.equilibrium &&
-         a.load && a.cross_damping && a.turning && a.damping && a.lean && a.steep_turning &&
-         a.steep_damping;
-}
-
 void lay_out_table(sway_model &model, const Arrays &a) {
   Memory &memory = model.memory;
   const int64_t m = model.sizes.coordinates, M = model.padded;
@@ -288,16 +297,16 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.segments = a.size[-SIZE_n];
   sizes.branches = a.size[-SIZE_b];
   sizes.keys = a.size[-SIZE_N];
-  sizes.coordinates = a.shapes ? a.size[-SIZE_m] : 0;
+  sizes.coordinates = a.shapes || has_table(a) ? a.size[-SIZE_m] : 0;
   sizes.delays = a.limb_harmonics && a.limb_spread && a.crown_coherence ? a.size[-SIZE_delays] : 0;
   sizes.is_stepped = has_table(a);
   model.rows = a.size[-SIZE_k];
   model.padded = (sizes.coordinates + 15) / 16 * 16;
   for (int axis = 0; axis < 3; axis++) {
     model.drag_law[axis] = a.drag_law ? a.drag_law[axis] : 0.0;
-    model.root[axis] = a.tree_start[axis];
+    model.root[axis] = a.tree_start ? a.tree_start[axis] : 0.0;
   }
-  lay_out_places(model, a);
+  if (a.tree_start) lay_out_places(model, a);
   if (a.shapes) lay_out_shapes(model, a);
   if (!sizes.is_stepped) return;
   const int64_t m = sizes.coordinates;

@@ -277,4 +277,18 @@ void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *
   memcpy(stand->rooms[room].keys, keys, model.sizes.keys * sizeof(double));
   stand->frame->place(model, own.place, stand->rooms[room], poses);
 }
+
+void sway_middles(sway_stand *stand, size_t room, const double *keys, size_t count,
+                  const double *factor, const double *half_length, double *out, double *tangent) {
+  const sway_model &model = *stand->kinds[stand->trees[0].model].model;
+  Room &own = stand->rooms[room];
+  const Place at_origin = {1.0, 0.0, 1.0, {0.0, 0.0, 0.0}};
+  const int64_t n = model.sizes.segments;
+  for (size_t i = 0; i < count; i++) {
+    memcpy(own.keys, keys + i * model.sizes.keys, model.sizes.keys * sizeof(double));
+    stand->frame->place(model, at_origin, own, own.poses);
+    stand->frame->middles(n, own.poses, factor, half_length, out + 3 * n * i,
+                          i == 0 ? tangent : nullptr);
+  }
+}
 }

@@ -119,6 +119,13 @@ SWAY_API void sway_keys(sway_stand *stand, size_t room, size_t tree, double *key
 SWAY_API void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *keys,
                               double *poses);
 
+/* The middles of the segments of the first tree, as if its root node were at 0, by `count` rows of
+ * key rotations (N): each times `factor` (n), in rows `out` (3 n); `half_length` (n) [m] is half the
+ * length of each segment, `tangent` (3 n) gets its directions in the first pose. */
+SWAY_API void sway_middles(sway_stand *stand, size_t room, const double *keys, size_t count,
+                           const double *factor, const double *half_length, double *out,
+                           double *tangent);
+
 /* Winds of places that gusts reach after a delay. `history` has 2 + 4 `size` numbers, at first 0.
  * Unless `finest` is negative a step of dt [s] in a mean wind [m/s] is added to it, joined with the
  * one before if both are not longer than `finest` [s]. `delays` [s] (count) move towards `wanted`,

@@ -106,8 +106,8 @@ def describe_scene(
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind for placing its branches by key rotations."""
     tree = simulator.tree
+    model = simulator.models[0]
     branches = _in_order(simulator)
-    segments = simulator.banks[0].segments
     keys = branches['n_coordinates']
     sizes = branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
@@ -120,12 +120,10 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            turns.append(_segment_turns(record, segments).reshape(-1, 3))
+            own = slice(int(record['first']), int(record['end']))
+            turns.append(model.segment_turn[own, : keys[branch]].reshape(-1, 3))
             count += len(turns[-1])
     first = np.concatenate([[0], np.cumsum(sizes)])
-    owner = np.repeat(np.arange(len(branches)), sizes)
-    at = branches['first_record'][owner] + np.arange(len(owner)) - first[owner]
-    slot = branches['slot'][owner]
     indices = {
         'branch_parent': branches['parent'],
         'branch_base_segment': branches['base_segment'],
@@ -137,12 +135,12 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     diameter = np.stack([tree.base_diameter, tree.tip_diameter], axis=1)
     numbers = {
         'branch_frame': branches['frame'],
-        'branch_skew': np.stack([branches['skew'], branches['tip_skew']], axis=1),
+        'branch_skew': model.branch_skew,
         'branch_offset': np.where(branches['parent'][:, None] < 0, 0.0, branches['offset']),
-        'segment_slope': segments['slope'][at, slot],
-        'segment_tip_slope': segments['tip_slope'][at, slot],
-        'segment_chord': segments['chord'][at, :, slot],
-        'segment_rest': segments['rest'][at, :, slot],
+        'segment_slope': model.segment_slope,
+        'segment_tip_slope': model.segment_tip_slope,
+        'segment_chord': model.segment_chord,
+        'segment_rest': model.segment_rest,
         'segment_length': tree.length,
         'segment_radius': 0.5 * diameter,
         'turn': np.concatenate(turns),
@@ -177,14 +175,3 @@ def _names(simulator: SwaySimulator) -> list[str]:
 
 def _float32(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float32)
-
-
-def _segment_turns(branch: np.void, segments: Records) -> Floats:
-    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
-    first = int(branch['first_record'])
-    count = int(branch['n_coordinates'])
-    rows = slice(first, first + int(branch['end'] - branch['first']))
-    if branch['load_mode'].shape[0] > 2:
-        return np.asarray(segments['segment_turn'][rows, :count, :, branch['slot']])
-    slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
-    return np.multiply.outer(slope, np.stack([e2, -e1]))

@@ -1,35 +1,21 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A receiver in Python: poses from a frame and its description, by the solver's placing."""
+"""A receiver in Python: poses from a frame and its description, placed by the native core."""
 
 from __future__ import annotations
-
-import math
-from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.fill_records import (
-    assign_slots,
-    block_records,
-    fill_places,
-    Places,
-    segment_records,
-)
-from tree_sway.core.model.records import (
-    block_layout,
-    branch_layout,
-    room_for_fields,
-    segment_layout,
-)
-from tree_sway.core.run.placing_by_keys import placing_by_keys, PlacingByKeys
+from tree_sway.core.model.records import room_for_fields
+from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description
 
 MOST_MEMORY = 512 * 2**20
-"""Largest memory for the records of a kind in [bytes]."""
+"""Largest memory for the turns of the segments of a kind in [bytes]."""
 
 
 class Placer:
@@ -44,18 +30,20 @@ class Placer:
     Raises
     ------
     FormatError
-        A tree whose records need more than `MOST_MEMORY`.
+        A tree whose arrays need more than `MOST_MEMORY`, or have indices that do not exist.
 
     """
 
     def __init__(self, description: Description) -> None:
-        """Lay the tree out for the placing kernel."""
+        """Hand the kinds to the native core."""
         self.description = description
-        kinds = [_kind(arrays) for arrays in description.kinds]
-        places = description.arrays['tree_place'].astype(np.float64).tolist()
-        kind_of = [kinds[tree['kind']] for tree in description.header['trees']]
-        self._trees = list(zip(places, kind_of, strict=True))
-        self.n_segments = sum(kind.n_segments for kind in kind_of)
+        models = [NativeModel(bytes_of(_arrays(kind))) for kind in description.kinds]
+        bases = [kind['basis_matrix'].astype(np.float64) for kind in description.kinds]
+        places = description.arrays['tree_place'].astype(np.float64)
+        kind_of = np.array([tree['kind'] for tree in description.header['trees']], dtype=np.int64)
+        self._stand = NativeStand(models, kind_of, places, np.ones(len(places)))
+        self._trees = [(bases[kind], models[kind].sizes.segments) for kind in kind_of.tolist()]
+        self.n_segments = sum(count for _, count in self._trees)
 
     def place(self, coordinates: Floats) -> Floats:
         """
@@ -72,77 +60,54 @@ class Placer:
         coordinate = 0
         key = 0
         row = 0
-        for (x, y, z, yaw, scale), kind in self._trees:
-            n_keys, n_coordinates = kind.basis.shape
-            rotations = kind.basis @ coordinates[coordinate : coordinate + n_coordinates]
+        for number, (basis, n_segments) in enumerate(self._trees):
+            n_keys, n_coordinates = basis.shape
+            rotations = basis @ coordinates[coordinate : coordinate + n_coordinates]
             is_own = (pulled_key >= key) & (pulled_key < key + n_keys)
             rotations[pulled_key[is_own].astype(np.int64) - key] += pull[is_own]
-            origin = np.array([x, y, z])
-            out = poses[row : row + kind.n_segments]
-            cosine = math.cos(0.5 * yaw)
-            sine = math.sin(0.5 * yaw)
-            kind.placing.place(rotations, origin, out, cosine, sine, scale)
+            self._stand.place_keys(number, rotations, poses[row : row + n_segments])
             coordinate += n_coordinates
             key += n_keys
-            row += kind.n_segments
+            row += n_segments
         return poses
 
 
-class _Kind(NamedTuple):
-    """A kind laid out for the placing kernel."""
-
-    basis: Floats
-    """Key rotations per unit of each coordinate, (keys, coordinates)."""
-    n_segments: int
-    placing: PlacingByKeys
-
-
-def _kind(arrays: dict[str, Array]) -> _Kind:
-    """Lay a described kind out for the placing kernel."""
+def _arrays(arrays: dict[str, Array]) -> dict[str, Array]:
+    """Return the arrays by which the native core places a described kind."""
     first = arrays['branch_first'].astype(np.int64)
     parent = arrays['branch_parent'].astype(np.int64)
     n_keys = arrays['branch_keys'].astype(np.int64)
     room = room_for_fields(n_keys.max())
-    _refuse_too_large(first, parent, n_keys, room)
-    skew, tip_skew = arrays['branch_skew'].T
-    places = Places(
-        first=first,
-        parent=parent,
-        base_segment=arrays['branch_base_segment'],
-        coordinate=arrays['branch_coordinate'],
-        n_coordinates=n_keys,
-        frame=arrays['branch_frame'].astype(np.float64),
-        skew=skew,
-        tip_skew=tip_skew,
-        offset=arrays['branch_offset'],
-        base_rotation=_base_rotations(arrays, parent, n_keys, room),
-        chord=arrays['segment_chord'],
-        rest=arrays['segment_rest'],
-        slope=arrays['segment_slope'],
-        tip_slope=arrays['segment_tip_slope'],
-        segment_turn=_segment_turns(arrays, first, n_keys, room),
-    )
-    branches = np.zeros(len(parent), branch_layout(room))
-    fill_places(places, branches)
-    segments = segment_records(places)
-    placing = placing_by_keys(branches, segments, block_records(branches, segments))
-    return _Kind(arrays['basis_matrix'].astype(np.float64), int(first[-1]), placing)
-
-
-def _refuse_too_large(first: Ints, parent: Ints, n_keys: Ints, room: int) -> None:
-    """Refuse a kind whose records need more than `MOST_MEMORY`, before they are made."""
-    block, _, n_segment_records = assign_slots(first, parent, n_keys)  # as `segment_records` does
-    memory = (
-        len(parent) * branch_layout(room).itemsize
-        + n_segment_records * segment_layout(room).itemsize
-        + (len(np.unique(block)) + 1) * block_layout(room).itemsize
-    )
+    n = int(first[-1])
+    memory = 2 * 8 * 3 * room * n
     if memory > MOST_MEMORY:
         raise FormatError(
             f'a kind of {memory // 2**20} MiB when laid out',
             where='tree description',
-            cure=f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB',
+            cure=f'describe a tree of fewer segments: up to {MOST_MEMORY // 2**20} MiB',
         )
+    twist = np.zeros((len(parent), room, 6))
+    twist[:, :, 3:] = _base_rotations(arrays, parent, n_keys, room)
+    none = np.zeros(n)
+    found = {
+        'branch_first': first,
+        'branch_parent': parent,
+        'branch_keys': n_keys,
+        'branch_twist': twist,
+        'segment_turn': _segment_turns(arrays, first, n_keys, room),
+        'tree_start': np.zeros((n, 3)),
+        'tree_end': np.zeros((n, 3)),
+        'tree_base_diameter': none,
+        'tree_tip_diameter': none,
+    }
+    for name in ('branch_base_segment', 'branch_coordinate'):
+        found[name] = arrays[name].astype(np.int64)
+    for name in (
+        'branch_frame', 'branch_skew', 'branch_offset', 'segment_chord', 'segment_rest',
+        'segment_slope', 'segment_tip_slope',
+    ):  # fmt: skip
+        found[name] = arrays[name].astype(np.float64)
+    return found
 
 
 def _base_rotations(arrays: dict[str, Array], parent: Ints, n_keys: Ints, room: int) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tree_sway.core.model.exported_table import exported_table, rounded
 from tree_sway.core.model.settings import USUAL
-from tree_sway.core.run.table_model import WindBasisBank
+from tree_sway.core.run.table_model import TableOscillators
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.stream.check_description import Array
@@ -27,7 +27,7 @@ def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
         if model.settings.crown_coherence < 1.0:
             what = 'a crown whose limbs meet gusts one after another has no table to solve it by'
             return ParameterError(what, where='crown_coherence', cure='set it to 1')
-        if isinstance(model.banks[0].oscillators, WindBasisBank):
+        if isinstance(model.banks[0].oscillators, TableOscillators):
             continue
         what = f"model '{model.model}' has no table to solve it by"
         cure = f'give a number of coordinates, such as {USUAL}'
@@ -48,7 +48,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.banks[0].oscillators
-        assert isinstance(bank, WindBasisBank)
+        assert isinstance(bank, TableOscillators)
         numbers, own = exported_table(model.models[0], bank.modal.damping)
         state = bank.all_shapes @ kind.basis.projection.T
         # Motion of a correction of the coordinates with the least energy.

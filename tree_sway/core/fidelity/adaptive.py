@@ -95,11 +95,10 @@ class AdaptiveSimulator(SwaySimulator):
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        plain: bool = False,
     ) -> None:
         """Make the tree on all coordinates, and choose for the expected wind."""
-        super().__init__(prepared, plain=plain)
-        self._estimator = ErrorEstimator(self.tree, self._bank, self._drag_law)
+        super().__init__(prepared)
+        self._estimator = ErrorEstimator(self.tree, self._bank, prepared.drag_law)
         self.tolerance = within('tolerance', tolerance, 0.0, math.inf, 'm')
         self.budget = within('budget', budget, 0.0, math.inf, 'us')
         self.cost_scale = 1.0

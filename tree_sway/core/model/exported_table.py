@@ -5,7 +5,7 @@ Export of the table of a tree, for receivers that solve the tree themselves.
 
 Over azimuths and levels the slopes of the load have a low rank: they are exported as factors,
 ``slopes = sqrt(k_i k_j) rows @ shapes``, weighted with the stiffness k of the coordinates, so that
-the error is that of the bending of the tree. Shapes are integers of one step. `table_of` makes the
+the error is that of the bending of the tree. Shapes are integers of one step. `arrays_of_table` makes the
 exported arrays a table again, which every receiver solves.
 
 What factors leave out of a damping may feed a motion. Damping in proportion to the stiffness, as
@@ -22,9 +22,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.model.records import table_layout
-from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.arrays import Floats, Singles
+from tree_sway.core.model.sway_model import MEANINGS, SwayModel
 
 LEFT_OUT = 1e-2
 """
@@ -78,21 +77,14 @@ def exported_table(
     return numbers, arrays
 
 
-def table_of(
-    numbers: Mapping[str, float], arrays: Mapping[str, NDArray[Any]], room: int = 0
-) -> Records:
-    """Return the record of `table_layout`, (1,), of an exported table, with room for more."""
+def arrays_of_table(
+    numbers: Mapping[str, float], arrays: Mapping[str, NDArray[Any]]
+) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a model, as the native core takes them, of an exported table."""
     m = len(arrays['stiffness'])
-    record = np.zeros(1, dtype=table_layout(max(m, room)))
-    table = record[0]
-    table['n_modes'] = m
-    table['stiffness'] = 1.0
-    for name in NUMBERS:
-        table[name] = numbers[name]
-    for name in PLAIN:
-        values = arrays[name]
-        table[name][tuple(map(slice, values.shape))] = values
-    root = np.sqrt(arrays['stiffness'].astype(np.float64))
+    found = {name: np.array([numbers[name]]) for name in NUMBERS}
+    found |= {name: arrays[name].astype(np.float64) for name in (*PLAIN, 'own_damping')}
+    root = np.sqrt(found['stiffness'])
     for name in SLOPES:
         rows = arrays[f'{name}_rows']
         shapes = arrays[f'{name}_shapes']
@@ -101,8 +93,9 @@ def table_of(
         for row, shape in zip(rows.T.astype(np.float64), shapes, strict=True):
             slopes += row[:, None] * shape
         slopes *= (root[:, None] * root).ravel()
-        table[name][..., :m, :m] = slopes.reshape(*table[name].shape[:-2], m, m)
-    return record
+        sizes = MEANINGS[name].shape[:-2]
+        found[name] = slopes.reshape(*sizes, m, m).astype(np.float32)
+    return found
 
 
 def rounded(values: Floats, bits: int) -> Singles:

@@ -11,7 +11,6 @@ scaled to a mean square of 1 over the sphere.
 from __future__ import annotations
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import part
 
 N_HARMONICS = 21
 """Number of functions up to the highest degree, 5."""
@@ -30,10 +29,9 @@ _SCALE_54 = 1.5 * (385.0 / 16.0) ** 0.5
 _SCALE_55 = 3.0 * (77.0 / 128.0) ** 0.5
 
 
-@part
-def fill_harmonics(x: float, y: float, z: float, out: Floats) -> None:
+def fill_harmonics(x: Floats, y: Floats, z: Floats, out: Floats) -> None:
     """
-    Write the functions (`N_HARMONICS`,) at a direction, a unit vector.
+    Write the functions (`N_HARMONICS`, k) at directions, unit vectors (k,).
 
     Those of degree n are ``out[c - n] .. out[c + n]`` about a centre c: of order m after the
     centre with the cosine of the azimuth, before it with the sine.
@@ -68,9 +66,8 @@ def fill_harmonics(x: float, y: float, z: float, out: Floats) -> None:
     _put_pair(out, degree_5, 5, _SCALE_55, cosine_5, sine_5)
 
 
-@part
 def _put_pair(
-    out: Floats, centre: int, order: int, amount: float, cosine: float, sine: float
+    out: Floats, centre: int, order: int, amount: Floats | float, cosine: Floats, sine: Floats
 ) -> None:
     """Write the two functions of an order above 0: an amount times cosine and sine."""
     out[centre + order] = amount * cosine

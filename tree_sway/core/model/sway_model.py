@@ -378,6 +378,20 @@ class SwayModel:
         present = {name: getattr(self, name) for name in MEANINGS}
         return found | {name: each for name, each in present.items() if each is not _NONE}
 
+    def native_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays by which the native core steps and places the tree."""
+        tree = self.tree
+        settings = self.settings
+        return {
+            **self.arrays(),
+            'gravity': np.array([settings.gravity]),
+            'crown_coherence': np.array([settings.crown_coherence]),
+            'tree_start': tree.start,
+            'tree_end': tree.end,
+            'tree_base_diameter': tree.base_diameter,
+            'tree_tip_diameter': tree.tip_diameter,
+        }
+
     def digest(self) -> str:
         """Digest of all arrays and numbers, 16 hexadecimal digits."""
         found = hashlib.sha256()

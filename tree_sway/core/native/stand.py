@@ -74,7 +74,8 @@ class NativeStand:
     def __init__(
         self, models: Sequence[NativeModel], kinds: Ints, places: Floats, speeds: Floats
     ) -> None:
-        self._models = tuple(models)
+        self.models = tuple(models)
+        """Models of the trees."""
         trees = np.zeros(len(kinds), dtype=_TREE)
         trees['model'] = kinds
         trees['at'] = places[:, :3]
@@ -100,11 +101,15 @@ class NativeStand:
         first = LIBRARY.sway_state(self._handle, ctypes.byref(stride), ctypes.byref(width))
         memory = (ctypes.c_double * (count * stride.value)).from_address(first)
         memory.stand = self  # type: ignore[attr-defined]
-        rows = np.frombuffer(memory).reshape(count, stride.value)
+        self._rows = rows = np.frombuffer(memory).reshape(count, stride.value)
         m = width.value
         scalars = rows[:, 6 * m :]
         coordinates = [rows[:, row * m : (row + 1) * m] for row in range(6)]
         return States(*coordinates, scalars[:, :3], *(scalars[:, k] for k in range(3, 7)))
+
+    def reset(self) -> None:
+        """Return every tree to rest."""
+        self._rows[:] = 0.0
 
     def set_step(self, dt: float) -> None:
         """Set the length of the steps [s], above 0 and finite."""
@@ -156,6 +161,30 @@ class NativeStand:
     def keys(self, tree: int, out: Floats) -> None:
         """Write the key rotations of a tree [rad], (N,)."""
         LIBRARY.sway_keys(self._handle, 0, tree, address(out))
+
+    def middles(
+        self, keys: Floats, count: int, root_mass: Floats, half_length: Floats, out: Floats,
+        tangent: Floats,
+    ) -> None:  # fmt: skip
+        """
+        Write the middles of the segments of the first tree, as if its root node were at 0.
+
+        Parameters
+        ----------
+        keys
+            Key rotations of some poses [rad], (k, N), of which ``count`` are taken.
+        root_mass, half_length
+            Factor of each middle, and half the length of each segment [m], (n,).
+        out
+            Middles times their factors, (k, 3 n), written.
+        tangent
+            Directions of the segments in the first pose, (3 n,), written.
+
+        """
+        LIBRARY.sway_middles(
+            self._handle, 0, address(keys), count, address(root_mass), address(half_length),
+            address(out), address(tangent),
+        )  # fmt: skip
 
     def place_keys(self, tree: int, keys: Floats, out: Floats) -> None:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""

@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
+from tree_sway.core.wind.wind_history import follow_mean, WindHistory
 
 LONGEST_WAY = 15.0
 """Longest time in [s] by which gusts may be later than at the anemometer."""
@@ -33,9 +32,6 @@ _SLOWEST = 1.0
 
 _CAPACITY = 1024
 """Number of past winds that are kept."""
-
-_FINEST = 2.0 * LONGEST_WAY / (_CAPACITY - 4)
-"""Least time in [s] between them, so that they reach back for longer than the longest way."""
 
 
 class LateWind:
@@ -50,21 +46,30 @@ class LateWind:
     """
 
     def __init__(self, distance: float = 0.0) -> None:
-        self._run, self._at = np.zeros((_CAPACITY, 4)), np.zeros(2, dtype=np.int64)
+        self._history = WindHistory(_CAPACITY, LONGEST_WAY)
         self._mean, self._wanted = np.zeros(3), np.zeros(1)
         self._way = np.array([distance, 0.0])  # distance [m], and 1 while it is not yet known
         self._delay, self._wind = np.zeros(1), np.zeros((1, 3))
+        self._measured = np.zeros(3)
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
-        """Add the mean wind [m/s] of a step of dt [s] at the anemometer; return the tree's."""
-        self._compiled(x, y, z, dt)
+        """
+        Add the mean wind [m/s] of a step of dt [s] at the anemometer; return the tree's.
+
+        Gusts are late by ``way[0] / speed``; while the distance is not yet known (``way[1]``) it
+        is that of the delay found, ``delay speed``, at the present mean speed.
+        """
+        way = self._way
+        follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
+        speed = max(float(self._mean[0]), _SLOWEST)
+        if way[1] > 0.0:
+            way[0] = self._delay[0] * speed
+            way[1] = 1.0 if self._mean[2] < _AVERAGED else 0.0
+        self._wanted[0] = way[0] / speed
+        self._measured[:] = x, y, z
+        self._history.add(self._measured, dt, self._wanted, self._delay, self._wind)
         east, north, up = self._wind[0].tolist()
         return east, north, up
-
-    @cached_property
-    def _compiled(self) -> Callable[[float, float, float, float], None]:
-        arrays = self._run, self._at, self._mean, self._way, self._wanted, self._delay, self._wind
-        return partial(entry_of(push_late, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     @property
     def delay(self) -> float:
@@ -93,30 +98,10 @@ class LateWind:
 
     def memory(self) -> tuple[NDArray[Any], ...]:
         """Return views of the state."""
-        return self._run, self._at, self._mean, self._way, self._delay
+        return *self._history.memory(), self._mean, self._way, self._delay
 
     def reset(self) -> None:
         """Forget the wind; where the anemometer stands stays."""
-        for array in (self._run, self._at, self._mean, self._delay):
-            array[...] = 0
-
-
-@kernel
-def push_late(
-    run: Floats, at: NDArray[np.int64], mean: Floats, way: Floats, wanted: Floats, delay: Floats,
-    wind: Floats, x: float, y: float, z: float, dt: float,
-) -> None:  # fmt: skip
-    """
-    Perform `LateWind.push`.
-
-    Gusts are late by ``way[0] / speed``; while the distance is not yet known (``way[1]``) it is
-    that of the delay found, ``delay speed``, at the present mean speed.
-    """
-    remember(run, at, _FINEST, x, y, z, dt)
-    follow_mean(mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
-    speed = max(mean[0], _SLOWEST)
-    if way[1] > 0.0:
-        way[0] = delay[0] * speed
-        way[1] = 1.0 if mean[2] < _AVERAGED else 0.0
-    wanted[0] = way[0] / speed
-    past_winds(run, at, wanted, delay, LONGEST_WAY, x, y, z, dt, wind)
+        self._history.reset()
+        self._mean[:] = 0.0
+        self._delay[:] = 0.0

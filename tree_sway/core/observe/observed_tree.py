@@ -135,8 +135,8 @@ class ObservedTree(SwaySimulator):
         coherence = min(chosen.crown_coherence, USUAL_COHERENCE)
         bare, wood = tree_and_species(tree, species)
         whole = replace(chosen, crown_coherence=1.0)
-        reductions = TreeReductions(bare, wood, whole, plain=plain)
-        super().__init__(prepared(reductions, cache=cache), plain=plain)
+        reductions = TreeReductions(bare, wood, whole)
+        super().__init__(prepared(reductions, cache=cache))
         if not hasattr(self._bank.oscillators, 'swing') or self.settings.model == 0:
             raise ParameterError(
                 f"motion sensors on model '{self.model}'",

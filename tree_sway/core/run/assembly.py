@@ -15,15 +15,10 @@ from dataclasses import replace
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.model.fill_records import (
-    block_records,
-    fill_places,
-    Places,
-    segment_records,
-)
 from tree_sway.core.model.records import branch_layout
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.run.bank import Bank, Oscillators
 
 LOADED = (
@@ -38,95 +33,79 @@ _NO_INERTIA = (
 )
 
 
-def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
-    """Lay a model out for stepping and placing; with ``plain`` nothing is compiled."""
-    plain = plain or bool(WHY_PLAIN)
-    places = _places(model)
-    branches = _branches(model, places)
-    segments = segment_records(places)
-    oscillators = _oscillators(model, branches, plain)
-    blocks = block_records(branches, segments)
-    bank = Bank(oscillators, branches, segments, blocks, model.mass, plain)
+def native_stand(model: SwayModel) -> NativeStand:
+    """Return a native stand of one tree, where the tree of a model stands."""
+    place = np.array([[*model.tree.start[0], 0.0, 1.0]])
+    own = NativeModel(bytes_of(model.native_arrays()))
+    return NativeStand([own], np.zeros(1, dtype=np.int64), place, np.ones(1))
+
+
+def bank_of(model: SwayModel) -> Bank:
+    """Make a model ready to be stepped and placed."""
+    branches = branch_records(model)
+    stand = native_stand(model)
+    bank = Bank(_oscillators(model, branches, stand), branches, stand, model.mass)
     if model.is_limp:
         from tree_sway.core.run.limp_tree import LimpStep
 
-        assert isinstance(oscillators, LimpStep)
+        assert isinstance(bank.oscillators, LimpStep)
         try:
-            oscillators.begin(model, bank)
+            bank.oscillators.begin(model, bank)
         except np.linalg.LinAlgError:
             stiffer = replace(model, segment_mass=np.zeros(0))
-            others = _oscillators(stiffer, branches, plain)
-            return replace(bank, oscillators=others, doubt=_NO_INERTIA)
+            return replace(
+                bank, oscillators=_oscillators(stiffer, branches, stand), doubt=_NO_INERTIA
+            )
     return bank
 
 
-def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
+def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Oscillators:
     """Make the oscillators of the law of a model."""
     if model.is_isolated:
-        return _isolated(model, branches, plain)
+        from tree_sway.core.kernel import WHY_PLAIN
+        from tree_sway.core.run.branch_oscillators import BranchOscillators
+
+        isolated: type[BranchOscillators] = BranchOscillators
+        if WHY_PLAIN:
+            from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
+
+            isolated = NumpyBranchOscillators
+        given = (model.inertia, model.own_damping, model.stiffness, model.weight)
+        return isolated(branches, *(array.copy() for array in given), model.drag_law)
     name = model.settings.model
     if isinstance(name, str):
         from tree_sway.installed_models import maker_of
 
-        made: Oscillators = maker_of(name)(model, branches, plain)
+        made: Oscillators = maker_of(name)(model, branches)
         return made
+    from tree_sway.core.run.modal_coordinates import ModalCoordinates
+
     if not model.has_table:
         from tree_sway.core.run.rigid import RigidBank
 
         return RigidBank(branches, model)
-    return _on_table(model, branches, plain)
-
-
-def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
-    """Make an oscillator for each branch; what a tuning changes is copied."""
-    from tree_sway.core.run.branch_oscillators import BranchOscillators
-
-    kind: type[BranchOscillators] = BranchOscillators
-    if plain:
-        from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
-
-        kind = NumpyBranchOscillators
-    given = (model.inertia, model.own_damping, model.stiffness, model.weight)
-    return kind(branches, *(array.copy() for array in given))
-
-
-def _on_table(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
-    """Make the coordinates that a table loads."""
-    from tree_sway.core.model.table_record import table_record
-    from tree_sway.core.run.modal_coordinates import ModalCoordinates
-
-    coordinates = ModalCoordinates(branches, model)
     if model.is_limp:
-        from tree_sway.core.run.limp_tree import LimpBank, NumpyLimpBank
+        from tree_sway.core.run.limp_tree import LimpOscillators
 
-        return (NumpyLimpBank if plain else LimpBank)(coordinates, table_record(model))
-    if plain:
-        from tree_sway.core.run.numpy_table import NumpyTableBank
+        coordinates = ModalCoordinates(branches, model)
+        return LimpOscillators(coordinates, stand, model.most_pressure)
+    from tree_sway.core.run.table_model import TableOscillators
 
-        return NumpyTableBank(coordinates, table_record(model))
-    from tree_sway.core.run.table_model import WindBasisBank
-
-    return WindBasisBank(coordinates, table_record(model))
+    return TableOscillators(ModalCoordinates(branches, model), stand, model.most_pressure)
 
 
-def _places(model: SwayModel) -> Places:
-    """How the branches of a model are joined and drawn."""
-    return Places(
-        model.branch_first, model.branch_parent, model.branch_base_segment,
-        model.branch_coordinate, model.branch_keys, model.branch_frame, model.branch_skew[:, 0],
-        model.branch_skew[:, 1], model.branch_offset, model.branch_twist[:, :, 3:],
-        model.segment_chord, model.segment_rest, model.segment_slope, model.segment_tip_slope,
-        model.segment_turn,
-    )  # fmt: skip
-
-
-def _branches(model: SwayModel, places: Places) -> Records:
-    """Fill the records of the branches for stepping and placing, (b,)."""
+def branch_records(model: SwayModel) -> Records:
+    """Fill the records of the branches, (b,)."""
     tree = model.tree
     first = model.branch_first[:-1]
     last = model.branch_first[1:] - 1
     records: Records = np.zeros(len(first), dtype=branch_layout(model.branch_twist.shape[1]))
-    fill_places(places, records)
+    records['parent'] = model.branch_parent
+    records['base_segment'] = model.branch_base_segment
+    records['first'] = first
+    records['end'] = last + 1
+    records['coordinate'] = model.branch_coordinate
+    records['n_coordinates'] = model.branch_keys
     for name in LOADED:
         records[name] = getattr(model, f'branch_{name}')
     records['tip'] = tree.end[last] - tree.start[0]

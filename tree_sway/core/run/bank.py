@@ -1,19 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree ready to be stepped and placed: its oscillators and its records."""
+"""A tree ready to be stepped and placed: its oscillators, its branches and its native stand."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.kernel import entry_of, WHY_PLAIN
-from tree_sway.core.model.drag_law import DragLaw
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.native.stand import NativeStand
 
 
 class Tunable(NamedTuple):
@@ -44,7 +41,7 @@ class Oscillators(Protocol):
 
     @property
     def loads(self) -> Records | None:
-        """Return the records of `load_layout`; None for a model of uniform winds."""
+        """Return the records of `load_layout`; None for a model on a table."""
 
     @property
     def tunable(self) -> Tunable:
@@ -53,20 +50,12 @@ class Oscillators(Protocol):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Advance one step under a mean wind [m/s]; returns how many loads were clamped."""
+    def advance(self, wx: float, wy: float, wz: float) -> int:
+        """
+        Advance one step under a mean wind [m/s].
 
-    def stepping(
-        self, wind: Floats, max_wind: float, law: DragLaw
-    ) -> Callable[[float, float, float], int] | None:
-        """Return a step as one compiled call of a wind's components [m/s], if there is one."""
-
-    def step_outside(self) -> int:
-        """Make the step that such a call could not make; returns the same as `advance`."""
-
-    @property
-    def to_place(self) -> tuple[Records, Singles, Floats] | None:
-        """Return the arguments by which `place` finds key rotations, if it does."""
+        Returns how many loads were clamped; -1 if the motion was not finite.
+        """
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
@@ -90,17 +79,16 @@ class Oscillators(Protocol):
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed: oscillators, and records of branches, segments, blocks.
+    A tree ready to be stepped and placed.
 
-    ``mass`` is that of wood and leaves in [kg]; with ``plain`` nothing is compiled.
+    ``stand`` is the native stand whose first tree it is; ``mass`` is that of wood and leaves in
+    [kg].
     """
 
     oscillators: Oscillators
     branches: Records
-    segments: Records
-    blocks: Records
+    stand: NativeStand
     mass: float
-    plain: bool = bool(WHY_PLAIN)
     doubt: str = ''
     """What makes its motion doubtful, a sentence."""
 
@@ -116,42 +104,17 @@ class Bank:
         force = self.oscillators.forces()
         return np.asarray(np.einsum('bij,bj->i', coupling, force))
 
-    @cached_property
-    def bases(self) -> Floats:
-        """Return memory for the bases of `place`, (b, 8)."""
-        return np.zeros((len(self.branches), 8))
-
-    @cached_property
-    def place(self) -> Callable[[Floats, Floats, Floats], None]:
+    def place(self, rotations: Floats, out: Floats) -> None:
         """
-        Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
+        Place every segment by key rotations (N,) in [rad], (n, 7).
 
         Arrays are not checked: they must be contiguous, of float64 and of these shapes.
         """
-        if self.plain:
-            from tree_sway.core.run.numpy_placing import NumpyPlacing
+        self.stand.place_keys(0, rotations, out)
 
-            return NumpyPlacing(self.branches, self.segments).place
-        from tree_sway.core.run.placing import GIVEN, room_for
-
-        instance = (self.oscillators.to_place or GIVEN)[0]
-        shapes = GIVEN[1]
-        return self._placing(instance, shapes, room_for(int(self.branches['n_coordinates'].sum())))
-
-    def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:
-        from tree_sway.core.run.placing import place
-
-        arrays = instance, shapes, self.segments, self.blocks, self.bases
-        first = *arrays, 1.0, 0.0, 1.0, x
-        given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
-        return partial(entry_of(place, *first, *given), *first)
-
-    @cached_property
-    def place_now(self) -> Callable[[Floats, Floats], None]:
-        """Place every segment by the present state, from a root node (3,) on, as `place`."""
-        from tree_sway.core.run.placing import NONE
-
-        oscillators = self.oscillators
-        if oscillators.to_place is not None and not self.plain:
-            return partial(self._placing(*oscillators.to_place), NONE)
-        return lambda origin, out: self.place(oscillators.rotations(), origin, out)
+    def place_now(self, out: Floats) -> None:
+        """Place every segment by the present state, as `place`."""
+        if self.oscillators.loads is None:
+            self.stand.place_first(out)
+        else:
+            self.place(self.oscillators.rotations(), out)

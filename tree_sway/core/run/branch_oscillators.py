@@ -42,6 +42,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.load_layouts import Banks, OSCILLATORS, Oscillators, WORK, Works
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.records import Branches, WIDTH
@@ -73,6 +74,8 @@ class BranchOscillators(Branchwise):
         J in [kg m^2], k2 in [N m s/rad] and k1 in [N m/rad] of each branch, (b,).
     weight
         Part of the stiffness by gravity in [N m/rad], (b,).
+    drag_law
+        Drag of the tree.
 
     """
 
@@ -85,8 +88,10 @@ class BranchOscillators(Branchwise):
         damping: Floats,
         stiffness: Floats,
         weight: Floats,
+        drag_law: DragLaw,
     ) -> None:
         """Make room for the coefficients and the state."""
+        self._drag_law = drag_law
         self.branches = branches
         self.inertia = inertia
         self.damping = damping
@@ -117,13 +122,14 @@ class BranchOscillators(Branchwise):
         self.loads['guard'][block, :, slot] = guard
         self.loads['compliance'][block, slot] = damping_square * constant[:, 5]
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+    def advance(self, wx: float, wy: float, wz: float) -> int:
         """
-        Advance one step under a mean wind [m/s], with `drag_law.drag_density` in [kg/m^3].
+        Advance one step under a mean wind [m/s].
 
         Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """
-        return int(self._compiled(wx, wy, wz, per_speed_squared))
+        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *self._drag_law)
+        return int(self._compiled(wx, wy, wz, load))
 
     @cached_property
     def _compiled(self) -> Callable[..., int]:

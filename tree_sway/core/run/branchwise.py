@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from tree_sway.core.arrays import Floats, Records
 
 
@@ -13,15 +11,7 @@ class Branchwise:
     """Oscillators on the loads of all branches: there is no table, so no step is outside."""
 
     n_outside = 0
-    to_place = None
     work: Records
-
-    def stepping(self, *_: Any) -> None:
-        """Return no compiled call: a step takes the limbs' winds as well."""
-
-    def step_outside(self) -> int:
-        """Return that no load was clamped: there is no such step."""
-        return 0
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""

@@ -17,22 +17,20 @@ step is stable in any wind. Trees of a stand are stepped by the table too. The l
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.kernel import entry_of, fused, part, WHY_PLAIN
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
 from tree_sway.core.run.dense import copy, largest, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
-from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import (
     AHEAD,
     BEHIND,
@@ -57,8 +55,9 @@ from tree_sway.core.run.segment_drag import (
     segment_drag,
     SegmentDrag,
 )
-from tree_sway.core.run.table_model import WindBasisBank
+from tree_sway.core.run.table_model import middle_of_step, TableOscillators
 from tree_sway.core.vector import Vector
+from tree_sway.core.wind.crown_wind import CrownWind
 
 STRONG = 20.0, 25.0
 """
@@ -143,7 +142,7 @@ class LimpStep:
     The bank gives the step its coordinates (`take_step`), and makes the other one.
     """
 
-    is_plain: bool
+    is_plain = bool(WHY_PLAIN)
     branches: Records
     leading = LEADING
     """Largest number of coordinates whose inertia is that of the pose."""
@@ -289,70 +288,67 @@ class LimpStep:
         return entry(*arguments)
 
 
-class LimpBank(LimpStep, WindBasisBank):
+class LimpOscillators(LimpStep, TableOscillators):
     """A limp tree whose other step is that of a table."""
 
     def begin(self, model: SwayModel, bank: Bank) -> None:
         """Prepare the law of a model, by a bank that places it."""
         super().begin(model, bank)
         self.most_energy = model.most_energy
+        self._drag_law = model.drag_law
+        self._crown: CrownWind | None = None
+        if model.has_limbs:
+            self._crown = CrownWind(float(model.limb_spread[0]), model.settings.crown_coherence)
+            self._delay = model.limb_delay
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         super().set_step(dt)
-        m = len(self.modal.stiffness)
-        half = self.time_step[0]['half'][:, :m]
+        half = middle_of_step(self.modal, dt)
         # Gusts that reach the limbs one after another are added by the force of the step.
-        self.take_step(self.modal, half, self.swing, self.instance['wanted'][0, :m], dt)
+        wanted = self._state.wanted[self.number, : len(self.modal.stiffness)]
+        self.take_step(self.modal, half, self.swing, wanted, dt)
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Advance one step, as `WindBasisBank.advance`."""
-        return self.step_outside() if self.step_once(wx, wy, wz, per_speed_squared) else 0
-
-    def stepping(
-        self, wind: Floats, max_wind: float, law: DragLaw
-    ) -> Callable[[float, float, float], int]:
-        """Return a step as one call, as `WindBasisBank.stepping`."""
-        return partial(self._step_in_wind, wind, max_wind, law)
+    def advance(self, wx: float, wy: float, wz: float) -> int:
+        """Advance one step, as `TableOscillators.advance`."""
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        if self._crown is not None and self._law is not None:
+            apart = self._crown.push(wx, wy, wz, self._law.length)
+            self._take_gusts(apart[self._delay], speed)
+        return self.step_once(wx, wy, wz, drag_density(speed, *self._drag_law))
 
     def reset(self) -> None:
         """Return to rest."""
         super().reset()
         self.begin_anew()
+        if self._crown is not None:
+            self._crown.reset()
 
-    def _step_in_wind(
-        self, stored: Floats, max_wind: float, law: DragLaw, x: float, y: float, z: float
-    ) -> int:
-        """Check a wind [m/s] and step, as `table_model.step_in_wind`."""
-        is_refused = not math.sqrt(x * x + y * y + z * z) <= max_wind
-        if not is_refused:
-            stored[:] = x, y, z
-        wx, wy, wz = stored.tolist()
-        load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
-        return int(is_refused) + 2 * self.step_once(wx, wy, wz, load)
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state."""
+        return *super().memory(), *(() if self._crown is None else self._crown.memory())
 
     def share_of_other(self, speed: float) -> float:
         """Weight of the table's step in a wind [m/s], 0 to 1."""
-        return 1.0 if self.instance['left_out'][0] else super().share_of_other(speed)
+        return 1.0 if self._state.left_out[self.number] else super().share_of_other(speed)
 
-    def takes_gusts(self, gusts: Floats, speed: float) -> bool:
+    def _take_gusts(self, gusts: Floats, speed: float) -> None:
         """
         Take the wind of each branch beside the mean wind [m/s], (b, 3), for the next step.
 
-        Returns False where a part of this step is by the table, which has uniform winds only.
+        Where a part of this step is by the table, the native core adds them.
         """
-        is_by_table = self.instance['left_out'][0] or self._pause > 0.0 or speed > STRONG[0]
+        is_by_table = self._state.left_out[self.number] or self._pause > 0.0 or speed > STRONG[0]
         is_long = self._law is None or self._law.length > LONGEST_STEP
         is_at_pose = not (is_by_table or is_long)
         self.segments.gust[:] = gusts[self.segments.branch] if is_at_pose else 0.0
-        return is_at_pose
 
     def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Make the step of the table; returns 1 where it was clamped to its limit."""
+        """Make the step of the table, as `TableOscillators.advance`."""
         eta, rate, _ = self.swing
         before = eta.copy()
         rotations = self.rotations().copy()
-        outside = int(self._step(wx, wy, wz, per_speed_squared))
+        outside = TableOscillators.advance(self, wx, wy, wz)
         turned = largest(self.rotations() - rotations)
         if turned > MOST_TURN_BY_TABLE:
             share = MOST_TURN_BY_TABLE / turned
@@ -362,15 +358,11 @@ class LimpBank(LimpStep, WindBasisBank):
 
     def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
         """Note the wind of a step at the pose that is taken alone."""
-        instance = self.instance[0]
-        instance['wind'] = (wx, wy, wz)
-        instance['drag_density'] = per_speed_squared
-        instance['outside'] = 0
-        instance['diagonal'] = 0.0
-
-
-class NumpyLimpBank(LimpBank, NumpyTableBank):
-    """A limp tree in numpy."""
+        state = self._state
+        state.wind[self.number] = wx, wy, wz
+        state.drag_density[self.number] = per_speed_squared
+        state.is_clamped[self.number] = 0.0
+        state.diagonal[self.number] = 0.0
 
 
 @part

@@ -61,6 +61,8 @@ class ModalCoordinates:
         """Mean squared motion of each load centre per unit of each coordinate, (b, m)."""
         self.whole, self.half = np.zeros((2, len(self.stiffness), 8))
         """Propagators over the time step and half of it, as `fill_propagator`, (m, 8)."""
+        self.dt = 0.0
+        """The time step [s]."""
 
     @property
     def air_damping(self) -> Floats:
@@ -76,6 +78,7 @@ class ModalCoordinates:
 
     def set_time_step(self, dt: float) -> None:
         """Refill the propagators for a time step [s]."""
+        self.dt = dt
         one = np.ones(len(self.stiffness))
         fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)

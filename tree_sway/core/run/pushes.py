@@ -153,7 +153,7 @@ class Touch:
             push = Push(row, away, given, left, lever, lever, lever.T.copy())
         self.pushes[row] = replace(push, force=given, left=left, stiffness=stiffness)
 
-    def step(self, place_all: Callable[[], Floats], origin: Floats, dt: float) -> int:
+    def step(self, place_all: Callable[[], Floats], dt: float) -> int:
         """Apply the pushes for a step [s]; returns how many moments were clamped."""
         moments = np.zeros(len(self.residual))
         self.load[:] = 0.0
@@ -167,7 +167,7 @@ class Touch:
         for push in list(self.pushes.values()):
             place = push.place(poses)
             if push.renewed_in <= 0.0:
-                self._renew(push, place, origin, self._oscillators.rotations() + residual)
+                self._renew(push, place, self._oscillators.rotations() + residual)
             force = (share := min(1.0, push.left / dt)) * push.force
             if push.stiffness:
                 # Implicit, by the force at the end of the step, with the stiffness that it can
@@ -179,7 +179,7 @@ class Touch:
                 force = np.linalg.solve(np.eye(3) + k * give, k * (push.force - place))
             moments += force @ push.lever
             self.residual += settled * push.residual @ force
-            self.load += [*force, *np.cross(place - origin, force)]
+            self.load += [*force, *np.cross(place - self._tree.start[0], force)]
             push.left -= dt
             push.renewed_in -= dt
             if push.left <= 1e-9 * dt:
@@ -192,7 +192,7 @@ class Touch:
         total += modal_force
         return int((np.abs(moments) > limit).sum())
 
-    def _renew(self, push: Push, place: Floats, origin: Floats, x: Floats) -> None:
+    def _renew(self, push: Push, place: Floats, x: Floats) -> None:
         """Find the motion of a place (3,) by key rotations x (N,)."""
         branches = self._bank.branches
         # A branch that is cut has one record per piece.
@@ -207,7 +207,7 @@ class Touch:
             count = int(record['n_coordinates'])
             for i in (own := range(first, first + count)):
                 x[i] += _TURN
-                self._bank.place(x, origin, self._poses)
+                self._bank.place(x, self._poses)
                 push.lever[:, i] = (push.place(self._poses) - place) / _TURN
                 x[i] -= _TURN
             residual[own] = by_branch[own, :count] @ push.lever[:, own].T

@@ -20,7 +20,6 @@ from tree_sway.core.checks import (
     three_numbers,
     whole,
 )
-from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
@@ -74,8 +73,6 @@ class SwaySimulator:
     ----------
     prepared
         Model of the tree, as `prepare` makes it; `make_simulator` does both.
-    plain
-        Whether to run in numpy, as where numba is missing.
 
     Examples
     --------
@@ -86,8 +83,8 @@ class SwaySimulator:
 
     """
 
-    def __init__(self, prepared: SwayModel, *, plain: bool = False) -> None:
-        """Lay the model out; the first step only compiles."""
+    def __init__(self, prepared: SwayModel) -> None:
+        """Make the tree at rest."""
         self.models = (prepared,)
         """Prepared model of the tree."""
         self.tree = tree = prepared.tree
@@ -95,18 +92,14 @@ class SwaySimulator:
         self.gusts: GustHistory | None = None
         """No gusts travel within a tree."""
         self.counts = Counts()
-        self._bank: Bank = bank_of(prepared, plain=plain)
-        self._drag_law = prepared.drag_law
+        self._bank: Bank = bank_of(prepared)
         self._advance = self._bank.oscillators.advance
-        self._in_one_call: Callable[[float, float, float], int] | None = None
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
-        if prepared.has_limbs:
-            from tree_sway.core.run import crown_gusts
+        if prepared.has_limbs and self._bank.oscillators.loads is not None:
+            from tree_sway.core.run.crown_gusts import CrownGusts
 
-            self._gusts = crown_gusts.CrownGusts(
-                prepared, self._bank.oscillators, plain=self._bank.plain
-            )
+            self._gusts = CrownGusts(prepared, self._bank.oscillators)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan
@@ -244,7 +237,7 @@ class SwaySimulator:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         out = self._to_fill(out)
         read = array_to_read('rotations', rotations, self._expected)
-        self._bank.place(read, self._origin, out)
+        self._bank.place(read, out)
         return out
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -283,32 +276,21 @@ class SwaySimulator:
         if is_changed:
             self._set_step(dt)
         counts.steps += 1
-        call = self._in_one_call
-        if call is not None:
-            outcome = call(x, y, z)
-            if outcome == 0 and self._touch is None:
-                return OK
-            counts.refused += outcome & 1
-            clamped = self._bank.oscillators.step_outside() if outcome & 2 else 0
-            if clamped > 0:
-                self._watch_clamped(dt)
-            return (
-                (WIND_REFUSED if outcome & 1 else OK)
-                | self._count(clamped)
-                | self._step_pushes(dt)
-            )
         status = OK
+        stored = self._wind
         if is_wind(x, y, z, self._max_wind):
-            self._wind[:] = x, y, z
+            stored[0] = x
+            stored[1] = y
+            stored[2] = z
         else:
             status = WIND_REFUSED
             counts.refused += 1
-        wx, wy, wz = self._wind.tolist()
-        load = drag_density(math.hypot(wx, wy, wz), *self._drag_law)
-        if self._gusts is None:
-            outcome = self._advance(wx, wy, wz, load)
-        else:
-            outcome = self._gusts.advance(wx, wy, wz, load, dt)
+            x, y, z = stored.tolist()
+        if self._gusts is not None:
+            self._gusts.push(x, y, z, dt)
+        outcome = self._advance(x, y, z)
+        if outcome == 0 and self._touch is None:
+            return status
         if outcome > 0:
             self._watch_clamped(dt)
         return status | self._count(outcome) | self._step_pushes(dt)
@@ -366,7 +348,7 @@ class SwaySimulator:
         if self._touch is None or self._touch.is_gone:
             self._touch = None
             return OK
-        return self._count(self._touch.step(lambda: self.place(self._poses), self._origin, dt))
+        return self._count(self._touch.step(lambda: self.place(self._poses), dt))
 
     def _count(self, clamped: int) -> int:
         """Count the result of `advance`; returns bits as `step`."""
@@ -423,7 +405,7 @@ class SwaySimulator:
         """
         out = self._to_fill(out)
         if self._touch is None:
-            self._bank.place_now(self._origin, out)
+            self._bank.place_now(out)
             return out
         return self.place_rotations(self.rotations(), out)
 
@@ -492,9 +474,6 @@ class SwaySimulator:
     def _set_step(self, dt: float) -> None:
         self._bank.oscillators.set_step(dt)
         self._dt = dt
-        if self._in_one_call is None and self._gusts is None:
-            stepping = self._bank.oscillators.stepping
-            self._in_one_call = stepping(self._wind, self._max_wind, self._drag_law)
 
 
 class TreeGroup(NamedTuple):

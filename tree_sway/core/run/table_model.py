@@ -40,18 +40,21 @@ class TableOscillators:
     modal
         The coordinates.
     stand
-        Stand of the native core that has the tree.
-    number
-        Number of the tree in it.
+        Stand of the native core whose first tree it is.
+    most_pressure
+        Largest dynamic pressure of the table [kg/m/s^2].
 
     """
 
     loads: Records | None = None
 
-    def __init__(self, modal: ModalCoordinates, stand: NativeStand, number: int = 0) -> None:
+    def __init__(
+        self, modal: ModalCoordinates, stand: NativeStand, most_pressure: float
+    ) -> None:
         self.modal = modal
+        self.most_pressure = most_pressure
         self.stand = stand
-        self.number = number
+        self.number = 0
         self.branches = modal.branches
         self.shapes = modal.shapes
         self.compliance = modal.compliance
@@ -98,15 +101,21 @@ class TableOscillators:
         self._state.at_rest[self.number] = n_dropped
         self._state.left_out[self.number] = n_dropped
 
+    @property
+    def is_bent_too_far(self) -> bool:
+        """Whether the last step clamped the tree in a wind that cannot bend it so far."""
+        found = bent_too_far(self._state, np.full(len(self._state.eta), self.most_pressure))
+        return bool(found[self.number])
+
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.modal.set_time_step(dt)
         self.stand.tune(0, self.modal.stiffness, self.modal.damping)
         self.stand.set_step(dt)
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+    def advance(self, wx: float, wy: float, wz: float) -> int:
         """
-        Advance one step under a mean wind [m/s], whose drag density the model knows.
+        Advance one step under a mean wind [m/s].
 
         Returns 1 if the step was clamped to the limit of the table, -1 if the motion was not
         finite and the tree came to rest, else 0.
@@ -127,9 +136,8 @@ class TableOscillators:
     def whole(self) -> Floats:
         """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
         count = self.modal.shapes.shape[1]
-        half = self.modal.half
         # The step was implicit in the damping of each coordinate.
-        per_force = half[:, 6] + half[:, 7]
+        per_force = middle_of_step(self.modal, self.modal.dt)[5]
         implicit = 1.0 - self._state.diagonal[self.number, :count] * per_force
         return np.asarray(self.modal.whole / implicit[:, None])
 
@@ -191,3 +199,27 @@ def come_to_rest(states: States, number: int) -> None:
     """Bring a tree to rest: the motion and the force of a tree that is stuck are no state."""
     for rows in (states.eta, states.rate, states.force):
         rows[number] = 0.0
+
+
+def middle_of_step(modal: ModalCoordinates, dt: float) -> Floats:
+    """
+    Return displacement and rate at the middle of a step by displacement, rate and force, (6, m).
+
+    The load is taken from there, where the rate of a coordinate that swings nearly once a step or
+    more may be opposite to its force. Strong drag, whose implicit part needs a rate that follows
+    the force, would then feed the motion. The middle state of such coordinates is that of an
+    implicit Euler step, whose rate always follows the force.
+    """
+    half = modal.half.T[[0, 1, 2, 4, 5, 6]]
+    half[[2, 5]] += modal.half.T[[3, 7]]
+    euler = _implicit_euler(modal.damping, modal.stiffness, 0.5 * dt)
+    return np.where(half[5] < euler[5], euler, half)
+
+
+def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
+    """Return displacement, then rate, after h [s] by displacement, rate and force, (6, m)."""
+    share = 1.0 / (1.0 + h * damping + h * h * stiffness)
+    rate = np.stack([-h * stiffness * share, share, h * share])
+    displacement = h * rate
+    displacement[0] += 1.0
+    return np.concatenate([displacement, rate])

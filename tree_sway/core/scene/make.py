@@ -28,7 +28,6 @@ def make_simulator(
     tolerance: float = 0.005,
     budget: float = 0.0,
     cache: ModelCache | None = PREPARED,
-    plain: bool = False,
     **changes: Any,
 ) -> SwaySimulator:
     """
@@ -49,8 +48,6 @@ def make_simulator(
         limit.
     cache
         Where prepared models are found again; nowhere if None.
-    plain
-        Whether to run in numpy, as where numba is missing.
     **changes
         Fields of the settings.
 
@@ -66,7 +63,7 @@ def make_simulator(
         if species is not None or settings is not None or changes:
             what = 'a prepared model with another species or other settings'
             raise ParameterError(what, where=tree.tree.name, cure='prepare the tree again')
-        return SwaySimulator(tree, plain=plain)
+        return SwaySimulator(tree)
     # The set-up is most of the program: a prepared model is stepped without loading it.
     from tree_sway.core.setup.reductions import TreeReductions
     from tree_sway.core.tree.grown_tree import tree_and_species
@@ -74,7 +71,7 @@ def make_simulator(
     bare, wood = tree_and_species(tree, species)
     chosen = settings_with(settings, changes)
     how = {'tolerance': tolerance, 'budget': budget} if chosen.model == 'auto' else {}
-    reductions = TreeReductions(bare, wood, solved(chosen), plain=plain)
+    reductions = TreeReductions(bare, wood, solved(chosen))
     return simulator_of(reductions, cache=cache, **how)
 
 
@@ -95,7 +92,7 @@ def simulator_of(
 
     model = prepared(reductions, cache=cache)
     if not auto:
-        return SwaySimulator(model, plain=reductions.plain)
+        return SwaySimulator(model)
     from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 
-    return AdaptiveSimulator(model, plain=reductions.plain, **auto)
+    return AdaptiveSimulator(model, **auto)

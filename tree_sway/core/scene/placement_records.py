@@ -1,15 +1,15 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Records of trees on shared tables: their places and time steps."""
+"""Places, winds and time steps of trees on shared tables."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.run.stand import PLACEMENT
+from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.wind.height_profile import WindProfile
 
@@ -20,10 +20,18 @@ _FINEST_SCALE = 0.01
 """Largest relative difference of scales of trees with the same time step."""
 
 
-def placements_of(scene: PlacedTrees, tables: Ints, profile: WindProfile) -> Records:
-    """Make the records of a scene's trees by their tables, (t,)."""
+class Placements(NamedTuple):
+    """Where trees stand: places as x, y, z [m], turn [rad] and scale, (t, 5), and winds, (t,)."""
+
+    places: Floats
+    speeds: Floats
+    """Wind of each tree over that of its kind, (t,)."""
+
+
+def placements_of(scene: PlacedTrees, profile: WindProfile) -> Placements:
+    """Return where the trees of a scene stand."""
     places = np.array([(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in scene.trees])
-    return placement_records(tables, places, _wind_ratios(scene, profile))
+    return Placements(places, _wind_ratios(scene, profile))
 
 
 def kind_heights(scene: PlacedTrees) -> Floats:
@@ -41,31 +49,6 @@ def _wind_ratios(scene: PlacedTrees, profile: WindProfile) -> Floats:
     return np.divide(of_tree, of_kind, out=np.ones(len(scales)), where=of_kind > 0.0)
 
 
-def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
-    """
-    Make the records of trees by their tables, places and winds.
-
-    Places are x, y, z [m], turn about the vertical [rad] and scale, (t, 5); winds are those of
-    the trees over those of their kinds, (t,).
-    """
-    half_turn = 0.5 * places[:, 3]
-    rows: Records = np.zeros(len(places), dtype=PLACEMENT)
-    rows['kind'] = kinds
-    rows['at'] = places[:, :3]
-    rows['scale'] = places[:, 4]
-    rows['speed'] = speeds
-    rows['cosine'] = np.cos(half_turn)
-    rows['sine'] = np.sin(half_turn)
-    return rows
-
-
-def own_steps(kinds: Ints, scales: Floats, dt: float) -> tuple[list[tuple[int, float]], Ints]:
-    """Return the kinds and time steps [s] for a step of the scene, and that of each tree."""
-    scale_numbers = np.rint(np.log(scales) / _FINEST_SCALE)
-    pairs = np.stack([kinds, scale_numbers], axis=1)
-    found, number_of_pair = np.unique(pairs, axis=0, return_inverse=True)
-    own = []
-    for kind, scale_number in found.tolist():
-        scale = math.exp(scale_number * _FINEST_SCALE)
-        own.append((int(kind), dt / scale))
-    return own, number_of_pair.ravel()
+def own_step(scale: float, dt: float) -> float:
+    """Return the time step [s] of a tree of a scale, rounded to a hundredth, as the native core."""
+    return dt / math.exp(round(math.log(scale) / _FINEST_SCALE) * _FINEST_SCALE)

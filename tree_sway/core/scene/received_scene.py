@@ -17,26 +17,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.model.exported_table import table_of
-from tree_sway.core.model.records import instance_layout, time_step_layout
+from tree_sway.core.model.exported_table import arrays_of_table
+from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer
-from tree_sway.core.run.table_model import (
-    bent_too_far,
-    come_to_rest,
-    drop,
-    fill_time_step,
-    Propagators,
-)
-from tree_sway.core.scene.placement_records import own_steps, placement_records
+from tree_sway.core.run.table_model import bent_too_far, come_to_rest
+from tree_sway.core.scene.placement_records import own_step
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.errors import ParameterError
-
-if WHY_PLAIN:
-    from tree_sway.core.run.numpy_stand import step_stand
-else:
-    from tree_sway.core.run.stand import step_stand
 
 _SLOWEST = 0.3
 """Smallest response to a rate within a time step, over that of the slowest coordinate."""
@@ -89,23 +78,13 @@ class ReceivedScene:
         _check(kinds, kind_of, places, speeds)
         self._dt = dt
         self._sizes = [len(kind.arrays['stiffness']) for kind in kinds]
-        m = max(self._sizes)
-        self.tables = np.concatenate([table_of(k.numbers, k.arrays, m) for k in kinds])
-        self.instances = np.zeros(len(places), dtype=instance_layout(m))
-        self._laws = np.array([kind.drag_law for kind in kinds])
         self._kind_of = np.asarray(kind_of)
-        found, step = own_steps(self._kind_of, places[:, 4], dt)
-        self._time_steps = np.zeros(len(found), dtype=time_step_layout(m))
-        for own, (number, own_dt) in zip(self._time_steps, found, strict=True):
-            arrays = kinds[number].arrays
-            damping = arrays['own_damping']
-            stiffness = arrays['stiffness']
-            whole, half = (
-                propagator(1.0, damping, stiffness, span) for span in (own_dt, 0.5 * own_dt)
-            )
-            fill_time_step(own, Propagators(damping, stiffness, whole, half), own_dt)
-        self._placed = placement_records(self._kind_of, places, speeds)
-        self._placed['time_step'] = self._full_steps = step
+        models = [_native(kind) for kind in kinds]
+        self.stand = NativeStand(models, self._kind_of, places, speeds)
+        self.stand.set_step(dt)
+        self._most_pressure = np.array([kind.numbers['most_pressure'] for kind in kinds])
+        found = [own_step(scale, dt) for scale in places[:, 4].tolist()]
+        self._way = [_way(kinds[kind], own) for kind, own in zip(kind_of.tolist(), found, strict=True)]
         self._steps = 0
         self._watches = dict[int, ClampWatch]()
         self.reduced = 0
@@ -123,8 +102,7 @@ class ReceivedScene:
         A tree whose steps stay clamped continues from rest on fewer coordinates.
         """
         winds = self.gusts.push(wind, self._dt)
-        arrays = self.tables, self._time_steps, self._placed, self.instances, self._laws
-        clamped = step_stand(*arrays, winds)[0]
+        clamped = self.stand.step(winds)[0]
         self._steps += 1
         if clamped:
             self._watch_clamped()
@@ -132,35 +110,33 @@ class ReceivedScene:
 
     def _watch_clamped(self) -> None:
         """Solve fewer coordinates of the trees whose steps stay clamped."""
-        most = self.tables['most_pressure'][self._kind_of]
-        for number in np.flatnonzero(bent_too_far(self.instances, most)).tolist():
+        states = self.stand.states
+        is_bent = bent_too_far(states, self._most_pressure[self._kind_of])
+        for number in np.flatnonzero(is_bent).tolist():
             watch = self._watches.setdefault(number, ClampWatch())
             if not watch.is_stuck(self._steps, self._dt):
                 continue
             before = self._count(number)
             count = fewer(before)
             if count < before:
-                come_to_rest(self.instances[number : number + 1])
-                self.instances['left_out'][number] += before - count
-                own = self._time_steps[self._placed['time_step'][number]].copy()
-                drop(own, count)
-                self._placed['time_step'][number] = len(self._time_steps)
-                self._time_steps = np.append(self._time_steps, own)
+                come_to_rest(states, number)
+                states.left_out[number] += before - count
+                states.at_rest[number] = states.left_out[number]
                 self.reduced += 1
 
     def _count(self, tree: int) -> int:
         """Return the number of coordinates of a tree that are solved."""
-        return self._sizes[int(self._kind_of[tree])] - int(self.instances['left_out'][tree])
+        return self._sizes[int(self._kind_of[tree])] - int(self.stand.states.left_out[tree])
 
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
         size = self._sizes[int(self._kind_of[tree])]
-        return np.asarray(self.instances['eta'][tree, :size])
+        return np.asarray(self.stand.states.eta[tree, :size])
 
     def state(self) -> Floats:
         """Coordinates of the description of all trees, (M,)."""
         states = []
-        for own, kind in zip(self.instances['eta'], self._kind_of.tolist(), strict=True):
+        for own, kind in zip(self.stand.states.eta, self._kind_of.tolist(), strict=True):
             states.append(own[: self._sizes[kind]] @ self._states[kind])
         return np.concatenate(states)
 
@@ -175,19 +151,28 @@ class ReceivedScene:
         change[part] = values - self.state()[part]
         for tree, kind in enumerate(self._kind_of.tolist()):
             own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
-            instance = self.instances[tree]
+            states = self.stand.states
             count = self._count(tree)
-            whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :count]
-            instance['eta'][:count] += own[:count]
-            way = np.maximum(whole[1], _SLOWEST * whole[1].max())
-            instance['rate'][:count] += own[:count] * whole[5] / (way * steps)
+            states.eta[tree, :count] += own[:count]
+            states.rate[tree, :count] += own[:count] * self._way[tree][:count] / steps
 
     def reset(self) -> None:
         """Return to rest, without wind."""
-        self.instances[:] = np.zeros((), dtype=self.instances.dtype)
-        self._placed['time_step'] = self._full_steps
+        self.stand.reset()
         self._watches.clear()
         self.gusts.reset()
+
+
+def _native(kind: ReceivedKind) -> NativeModel:
+    """Return the native model of a table."""
+    law = {'drag_law': np.array(kind.drag_law, dtype=np.float64)}
+    return NativeModel(bytes_of(law | arrays_of_table(kind.numbers, kind.arrays)))
+
+
+def _way(kind: ReceivedKind, dt: float) -> Floats:
+    """Change of the rate by a change of the displacement over a time step, (m,)."""
+    whole = propagator(1.0, kind.arrays['own_damping'], kind.arrays['stiffness'], dt).T
+    return np.asarray(whole[5] / np.maximum(whole[1], _SLOWEST * whole[1].max()))
 
 
 def _check(kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats) -> None:

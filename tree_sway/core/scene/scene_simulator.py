@@ -110,7 +110,7 @@ class SceneSimulator:
         self._ends = np.concatenate([[0], np.cumsum(sizes[scene.kind_numbers])])
         """First row of each tree in the pose block, and the end of the last, (t + 1,)."""
         self.gusts = GustHistory(
-            self._shared.placements['at'],
+            self._shared.placements.places[:, :3],
             scene.anemometer,
             convection_ratio=scene.convection_ratio,
         )
@@ -201,7 +201,7 @@ class SceneSimulator:
     @property
     def speeds(self) -> Floats:
         """Wind of each tree over that of its kind, (t,)."""
-        return np.array(self._shared.placements['speed'])
+        return self._shared.placements.speeds.copy()
 
     def frequencies(self, count: int = 10) -> Floats:
         """Lowest natural frequencies of all trees, as `SwaySimulator.frequencies`."""
@@ -414,8 +414,8 @@ class SceneSimulator:
     @cached_property
     def _highest(self) -> tuple[int, Tree]:
         """Number of the tree whose tip is the highest, and the tree where it is."""
-        placements = self._shared.placements
-        tops = placements['at'][:, 2] + placements['scale'] * kind_heights(self._scene)
+        places = self._shared.placements.places
+        tops = places[:, 2] + places[:, 4] * kind_heights(self._scene)
         number = int(np.argmax(tops))
         return number, self._scene.trees[number].placed()
 

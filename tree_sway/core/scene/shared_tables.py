@@ -13,44 +13,32 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.model_cache import ModelCache
-from tree_sway.core.model.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer
 from tree_sway.core.run.simulator import Counts, Motion, SwaySimulator, TreeGroup
-from tree_sway.core.run.stand import PLACEMENT
 from tree_sway.core.run.table_model import (
     bent_too_far,
     come_to_rest,
-    drop,
-    fill_time_step,
-    propagators_of,
     STATE_FIELDS,
-    WindBasisBank,
+    TableOscillators,
 )
 from tree_sway.core.run.tuning import LiveTuning, Tuning
 from tree_sway.core.scene.kind_frame import KindFrame
-from tree_sway.core.scene.kind_placing import KindPlacing
 from tree_sway.core.scene.placed_trees import PlacedTrees
-from tree_sway.core.scene.placement_records import own_steps, placements_of
+from tree_sway.core.scene.placement_records import own_step, placements_of
 from tree_sway.core.scene.sharing import Sharing
 from tree_sway.core.scene.tree_on_table import TreeOnTable
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.errors import inside
 
-if WHY_PLAIN:
-    from tree_sway.core.run.numpy_stand import step_stand
-else:
-    from tree_sway.core.run.stand import step_stand
 if TYPE_CHECKING:
     from tree_sway.core.run.pushes import Spring, Touch
-
-_NO_TABLES: Records = np.zeros(0, dtype=PLACEMENT)
 
 
 class SharedTables:
@@ -103,14 +91,15 @@ class SharedTables:
         """Counts of clamped, reduced and restarted trees."""
         self._oscillators = [_table_of(kind.banks[0]) for kind in self.kinds]
         self._trees_on = [sharing.trees_on(row) for row in range(len(self.kinds))]
-        self.placements = placements_of(scene, sharing.tables, settings.profile)
-        """Records of where the trees stand, and on which table they are, (t,)."""
-        self.placements['is_still'] = ~sharing.is_shared | (sharing.counts == 0)
-        self._lay_out()
-        self._placing = [
-            KindPlacing(kind.tree.n_segments, kind.banks[0], oscillators)
-            for kind, oscillators in zip(self.kinds, self._oscillators, strict=True)
-        ]
+        self.placements = placements_of(scene, settings.profile)
+        """Where the trees stand."""
+        self._counted = sharing.counts.copy()
+        """Numbers of coordinates that the trees show, (t,); -1 on models of their own."""
+        self._stand: NativeStand | None = None
+        if self.kinds:
+            models = [kind.banks[0].stand.models[0] for kind in self.kinds]
+            self._kind_numbers = np.maximum(sharing.tables, 0)
+            self._stand = NativeStand(models, self._kind_numbers, *self.placements)
         self._tunings = [
             LiveTuning(bank.tunable, kind.settings, kind.models[0].damping_ratio)
             for kind, bank in zip(self.kinds, self._oscillators, strict=True)
@@ -118,25 +107,13 @@ class SharedTables:
         self._watches: dict[int, ClampWatch] = {}
         self._pushed: dict[int, TreeOnTable] = {}
         self._dt = math.nan
-        self._counted = sharing.counts.copy()
-        """Numbers of coordinates that the trees show, (t,); -1 on models of their own."""
         self._show()
 
-    def _lay_out(self) -> None:
-        """Lay the tables of the kinds side by side, and make the state of every tree on them."""
-        tables = self._oscillators
-        n_modes = max((table.shapes.shape[1] for table in tables), default=1)
-        for table in tables:
-            table.lay_out(n_modes)
-        n_states = len(self.placements) if tables else 0
-        self._instances = np.zeros(n_states, dtype=instance_layout(n_modes))
-        self._time_steps = np.zeros(0, dtype=time_step_layout(n_modes))
-        self._tables = _NO_TABLES
-        if tables:
-            self._tables = zeros_in_lines(len(tables), tables[0].record.dtype)
-        for row, table in enumerate(tables):
-            self._tables[row] = table.record[0]
-        self._laws = np.array([kind.models[0].drag_law for kind in self.kinds])
+    @property
+    def stand(self) -> NativeStand:
+        """Return the native stand of all trees, those on models of their own at rest."""
+        assert self._stand is not None
+        return self._stand
 
     @property
     def models(self) -> list[str]:
@@ -151,18 +128,18 @@ class SharedTables:
             for kind, oscillators, trees in self._by_table()
         ]
 
-    def _by_table(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
+    def _by_table(self) -> list[tuple[SwaySimulator, TableOscillators, Ints]]:
         """Return the kind of each table, the table, and the numbers of its trees."""
         return list(zip(self.kinds, self._oscillators, self._trees_on, strict=True))
 
-    def _in_basis(self, oscillators: WindBasisBank, trees: Ints, basis: StateBasis) -> Motion:
+    def _in_basis(self, oscillators: TableOscillators, trees: Ints, basis: StateBasis) -> Motion:
         """Return a function that finds the motion of trees of one kind in a basis, (t, m)."""
         per_shape = oscillators.all_shapes @ basis.projection.T
         n_modes = oscillators.shapes.shape[1]
 
         def found() -> Floats:
             is_shown = np.arange(n_modes) < self._counted[trees, None]
-            shown = np.where(is_shown, self._instances['eta'][trees, :n_modes], 0.0)
+            shown = np.where(is_shown, self.stand.states.eta[trees, :n_modes], 0.0)
             return np.asarray(shown @ per_shape)
 
         return found
@@ -171,7 +148,7 @@ class SharedTables:
     def mass(self) -> float:
         """Mass of wood and leaves of these trees in [kg]."""
         masses = [
-            kind.mass * float((self.placements['scale'][trees] ** 3).sum())
+            kind.mass * float((self.placements.places[trees, 4] ** 3).sum())
             for kind, _, trees in self._by_table()
         ]
         return sum(masses)
@@ -179,7 +156,7 @@ class SharedTables:
     def frequencies(self, count: int) -> list[Floats]:
         """Return the lowest natural frequencies of the trees of each table in [Hz]."""
         return [
-            (kind.frequencies(count) / self.placements['scale'][trees, None]).ravel()
+            (kind.frequencies(count) / self.placements.places[trees, 4, None]).ravel()
             for kind, _, trees in self._by_table()
         ]
 
@@ -190,7 +167,10 @@ class SharedTables:
 
     def memory(self) -> tuple[NDArray[Any], ...]:
         """Return views of the states of the trees."""
-        return *(self._instances[name] for name in STATE_FIELDS), self._counted
+        if self._stand is None:
+            return (self._counted,)
+        states = self._stand.states
+        return *(getattr(states, name) for name in STATE_FIELDS), self._counted
 
     def refresh(self) -> None:
         """Follow a state that was written to the memory."""
@@ -199,17 +179,24 @@ class SharedTables:
 
     def reset(self) -> None:
         """Bring every tree to rest; the counts stay."""
-        self._instances[:] = np.zeros((), dtype=self._instances.dtype)
+        if self._stand is not None:
+            self._stand.reset()
         self._counted[:] = self._sharing.counts
         self._watches.clear()
         self._pushed.clear()
         self.refresh()
 
     def _show(self) -> None:
-        """Hide the coordinates of the table that a tree does not have."""
-        for _, oscillators, trees in self._by_table():
-            left_out = np.maximum(oscillators.shapes.shape[1] - self._counted[trees], 0)
-            self._instances['left_out'][trees] = left_out
+        """Hide the coordinates of the table that a tree does not have; let others rest."""
+        if self._stand is None:
+            return
+        states = self._stand.states
+        sizes = np.array([table.shapes.shape[1] for table in self._oscillators])
+        size = sizes[self._kind_numbers]
+        states.left_out[:] = np.maximum(size - np.maximum(self._counted, 0), 0)
+        is_still = ~self._sharing.is_shared | (self._sharing.counts == 0)
+        is_reduced = self._counted < self._sharing.counts
+        states.at_rest[:] = np.where(is_still, size, np.where(is_reduced, states.left_out, 0.0))
 
     def step(self, winds: Floats, dt: float) -> tuple[bool, bool]:
         """
@@ -222,9 +209,7 @@ class SharedTables:
         has_glided = any([tuning.step(dt) for tuning in self._tunings])
         if dt != self._dt or has_glided:
             self._set_step(dt)
-        clamped, restarted = step_stand(
-            self._tables, self._time_steps, self.placements, self._instances, self._laws, winds
-        )
+        clamped, restarted = self.stand.step(winds)
         pushed_too_far = self._step_pushes(dt) if self._pushed else 0
         self.counts.steps += 1
         if clamped:
@@ -234,38 +219,27 @@ class SharedTables:
         return clamped + pushed_too_far > 0, restarted > 0
 
     def _set_step(self, dt: float) -> None:
-        """Fill the coefficients of every kind and scale, rounded to a hundredth."""
-        rows = np.flatnonzero(self._sharing.is_shared)
-        kinds = self.placements['kind'][rows]
-        scales = self.placements['scale'][rows]
-        found, number = own_steps(kinds, scales, dt)
-        reduced = np.flatnonzero(self._counted < self._sharing.counts)
-        self._time_steps = np.zeros(len(found) + len(reduced), dtype=self._time_steps.dtype)
-        for time_step, (kind, own_dt) in zip(self._time_steps[: len(found)], found, strict=True):
-            modal = self._oscillators[kind].modal
-            modal.set_time_step(own_dt)
-            fill_time_step(time_step, propagators_of(modal), own_dt)
-        self.placements['time_step'][rows] = number
-        for own, tree in enumerate(reduced.tolist(), start=len(found)):
-            self._time_steps[own] = self._time_steps[self.placements['time_step'][tree]]
-            drop(self._time_steps[own], int(self._counted[tree]))
-            self.placements['time_step'][tree] = own
+        """Fill the coefficients of every kind and scale."""
+        for row, table in enumerate(self._oscillators):
+            self.stand.tune(row, table.modal.stiffness, table.modal.damping)
+        self.stand.set_step(dt)
         self._dt = dt
 
     def _watch_clamped(self, dt: float) -> None:
         """Show fewer coordinates of trees whose steps stay clamped, and which no push bends."""
-        most = self._tables['most_pressure'][self.placements['kind']]
-        for number in np.flatnonzero(bent_too_far(self._instances, most)).tolist():
+        most = np.array([table.most_pressure for table in self._oscillators])
+        is_bent = bent_too_far(self.stand.states, most[self._kind_numbers])
+        for number in np.flatnonzero(is_bent).tolist():
             watch = self._watches.setdefault(number, ClampWatch())
             if number in self._pushed or not watch.is_stuck(self.counts.steps, dt):
                 continue
-            oscillators = self._oscillators[self.placements['kind'][number]]
+            oscillators = self._oscillators[self._kind_numbers[number]]
             before = min(int(self._counted[number]), oscillators.shapes.shape[1])
             count = fewer(before)
             if count < before:
                 self._counted[number] = count
                 self.counts.reduced += 1
-                come_to_rest(self._instances[number : number + 1])
+                come_to_rest(self.stand.states, number)
                 self.refresh()  # it has a step of its own from now on
 
     def check_tuning(self, **changes: float) -> list[Tuning]:
@@ -283,12 +257,11 @@ class SharedTables:
         if found is not None:
             return found
         kind = self._kind_of(number)
-        table = int(self.placements['kind'][number])
-        instance = self._instances[number : number + 1]
-        return TreeOnTable(kind.tree, kind.banks[0], self._oscillators[table], instance)
+        table = self._oscillators[self._kind_numbers[number]]
+        return TreeOnTable(kind.tree, kind.banks[0], table.of_tree(self.stand, number))
 
     def _kind_of(self, number: int) -> SwaySimulator:
-        return self.kinds[int(self.placements['kind'][number])]
+        return self.kinds[int(self._kind_numbers[number])]
 
     def n_keys(self, number: int) -> int:
         """Return the number of key rotations of a tree."""
@@ -327,8 +300,8 @@ class SharedTables:
             if tree.touch.is_gone:
                 del self._pushed[number]
                 continue
-            own = int(self.placements['time_step'][number])
-            clamped += tree.step_pushes(self._time_steps[own : own + 1], dt)
+            own_dt = own_step(self._scene.trees[number].scale, dt)
+            clamped += tree.step_pushes(own_dt, dt)
         return clamped
 
     def place(self, ends: Ints, out: Floats) -> None:
@@ -343,30 +316,29 @@ class SharedTables:
             Pose block to write, (n, 7).
 
         """
-        for row, trees in enumerate(self._trees_on):
-            self._place_rows(row, np.stack([trees, ends[trees]], axis=1), out)
+        if not self.kinds:
+            return
+        trees = np.flatnonzero(self._sharing.is_shared)
+        self._place_rows(np.stack([trees, ends[trees]], axis=1), out)
 
     def place_tree(self, number: int, out: Floats) -> None:
         """Place a tree in a pose block of its own."""
-        self._place_rows(int(self.placements['kind'][number]), np.array([[number, 0]]), out)
+        self._place_rows(np.array([[number, 0]]), out)
 
-    def _place_rows(self, table: int, rows: Ints, out: Floats) -> None:
-        """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
-        self._placing[table].place(self.placements, self._instances, rows, out)
-        if not self._pushed:
-            return
-        for number, first in rows.tolist():
+    def _place_rows(self, rows: Ints, out: Floats) -> None:
+        """Place trees: their numbers and first rows in a pose block, (w, 2)."""
+        self.stand.place(rows, out)
+        for number, first in rows.tolist() if self._pushed else ():
             if number in self._pushed:
-                own = out[first : first + self.kinds[table].tree.n_segments]
+                own = out[first : first + self._kind_of(number).tree.n_segments]
                 self.place_rotations(number, self._pushed[number].rotations(), own)
 
     def place_rotations(self, number: int, rotations: Floats, out: Floats) -> None:
         """Place a tree by its key rotations (N,) in [rad], in its part of a pose block."""
-        placement = self.placements[number]
-        self._placing[int(placement['kind'])].place_by_keys(placement, rotations, out)
+        self.stand.place_keys(number, np.ascontiguousarray(rotations), out)
 
 
-def _table_of(bank: Bank) -> WindBasisBank:
+def _table_of(bank: Bank) -> TableOscillators:
     oscillators = bank.oscillators
-    assert isinstance(oscillators, WindBasisBank)
+    assert isinstance(oscillators, TableOscillators)
     return oscillators

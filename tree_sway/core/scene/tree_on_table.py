@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats
 from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.table_model import WindBasisBank
+from tree_sway.core.run.table_model import TableOscillators
 from tree_sway.core.tree.tree import Tree
 
 if TYPE_CHECKING:
@@ -24,18 +24,16 @@ class TreeOnTable:
 
     Parameters
     ----------
-    tree, bank, oscillators
-        Its kind, the kind's records and its table.
-    instance
-        State of the tree, a view, (1,).
+    tree, bank
+        Its kind, and the kind's bank.
+    oscillators
+        Oscillators of the tree.
 
     """
 
-    def __init__(
-        self, tree: Tree, bank: Bank, oscillators: WindBasisBank, instance: Records
-    ) -> None:
+    def __init__(self, tree: Tree, bank: Bank, oscillators: TableOscillators) -> None:
         self._tree = tree
-        self._oscillators = oscillators.with_state(instance)
+        self._oscillators = oscillators
         self.bank = replace(bank, oscillators=self._oscillators)
         self._touch: Touch | None = None
 
@@ -53,13 +51,17 @@ class TreeOnTable:
         shown = self._oscillators.rotations()
         return shown if self._touch is None else shown + self._touch.residual
 
-    def step_pushes(self, time_step: Records, dt: float) -> bool:
-        """Apply the pushes for a step of dt [s]; returns whether a moment was clamped."""
-        self._oscillators.time_step = time_step
-        return self.touch.step(self._placed, self._tree.start[0], dt) > 0
+    def step_pushes(self, own_dt: float, dt: float) -> bool:
+        """
+        Apply the pushes for a step of dt [s]; returns whether a moment was clamped.
+
+        The step of the tree is that of its kind over its scale.
+        """
+        self._oscillators.modal.set_time_step(own_dt)
+        return self.touch.step(self._placed, dt) > 0
 
     def _placed(self) -> Floats:
         """Place the tree as one of its kind, (n, 7)."""
         poses = np.zeros((self._tree.n_segments, 7))
-        self.bank.place(self.rotations(), self._tree.start[0], poses)
+        self.bank.place(self.rotations(), poses)
         return poses

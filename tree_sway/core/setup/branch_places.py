@@ -15,7 +15,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.shape_fields import across
-from tree_sway.core.model.fill_records import Places
+from tree_sway.core.model.places import Places
 from tree_sway.core.model.records import room_for_fields
 from tree_sway.core.rotation import rotated
 from tree_sway.core.setup.matrices import Reduction

@@ -28,9 +28,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
+from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
-from tree_sway.core.model.table_record import arrays_of_record
+from tree_sway.core.model.sway_model import TYPES
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
 from tree_sway.core.setup.modal_arrays import Coordinates
@@ -67,8 +67,11 @@ def load_table(
     coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw
 ) -> dict[str, Any]:
     """Find the arrays and numbers of the table of a `SwayModel`."""
-    record = WindBasisTable(coordinates, wind_moments, drag_law).record
-    return arrays_of_record(record[0], len(coordinates.stiffness))
+    found = WindTable(coordinates, wind_moments, drag_law).arrays
+    return {
+        name: each if np.ndim(each) == 0 else np.ascontiguousarray(each, dtype=TYPES[name])
+        for name, each in found.items()
+    }
 
 
 class _Standing(NamedTuple):
@@ -103,7 +106,7 @@ class _Standing(NamedTuple):
         )
 
 
-class WindBasisTable:
+class WindTable:
     """
     Loads of all uniform winds on a tree, computed once.
 
@@ -118,8 +121,8 @@ class WindBasisTable:
 
     Attributes
     ----------
-    record
-        Record of `table_layout`, (1,).
+    arrays
+        Arrays and numbers of the table by name.
 
     """
 
@@ -136,45 +139,38 @@ class WindBasisTable:
         self._search = EquilibriumSearch(wind_moments, self._slopes, bank.shapes, bank.stiffness)
         n, m = bank.shapes.shape
         self._still = np.zeros(n)
-        self.record = np.zeros(1, dtype=table_layout(m))
-        table = self.record[0]
+        self.arrays = table = dict[str, Any]()
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
         self._azimuths = _AZIMUTHS[::each]
-        table['n_modes'] = m
-        table['stiffness'] = 1.0
-        table['stiffness'][:m] = bank.stiffness
-        table['motion'][:m] = bank.mean_square_motion
-        fitted, table['limit'][:m] = fit_harmonics(wind_moments, bank.shapes)
-        table['harmonics'][:, :m] = fitted
+        table['motion'] = bank.mean_square_motion
+        table['harmonics'], table['limit'] = fit_harmonics(wind_moments, bank.shapes)
         self._fill_standing(table)
         self._fill_aslant(table)
-        table['most_pressure'] = BEYOND * self._pressures[-1]
-        energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
+        table['most_pressure'] = float(BEYOND * self._pressures[-1])
+        energy = table['equilibrium'][:, -1] ** 2 @ bank.stiffness
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
-    def _fill_standing(self, table: np.void) -> None:
+    def _fill_standing(self, table: dict[str, Any]) -> None:
         """Fill loads and their slopes at the equilibria in winds of each speed."""
-        m = int(table['n_modes'])
         standing = self._standing()
         for azimuth in range(len(self._azimuths)):
             for level in range(1, _N_CALM):
                 self._turn_inertia(standing, azimuth, level)
         equilibrium = _between(standing.equilibrium)
-        table['equilibrium'][..., :m] = equilibrium
-        table['amount'][..., :m] = _between(standing.amount)
+        table['equilibrium'] = equilibrium
+        table['amount'] = _between(standing.amount)
         load = self._loads_at(equilibrium)
-        limit = table['limit'][:m]
+        limit = table['limit']
         largest = np.abs(load).max(axis=(0, 1))
         np.maximum(limit, largest, out=limit)
         calm = load[:, :1]
-        table['load'][..., :m] = load - calm
-        table['turning'][..., :m, :m] = _between(standing.turning)
-        table['damping'][..., :m, :m] = _without_gain(_between(standing.damping))
+        table['load'] = load - calm
+        table['turning'] = _between(standing.turning).astype(np.float32)
+        table['damping'] = _without_gain(_between(standing.damping)).astype(np.float32)
         sizes = np.abs(table['damping'])
         of_own_rates = np.einsum('ajii->aji', sizes)
-        table['cross_damping'] = sizes.sum(axis=2)
-        table['cross_damping'] -= of_own_rates
+        table['cross_damping'] = (sizes.sum(axis=2) - of_own_rates).astype(np.float64)
         table['levels'] = _rising_levels(table['equilibrium'], table['amount'])
 
     def _standing(self) -> _Standing:
@@ -280,18 +276,18 @@ class WindBasisTable:
         ratio = float(np.linalg.norm(scaled, 2))
         return circulating * max(0.0, 1.0 - most / ratio)
 
-    def _fill_aslant(self, table: np.void) -> None:
+    def _fill_aslant(self, table: dict[str, Any]) -> None:
         """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
-        m = int(table['n_modes'])
         azimuths = self._azimuths
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
         falling = -np.roll(rising, len(azimuths) // 2, axis=0)
         risen = np.array(rising) - falling
-        table['lean'][:, :m, :m] = _between(risen / (2.0 * np.sin(_SLOPE_AT)))
+        table['lean'] = _between(risen / (2.0 * np.sin(_SLOPE_AT)))
         turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
-        table['steep_turning'][:, :m, :m] = -turning, turning
-        table['steep_damping'][:, :m, :m] = _without_gain(damping.astype(np.float64))
+        table['steep_turning'] = np.array([-turning, turning])
+        steep = _without_gain(damping.astype(np.float64))
+        table['steep_damping'] = np.array([steep, steep])
 
 
 def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]:
@@ -344,8 +340,6 @@ def _without_gain(damping: Floats) -> Floats:
 def harmonics_at(directions: Floats) -> Floats:
     """Harmonics of unit vectors (k, 3), (k, h)."""
     out = np.zeros((N_HARMONICS, len(directions)))
-    _fill_harmonics(*directions.T, out)
+    fill_harmonics(*directions.T, out)
     return out.T
 
-
-_fill_harmonics = fill_harmonics.py_func  # type: ignore[attr-defined]  # whole arrays at once

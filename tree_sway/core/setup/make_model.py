@@ -185,7 +185,7 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
         'branch_base_segment': branches['base_segment'].copy(),
         'branch_coordinate': branches['coordinate'].copy(),
         'branch_keys': branches['n_coordinates'].copy(),
-        'branch_skew': np.stack([branches['skew'], branches['tip_skew']], axis=1),
+        'branch_skew': np.stack([places.skew, places.tip_skew], axis=1)[order],
         **{f'branch_{name}': branches[name].copy() for name in (*PLACED, *LOADED)},
         'segment_slope': places.slope[row],
         'segment_tip_slope': places.tip_slope[row],

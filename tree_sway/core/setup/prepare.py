@@ -13,7 +13,6 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.model.sway_model import SwayModel
@@ -77,7 +76,7 @@ def prepared(
         )
     tree = reductions.tree
     species = reductions.species
-    digest = digest_of_source(tree, species, settings, plain=reductions.plain)
+    digest = digest_of_source(tree, species, settings)
     found = None if cache is None else cache.read(digest)
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
@@ -93,8 +92,6 @@ def prepared(
     return made
 
 
-def digest_of_source(
-    tree: Tree, species: Species, settings: Settings, *, plain: bool = bool(WHY_PLAIN)
-) -> str:
+def digest_of_source(tree: Tree, species: Species, settings: Settings) -> str:
     """Digest of a tree, its species and settings, by which its model is found again."""
-    return f'{digest_of(tree, species, settings)}-{plain}'
+    return digest_of(tree, species, settings)

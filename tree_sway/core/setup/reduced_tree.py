@@ -20,7 +20,7 @@ from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
 from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.fill_records import Places
+from tree_sway.core.model.places import Places
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.branch_places import places_of
 from tree_sway.core.setup.branch_records import branch_records

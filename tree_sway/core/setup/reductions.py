@@ -16,7 +16,6 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import crown_drag, DragLaw
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.season import in_season
@@ -63,21 +62,14 @@ class Responses(NamedTuple):
 
 
 class TreeReductions:
-    """
-    The reductions of a tree of a species, each made at its first use.
+    """The reductions of a tree of a species, each made at its first use."""
 
-    With ``plain`` nothing is compiled.
-    """
-
-    def __init__(
-        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
-    ) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         if settings.root_stiffness is not None:
             species = replace(species, root_stiffness=settings.root_stiffness)
         self.tree = tree
         self.species = species
         self.settings = in_season(tree, species, settings)
-        self.plain = plain or bool(WHY_PLAIN)
         self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
         """
         Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
@@ -171,7 +163,7 @@ class TreeReductions:
         """Return the loads of the tree that is reduced with its subtrees."""
         from tree_sway.core.setup.static_responses import WindMoments
 
-        return WindMoments(self.with_subtrees.branches, plain=self.plain)
+        return WindMoments(self.with_subtrees.branches)
 
     def reduced(self, model: int | str) -> ReducedTree:
         """Return the reduction for a model."""

@@ -45,10 +45,10 @@ _TOGETHER = 2000
 class WindMoments:
     """Moments (N,) of uniform winds on the coordinates of a tree that bends and moves."""
 
-    def __init__(self, branches: Records, *, plain: bool = False) -> None:
+    def __init__(self, branches: Records) -> None:
         """Make scratch memory."""
         self.branches = branches
-        self._plain = plain or bool(WHY_PLAIN)
+        self._plain = bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
         self._of_copies: dict[int, NumpyPasses] = {}
 

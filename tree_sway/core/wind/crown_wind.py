@@ -16,19 +16,15 @@ and the same in every run. Delays follow the mean wind as in `gust_travel`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property, partial
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.kernel import entry_of, kernel
+from tree_sway.core.native.library import address, LIBRARY
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""
@@ -50,24 +46,13 @@ N_DELAYS = 16
 LONGEST_DELAY = 8.0
 """Longest delay in [s], that of a wide crown in a light wind."""
 
-_SLOWEST = 2.0
-_AVERAGING = 30.0
-_CAPACITY = 256
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
-_LAYOUT = np.dtype(
-    [
-        ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as in `remember`
-        ('at', 'i8', (2,)),
-        ('mean', 'f8', (3,)),
-        ('wanted', 'f8', (N_DELAYS,)),  # delays by the mean wind [s]
-        ('delay', 'f8', (N_DELAYS,)),  # delays in use [s]
-        ('apart', 'f8', (N_DELAYS, 3)),  # wind of each delay less the wind [m/s]
-        ('spread', 'f8'),
-        ('coherence', 'f8'),
-    ]
-)
-_CARRIED = 'run', 'at', 'mean', 'delay'
+_APART = 48
+"""Numbers of the winds of limbs, the last ones of the memory of the native core."""
+
+_MEMORY = 1061 + _APART
+"""Numbers of that memory."""
 
 
 class CrownDelays(NamedTuple):
@@ -127,9 +112,10 @@ class CrownWind:
 
     def __init__(self, spread: float, coherence: float) -> None:
         """Start without wind."""
-        self.record = np.zeros(1, dtype=_LAYOUT)
-        self.record['spread'] = spread
-        self.record['coherence'] = within('crown_coherence', coherence, 0.0, 1.0)
+        self._spread = spread
+        self._coherence = within('crown_coherence', coherence, 0.0, 1.0)
+        self._memory = np.zeros(_MEMORY)
+        self._wind = np.zeros(3)
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
@@ -137,41 +123,16 @@ class CrownWind:
 
         The array is reused.
         """
-        self._compiled(x, y, z, dt)
-        return np.asarray(self.record['apart'][0])
+        self._wind[:] = x, y, z
+        LIBRARY.sway_limb_winds(
+            address(self._memory), self._spread, self._coherence, address(self._wind), dt
+        )
+        return self._memory[-_APART:].reshape(N_DELAYS, 3)
 
-    @cached_property
-    def _compiled(self) -> Callable[[float, float, float, float], None]:
-        return partial(entry_of(push_wind, self.record, 0.0, 0.0, 0.0, 0.0), self.record)
-
-    def memory(self) -> tuple[NDArray[Any], ...]:
+    def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
-        return tuple(self.record[name] for name in _CARRIED)
+        return (self._memory,)
 
     def reset(self) -> None:
         """Forget the wind."""
-        for array in self.memory():
-            array[...] = 0
-        self.record['apart'] = 0.0
-
-
-@kernel
-def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
-    """Perform `CrownWind.push` for the first record of an array."""
-    here = crowns[0]
-    run = here['run']
-    at = here['at']
-    mean = here['mean']
-    wanted = here['wanted']
-    apart = here['apart']
-    remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
-    follow_mean(mean, x, y, dt, _AVERAGING)
-    longest = min(here['spread'] / max(math.hypot(mean[0], mean[1]), _SLOWEST), LONGEST_DELAY)
-    for j in range(len(wanted)):
-        wanted[j] = longest * j / (len(wanted) - 1)
-    past_winds(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
-    rest = 1.0 - here['coherence']
-    for j in range(len(apart)):
-        apart[j, 0] = rest * (apart[j, 0] - x)
-        apart[j, 1] = rest * (apart[j, 1] - y)
-        apart[j, 2] = rest * (apart[j, 2] - z)
+        self._memory[:] = 0.0

@@ -1,0 +1,82 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind of the last seconds, from which places take a past wind (``native/gusts.h``).
+
+It is stored as its run, the displacement of the air from the start to the end of a step: the mean
+over any span is then the difference of two runs over the span.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import address, LIBRARY
+
+
+class WindHistory:
+    """
+    A ring of runs of the wind.
+
+    Parameters
+    ----------
+    capacity
+        Number of ends of steps that are stored.
+    longest
+        Longest delay in [s]. Steps are joined where two are shorter than a part of it, so that the
+        history is longer than the longest delay at any rate.
+
+    """
+
+    def __init__(self, capacity: int, longest: float) -> None:
+        self._memory = np.zeros(2 + 4 * capacity)
+        self._at = self._memory[:2]
+        self._run = self._memory[2:].reshape(capacity, 4)
+        self._longest = longest
+        # Two consecutive steps are together longer than this, so that all are longer than the
+        # longest delay and the steps at its ends.
+        self._finest = 2.0 * longest / (capacity - 4)
+
+    def add(self, wind: Floats, dt: float, wanted: Floats, delay: Floats, out: Floats) -> None:
+        """
+        Add a step of dt [s] in a mean wind (3,) [m/s].
+
+        Delays (t,) [s] move towards those wanted, (t,); the past wind of each is written, (t, 3).
+        """
+        LIBRARY.sway_past_winds(
+            address(self._memory), len(self._run), self._finest, address(wanted), address(delay),
+            len(delay), self._longest, address(wind), dt, address(out),
+        )  # fmt: skip
+
+    @property
+    def count(self) -> int:
+        """Number of ends of steps that are stored."""
+        return int(self._at[1])
+
+    @property
+    def time(self) -> float:
+        """Time of the history at the end of the last step in [s]."""
+        return float(self._run[int(self._at[0]), 0])
+
+    def rows(self) -> Floats:
+        """Return a copy of time [s] and run [m] at the ends of steps, the oldest first, (r, 4)."""
+        last, count = self._at.astype(np.int64).tolist()
+        rows = np.arange(last - max(count, 1) + 1, last + 1) % len(self._run)
+        return np.asarray(self._run[rows])
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state."""
+        return (self._memory,)
+
+    def reset(self) -> None:
+        """Forget the wind."""
+        self._at[:] = 0.0
+
+
+def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
+    """Update a plain mean of the first wind, then a running one; its span is the last element."""
+    mean[2] = min(mean[2] + dt, max(averaging, dt))
+    weight = dt / mean[2]
+    mean[0] += weight * (x - mean[0])
+    mean[1] += weight * (y - mean[1])
