@@ -9,14 +9,10 @@ from tree_sway.core.model.sway_model import SwayModel
 from tree_sway_lab.full.bank import FullBank
 
 
-def full_bank(model: SwayModel, branches: Records, plain: bool) -> FullBank:
-    """Make the oscillators of all coordinates of a tree; with ``plain`` nothing is compiled."""
+def full_bank(model: SwayModel, branches: Records) -> FullBank:
+    """Make the oscillators of all coordinates of a tree."""
     if model.is_limp:
-        from tree_sway_lab.full.limp_bank import LimpFullBank, NumpyLimpFullBank
+        from tree_sway_lab.full.limp_bank import LimpFullBank
 
-        return (NumpyLimpFullBank if plain else LimpFullBank)(branches, model)
-    if plain:
-        from tree_sway_lab.full.numpy_bank import NumpyFullBank
-
-        return NumpyFullBank(branches, model)
+        return LimpFullBank(branches, model)
     return FullBank(branches, model)

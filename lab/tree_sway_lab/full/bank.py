@@ -29,6 +29,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.load_layouts import Loads, WORK, Works
 from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.records import Branches, WIDTH
@@ -36,7 +37,7 @@ from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
-from tree_sway.core.run.table_model import middle_of_step, propagators_of
+from tree_sway.core.run.table_model import middle_of_step
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
 
@@ -124,6 +125,7 @@ class FullBank(Branchwise, ModalCoordinates):
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""
         super().__init__(branches, model)
+        self.drag_law = model.drag_law
         m, n = self.by_coordinate.shape
         self._springs = np.zeros((5 + len(self.inertia_slopes), m))
         self.work = np.zeros(len(branches), dtype=WORK)
@@ -141,7 +143,7 @@ class FullBank(Branchwise, ModalCoordinates):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
-        middle = middle_of_step(propagators_of(self), dt)
+        middle = middle_of_step(self, dt)
         self.half[:] = 0.0
         self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt
@@ -152,14 +154,22 @@ class FullBank(Branchwise, ModalCoordinates):
         compliance = np.einsum('bm,m->b', self.participation, velocity)  # not by threads
         self.loads['compliance'][block, slot] = compliance
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+    def advance(self, wx: float, wy: float, wz: float) -> int:
         """
-        Advance one step under a mean wind [m/s], with `drag_law.drag_density` in [kg/m^3].
+        Advance one step under a mean wind [m/s].
 
         Returns how many loads were clamped to their limit, `NOT_FINITE` if the motion is not
         finite.
         """
-        return int(self._compiled(Air(wx, wy, wz, per_speed_squared)))
+        return self.advance_in(Air(wx, wy, wz, self.density(wx, wy, wz)))
+
+    def density(self, wx: float, wy: float, wz: float) -> float:
+        """Drag density in a wind [m/s], in [kg/m^3]."""
+        return drag_density(math.hypot(wx, wy, wz), *self.drag_law)
+
+    def advance_in(self, air: Air) -> int:
+        """Advance one step in a wind of a given drag density, as `advance`."""
+        return int(self._compiled(air))
 
     @cached_property
     def _compiled(self) -> Callable[[Air], int]:

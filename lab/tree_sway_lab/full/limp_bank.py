@@ -18,8 +18,7 @@ from tree_sway.core.arrays import Records
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.limp_tree import LimpStep, LONGEST_STEP
 from tree_sway.core.setup.numpy_branch_loads import of_slots
-from tree_sway_lab.full.bank import FullBank
-from tree_sway_lab.full.numpy_bank import NumpyFullBank
+from tree_sway_lab.full.bank import Air, FullBank
 
 LONGEST_PART = 1.0 / 240.0
 """Longest part of a step [s] that is taken at once."""
@@ -27,8 +26,6 @@ LONGEST_PART = 1.0 / 240.0
 
 class LimpFullBank(LimpStep, FullBank):
     """A limp tree on all its coordinates."""
-
-    is_plain = False
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""
@@ -48,13 +45,14 @@ class LimpFullBank(LimpStep, FullBank):
         half = self.half.T[[0, 1, 2, 4, 5, 6]]
         self.take_step(self, half, self.swing, self._wanted, part)
 
-    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+    def advance(self, wx: float, wy: float, wz: float) -> int:
         """Advance one step, as `FullBank.advance`."""
+        density = self.density(wx, wy, wz)
         gust = of_slots(self.loads['gust'], len(self.branches))
         self.segments.gust[:] = gust[self.segments.branch]
         n_clamped = 0
         for _ in range(self._n_parts):
-            outcome = self.step_once(wx, wy, wz, per_speed_squared)
+            outcome = self.step_once(wx, wy, wz, density)
             if outcome < 0:
                 return outcome
             n_clamped += outcome
@@ -62,7 +60,7 @@ class LimpFullBank(LimpStep, FullBank):
 
     def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Make the step under the loads of the branches."""
-        return super().advance(wx, wy, wz, per_speed_squared)
+        return self.advance_in(Air(wx, wy, wz, per_speed_squared))
 
     def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
         """Sum the forces of a step at the pose over the segments of each branch."""
@@ -75,9 +73,3 @@ class LimpFullBank(LimpStep, FullBank):
         """Return to rest."""
         super().reset()
         self.begin_anew()
-
-
-class NumpyLimpFullBank(LimpFullBank, NumpyFullBank):
-    """`LimpFullBank` in numpy."""
-
-    is_plain = True
