@@ -10,15 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import time
-from typing import Any
 
 import numpy as np
 
 from tree_sway.commands.progress import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.run.table_model import step_instance, WindBasisBank
+from tree_sway.core.run.table_model import TableOscillators
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -56,7 +54,6 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     """
     if not trees:
         trees = [bench_tree(2, children, bears=True) for children in SIZES.values()]
-    make_simulator(bench_tree(2))  # kernels are there
     simulators, set_up = [], []
     for tree in bar(trees, 'tables of winds'):
         begun = time.process_time()
@@ -83,7 +80,7 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
             row[:] = np.minimum(row, spent)
     rows = []
     for tree, spent in zip(trees, (1e6 * least).tolist(), strict=True):
-        for what, value in zip(('kernel of a step', 'step', 'place'), spent, strict=True):
+        for what, value in zip(('native step', 'step', 'place'), spent, strict=True):
             rows.append(Measured(f'{what}, {tree.n_branches} branches', value, 'us'))
         each = 1e3 * spent[2] / tree.n_segments
         rows.append(Measured(f'place one of {tree.n_segments} segments', each, 'ns'))
@@ -91,7 +88,7 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
         rows.append(Measured(f'set-up, CPU, {tree.n_branches} branches', spent_once, 's'))
     rows += errors(simulators)
     kernels = least[:, 0]
-    rows.append(Measured('kernel, most over least', float(kernels.max() / kernels.min()), '-'))
+    rows.append(Measured('native step, most over least', float(kernels.max() / kernels.min()), '-'))
     return rows
 
 
@@ -107,7 +104,7 @@ def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
             continue
         for speed in _SPEEDS:
             bank, winds = simulator.banks[0].oscillators, gusts_and_turns(speed)
-            assert isinstance(bank, WindBasisBank)
+            assert isinstance(bank, TableOscillators)
             before = bank.n_outside
             error = against(simulator, other, winds)
             where = f'in {speed:g} m/s, {tree.name}, {tree.n_branches} branches'
@@ -146,21 +143,6 @@ def gusts_and_turns(speed: float, seconds: float = _SECONDS, seed: int = 5) -> F
 
 
 def _run(simulator: SwaySimulator, winds: Floats) -> None:
-    bank = simulator.banks[0].oscillators
-    assert isinstance(bank, WindBasisBank)
-    _many(bank.record, bank.time_step, bank.instance, winds)
-
-
-@fused
-def _many(tables: Any, time_steps: Any, instances: Any, winds: Floats) -> None:
-    for k in range(len(winds)):
-        step_instance(
-            tables[0],
-            time_steps[0],
-            instances[0],
-            False,
-            winds[k, 0],
-            winds[k, 1],
-            winds[k, 2],
-            0.7,
-        )
+    stand = simulator.banks[0].stand
+    for wind in winds.tolist():
+        stand.step_first(*wind)

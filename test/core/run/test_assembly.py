@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway.core.beams.field_counts import ROOMS
 from tree_sway.core.model.load_layouts import WORK
-from tree_sway.core.model.records import branch_layout, room_for_fields, segment_layout
+from tree_sway.core.model.records import branch_layout, room_for_fields
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run import assembly
 from tree_sway.core.scene.make import make_simulator
@@ -137,7 +137,6 @@ def test_records_have_room_for_all_that_a_step_needs(fork, stem, tree, rows):
     room = room_for_fields(bank.branches['n_coordinates'].max())
     assert room == rows
     assert bank.branches.dtype == branch_layout(room)
-    assert bank.segments.dtype == segment_layout(room)
     assert bank.oscillators.work.dtype == WORK
     assert (bank.branches['n_coordinates'] <= bank.branches['load_mode'].shape[1]).all()
     first = bank.branches['coordinate']
@@ -148,8 +147,7 @@ def test_records_of_plain_branches_have_room_for_no_more(fork):
     for model in ('branch',):
         bank = bank_of(fork(), model=model)
         assert bank.branches.dtype == branch_layout(2)
-        assert bank.segments.dtype == segment_layout(2)
-        assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
+            assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
 
 
 @pytest.mark.parametrize('model', [60, 'full', 'auto'])

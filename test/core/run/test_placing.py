@@ -33,8 +33,7 @@ class Puppet:
 
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
-        bank, origin = self.bank, self.tree.start[0].copy()
-        bank.place(np.array(x, float), origin, out)
+        self.bank.place(np.array(x, float), out)
         return out
 
     def nodes(self, x):
