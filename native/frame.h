@@ -37,6 +37,12 @@ struct Room {
   float *single_keys;  // (16)
 };
 
+// A number of coordinates that a state has, 0 to `most`, whatever was written to it.
+inline __attribute__((always_inline)) int64_t count_of(double value, int64_t most) {
+  if (!(value > 0.0)) return 0;
+  return value < static_cast<double>(most) ? static_cast<int64_t>(value) : most;
+}
+
 // Where a tree stands.
 struct Place {
   double cosine, sine;  // of half its turn about the vertical

@@ -18,14 +18,14 @@ double at_least(double value, double least) { return value > least ? value : lea
 double at_most(double value, double most) { return value < most ? value : most; }
 
 int64_t row_of(const History &history, int64_t from_oldest) {
-  const int64_t last = static_cast<int64_t>(*history.last);
-  const int64_t count = static_cast<int64_t>(*history.count);
+  const int64_t last = count_of(*history.last, history.size - 1);
+  const int64_t count = count_of(*history.count, history.size);
   return (last - count + 1 + from_oldest + history.size) % history.size;
 }
 
 // The integral of the wind until a time; before the history begins it is that of its first step.
 void run_until(const History &history, double time, double out[3]) {
-  int64_t low = 0, high = static_cast<int64_t>(*history.count) - 1;
+  int64_t low = 0, high = count_of(*history.count, history.size) - 1;
   while (high - low > 1) {
     const int64_t middle = (low + high) / 2;
     (history.run[4 * row_of(history, middle)] <= time ? low : high) = middle;
@@ -48,7 +48,7 @@ void remember(const History &history, double finest, const double wind[3], doubl
     *history.last = 0.0;
     *history.count = 1.0;
   }
-  const int64_t last = static_cast<int64_t>(*history.last);
+  const int64_t last = count_of(*history.last, size - 1);
   const int64_t before = (last + size - 1) % size;
   const double step[] = {dt, wind[0] * dt, wind[1] * dt, wind[2] * dt};
   const bool is_joined =
@@ -75,7 +75,7 @@ void follow_mean(double mean[3], const double wind[3], double dt, double averagi
 
 void past_winds(const History &history, const double *wanted, double *delays, int64_t count,
                 double longest, const double wind[3], double dt, double *out) {
-  const double now = history.run[4 * static_cast<int64_t>(*history.last)];
+  const double now = history.run[4 * count_of(*history.last, history.size - 1)];
   const double most = LARGEST_STRETCH * dt;
   for (int64_t i = 0; i < count; i++) {
     const double goal = at_most(at_least(wanted[i], 0.0), longest);

@@ -347,7 +347,7 @@ static void write_middles(int64_t n, const double *poses, const double *factor,
 // shapes of a tree of many branches are its largest table: they are summed in single precision.
 static void find_keys(const sway_model &model, const State &state, Room &room) {
   const int64_t m = model.sizes.coordinates;
-  const int64_t n_shown = m - static_cast<int64_t>(*state.left_out);
+  const int64_t n_shown = m - count_of(*state.left_out, m);
   for (int64_t i = 0; i < n_shown; i++)
     room.shown[i] = static_cast<float>(state.eta[i] - state.hidden[i]);
   constexpr int PARTS = LANES < 8 ? 8 : 4, SINGLES = 2 * LANES, TOGETHER = PARTS * SINGLES;

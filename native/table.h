@@ -229,7 +229,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
     squares += load(table.motion + i) * rate * rate;
   }
   const double p = wind.per_speed_squared;
-  const double drag = p * __builtin_sqrt(wind.dynamic_pressure / p + sum(squares));
+  const double square = p > 0.0 ? wind.dynamic_pressure / p : 0.0;
+  const double drag = p * __builtin_sqrt(square + sum(squares));
   for (int64_t i = 0; i < M; i += LANES) {
     Vec force = between(table.load, M, corners, i);
     for (int number = 0; number < HARMONICS; number++)
@@ -319,7 +320,7 @@ static void change_force(const sway_model &model, const Step &step, State &state
 // The coordinates that are kept at rest.
 INLINE void keep_at_rest(const sway_model &model, State &state) {
   const int64_t m = model.sizes.coordinates;
-  for (int64_t i = m - static_cast<int64_t>(*state.at_rest); i < m; i++)
+  for (int64_t i = m - count_of(*state.at_rest, m); i < m; i++)
     state.eta[i] = state.rate[i] = 0.0;
 }
 
@@ -336,7 +337,8 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
   const Wind wind = {speed > 0.0 ? x / speed : 1.0, speed > 0.0 ? y / speed : 0.0,
                      speed > 0.0 ? z / speed : 0.0, least(pressure, table.most_pressure),
                      per_speed_squared};
-  const int64_t n_coupled = model.sizes.coordinates - static_cast<int64_t>(*state.left_out);
+  const int64_t n_coupled = 
+      model.sizes.coordinates - count_of(*state.left_out, model.sizes.coordinates);
   const double energy_before = twice_energy(model, stiffness, state);
   move_to_middle(model, step, state, room);
   find_wind_force(model, wind, state, room, n_coupled);

@@ -154,7 +154,7 @@ def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
         received.step(wind)
         reduced.append((clamped.counts.reduced, received.reduced))
         left_out = received.instances['left_out']
-        assert np.array_equal(left_out, clamped._shared._instances['left_out'])
+        assert np.array_equal(left_out, clamped._shared.stand.states.left_out)
     assert max(reduced)[0] > 0
     received.correct(received.state() + 0.01)
     for instance in received.instances:

@@ -126,7 +126,7 @@ def test_a_change_reaches_what_sways_and_what_is_estimated(changes):
 def test_a_motion_that_is_not_finite_is_counted_and_goes_on_from_rest():
     sim = adaptive(0.005)
     sim.step((5.0, 0.0, 0.0), DT)
-    sim.banks[0].oscillators.instance['eta'][:] = np.nan
+    sim.banks[0].oscillators.swing[0][:] = np.nan
     assert sim.step((5.0, 0.0, 0.0), DT) & RESTARTED
     assert sim.counts.restarted == 1
     assert np.isfinite(sim.place()).all()

@@ -4,25 +4,35 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer, FEWEST, LONGEST_CLAMPED
-from tree_sway.core.run.simulator import LOAD_CLAMPED
+from tree_sway.core.run.simulator import LOAD_CLAMPED, SwaySimulator
+from tree_sway.core.scene import shared_tables
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.simulate import simulate
+from tree_sway.core.setup.prepare import prepare
 
 DT = 1.0 / 60.0
 WIND = (9.0, 1.0, 0.0)
 
 
-def clamp_always(simulator, number=0):
-    """Make a table in which no energy is allowed, as of a tree that swings up by itself."""
-    shared = getattr(simulator, '_shared', None)
-    record = simulator.banks[0].oscillators.record if shared is None else shared._tables
-    record['most_energy'][number] = 1e-12
+def clamped(model):
+    """Make a model in which no energy is allowed, as of a tree that swings up by itself."""
+    return replace(model, most_energy=1e-12)
+
+
+def clamped_simulator(tree, model):
+    made = make_simulator(tree, model=model)
+    if model == 'auto':
+        return AdaptiveSimulator(clamped(made.models[0]))
+    return SwaySimulator(clamped(made.models[0]))
 
 
 def test_a_gust_at_the_limit_is_no_tree_that_is_stuck():
@@ -43,9 +53,8 @@ def test_numbers_end_at_the_fewest():
 
 @pytest.mark.parametrize('model', [12, 'auto'])
 def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
-    sim = make_simulator(fork(), model=model)
+    sim = clamped_simulator(fork(), model)
     most = sim.banks[0].oscillators.shapes.shape[1]
-    clamp_always(sim)
     for _ in range(round(0.9 / DT)):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
     assert sim.counts.reduced == 0
@@ -71,7 +80,8 @@ def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):
     for _ in range(200):
         sim.step((80.0, 0.0, 0.0), DT)
     assert sim.counts.clamped > 0
-    clamp_always(sim)
+    assert sim.counts.reduced == 0
+    sim = clamped_simulator(fork(), 12)
     for _ in range(200):
         sim.push(0, (5.0, 0.0, 0.0), 1.0)
         sim.step(WIND, DT)
@@ -79,13 +89,18 @@ def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):
     assert sim.banks[0].n_shown == sim.banks[0].oscillators.shapes.shape[1]
 
 
-def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
+def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork, monkeypatch):
     tree = fork()
     other = fork(2)
+
+    def prepared(asked, *arguments, **changes):
+        made = prepare(asked, *arguments, **changes)
+        return clamped(made) if asked.n_segments == other.n_segments else made
+
+    monkeypatch.setattr(shared_tables, 'prepare', prepared)
     scene = Scene([PlacedTree('a', tree), PlacedTree('b', tree, 3.0), PlacedTree('c', other, 6.0)])
     sim = scene.simulator(model=12)
-    kind = int(sim._shared.placements['kind'][2])
-    clamp_always(sim, kind)
+    kind = int(sim._sharing.tables[2])
     for _ in range(90):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
     shown = sim._shared._counted.tolist()

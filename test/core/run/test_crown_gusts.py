@@ -25,17 +25,6 @@ def tree():
     return crooked_tree(4)
 
 
-@pytest.mark.parametrize(('model', 'most'), [('branch', 1e-9), ('full', 1e-9), (20, 1e-6)])
-def test_numpy_meets_the_same_gusts(tree, model, most):
-    settings = Settings(model=model, crown_coherence=0.5)
-    sim = make_simulator(tree, WOOD, settings)
-    twin = make_simulator(tree, WOOD, sim.settings, plain=True)
-    for x in turbulent(6.0, 2.0, 1):
-        sim.step(x, FRAME)
-        twin.step(x, FRAME)
-    assert sim.place() == pytest.approx(twin.place(), abs=most)
-
-
 @pytest.mark.parametrize('model', ['branch', 'full', 20])
 def test_a_state_goes_on_bit_for_bit(model):
     tree = bench_tree()

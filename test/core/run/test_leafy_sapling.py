@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import leafy_sapling
 
-from tree_sway.core.run import table_model
-from tree_sway.core.run.table_model import fill_time_step, propagators_of
+from tree_sway.core.run.table_model import middle_of_step
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.tree.wood import Species
@@ -74,35 +73,12 @@ def test_all_coordinates_sway_alike_at_shorter_steps(sapling, speed, n_substeps,
 def test_the_rate_at_the_middle_of_a_step_follows_the_force(sapling, dt):
     bank = simulator(sapling, 60).banks[0].oscillators
     bank.set_step(dt)
-    m = len(bank.modal.stiffness)
-    assert (bank.time_step['half'][0, 5, :m] > 0.0).all()
+    assert (middle_of_step(bank.modal, dt)[5] > 0.0).all()
 
 
 def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
     bank = simulator(sapling, 12).banks[0].oscillators
     bank.modal.set_time_step(1e-3)
-    fill_time_step(bank.time_step[0], propagators_of(bank.modal), 1e-3)
-    m, exact = len(bank.modal.stiffness), bank.modal.half.T
-    half = bank.time_step['half'][0, :, :m]
+    exact, half = bank.modal.half.T, middle_of_step(bank.modal, 1e-3)
     assert (half[[0, 1, 3, 4]] == exact[[0, 1, 4, 5]]).all()
     assert (half[[2, 5]] == exact[[2, 6]] + exact[[3, 7]]).all()
-
-
-def test_where_the_table_fails_in_a_gale_it_shows_fewer_coordinates(sapling, monkeypatch):
-    def without_care(time_step, law, dt):
-        fill_time_step(time_step, law, dt)
-        m = len(law.stiffness)
-        time_step['half'][:, :m] = law.half.T[[0, 1, 2, 4, 5, 6]]
-        time_step['half'][[2, 5], :m] += law.half.T[[3, 7]]
-
-    right = sway(simulator(sapling, 'full'), 12.0)
-    monkeypatch.setattr(table_model, 'fill_time_step', without_care)
-    usual = simulator(sapling, 60)
-    shown = sway(usual, 12.0)
-    assert usual.counts.reduced > 0
-    assert usual.counts.clamped < 0.3 * usual.counts.steps
-    late = len(right) // 2  # it no longer stands still, though fewer coordinates bend it less
-    error = np.linalg.norm(shown[late:] - right[late:]) / np.linalg.norm(right[late:])
-    assert error < 0.5
-    swing, right_swing = (np.linalg.norm(each[late:].std(axis=0)) for each in (shown, right))
-    assert swing > 0.5 * right_swing

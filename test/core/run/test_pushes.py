@@ -68,7 +68,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
         touch, force = Touch(tree, sim.banks[0]), rng.normal(size=3)
         touch.add(segment, force, 1.0, along)
         push = touch.pushes[segment]
-        touch._renew(push, push.place(poses), tree.start[0], x.copy())
+        touch._renew(push, push.place(poses), x.copy())
         by_differences = np.empty(len(x))
         for i, step in enumerate(np.eye(len(x)) * 1e-5):
             there, back = (
@@ -111,8 +111,8 @@ def test_a_pull_moves_a_tree_further_than_any_wind_may():
         for sim in (table, truth):
             sim.push(segment, force, 1.0)
             sim.step(CALM, DT)
-    record, instance = table.banks[0].oscillators.record[0], table.banks[0].oscillators.instance[0]
-    assert record['stiffness'] @ instance['eta'] ** 2 > record['most_energy']
+    model, eta = table.models[0], table.banks[0].oscillators.swing[0]
+    assert model.stiffness @ eta**2 > model.most_energy
     there = moved(truth, segment)
     assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
     assert table.counts.clamped == 0
@@ -266,7 +266,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
         segment = int(first + round(0.7 * (end - first - 1)))
         touch.add(segment, (1.0, 0.0, 0.0), 1.0, 0.0)
         push, x = touch.pushes[segment], np.zeros(n_rotations)
-        touch._renew(push, tree.start[segment], tree.start[0], x)
+        touch._renew(push, tree.start[segment], x)
         whole = push.lever @ factors.solve(push.lever.T)
         _, across = np.linalg.eigh(whole)
         for way in across.T[1:]:

@@ -176,7 +176,7 @@ def test_a_wind_that_is_none_is_refused_and_the_old_one_kept(kinds, wind):
 def test_a_motion_that_is_not_finite_goes_on_from_rest(kinds):
     stand = swaying([PlacedTree('a', kinds['fork']), PlacedTree('b', kinds['fork'], x=2.0)])
     stand.step((3.0, 0.0, 0.0), DT)
-    stand._shared._instances['eta'][0] = np.nan
+    stand._shared.stand.states.eta[0] = np.nan
     assert stand.step((3.0, 0.0, 0.0), DT) & RESTARTED
     assert np.isfinite(stand.place()).all()
     assert stand.counts.restarted == 1

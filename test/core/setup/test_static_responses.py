@@ -12,11 +12,10 @@ from tree_sway.core.setup import static_responses
 from tree_sway.core.setup.static_responses import WindMoments
 
 
-@pytest.mark.parametrize('plain', [False, True])
-def test_the_load_in_each_of_many_poses_is_that_in_it_alone(fork, monkeypatch, plain):
+def test_the_load_in_each_of_many_poses_is_that_in_it_alone(fork, monkeypatch):
     (bank,) = make_simulator(fork(), model=4).banks
     monkeypatch.setattr(static_responses, '_TOGETHER', 2 * len(bank.branches))
-    moments = WindMoments(bank.branches, plain=plain)
+    moments = WindMoments(bank.branches)
     rng = np.random.default_rng(3)
     poses, winds = rng.normal(0.0, 0.1, (5, moments.n)), rng.normal(0.0, 5.0, (5, 3))
     still = np.zeros(moments.n)

@@ -47,6 +47,8 @@ class States(NamedTuple):
     """Number of last coordinates that are neither shown nor loaded, (t,)."""
     at_rest: Floats
     """Number of last coordinates that are kept at rest, (t,)."""
+    history: Floats
+    """History of the wind where gusts reach limbs one after another, (t, h)."""
 
 
 class NativeStand:
@@ -105,7 +107,8 @@ class NativeStand:
         m = width.value
         scalars = rows[:, 6 * m :]
         coordinates = [rows[:, row * m : (row + 1) * m] for row in range(6)]
-        return States(*coordinates, scalars[:, :3], *(scalars[:, k] for k in range(3, 7)))
+        single = (scalars[:, k] for k in range(3, 7))
+        return States(*coordinates, scalars[:, :3], *single, scalars[:, 8:])
 
     def reset(self) -> None:
         """Return every tree to rest."""

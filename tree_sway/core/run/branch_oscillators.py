@@ -129,7 +129,11 @@ class BranchOscillators(Branchwise):
         Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """
         load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *self._drag_law)
-        return int(self._compiled(wx, wy, wz, load))
+        return self.advance_in(wx, wy, wz, load)
+
+    def advance_in(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step in a wind [m/s] of a `drag_law.drag_density` [kg/m^3]."""
+        return int(self._compiled(wx, wy, wz, per_speed_squared))
 
     @cached_property
     def _compiled(self) -> Callable[..., int]:

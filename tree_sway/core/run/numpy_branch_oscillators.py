@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
 from tree_sway.core.run.branch_oscillators import BranchOscillators, NOT_FINITE
 from tree_sway.core.setup.numpy_branch_loads import Bases, into_slots, NumpyPasses, of_slots
@@ -37,9 +36,8 @@ class NumpyBranchOscillators(BranchOscillators):
             of_slots(self.loads[name], n) for name in names
         )
 
-    def advance(self, wx: float, wy: float, wz: float) -> int:
-        """Advance one step, as `BranchOscillators.advance`."""
-        per_speed_squared = drag_density(float(np.hypot(np.hypot(wx, wy), wz)), *self._drag_law)
+    def advance_in(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `BranchOscillators.advance_in`."""
         passes = self._passes
         n = len(self.branches)
         x = self.x.reshape(-1, 2)

@@ -144,7 +144,7 @@ class TableOscillators:
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
         own = slice(self.number, self.number + 1)
-        names = (*STATE_FIELDS, 'at_rest')
+        names = (*STATE_FIELDS, 'at_rest', 'history')
         return tuple(getattr(self._state, name)[own] for name in names)
 
     def rotations(self) -> Floats:
