@@ -147,7 +147,7 @@ def test_records_of_plain_branches_have_room_for_no_more(fork):
     for model in ('branch',):
         bank = bank_of(fork(), model=model)
         assert bank.branches.dtype == branch_layout(2)
-            assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
+        assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
 
 
 @pytest.mark.parametrize('model', [60, 'full', 'auto'])

@@ -145,7 +145,8 @@ class TableOscillators:
         """Return views of the state."""
         own = slice(self.number, self.number + 1)
         names = (*STATE_FIELDS, 'at_rest', 'history')
-        return tuple(getattr(self._state, name)[own] for name in names)
+        views = (getattr(self._state, name)[own] for name in names)
+        return tuple(view for view in views if view.size)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,); valid until the next call."""
