@@ -48,7 +48,7 @@ from tree_sway_ros.process.topics import (
     WIND_FILTERED,
     WIND_THERE,
 )
-from tree_sway_ros.reports.diagnostics import Status
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.refusals import Refusals
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
@@ -119,7 +119,10 @@ class SolverNode(TreeSwayNode):
         """Open the trees that this node sways, where they stand."""
         named = self.values['species']
         source = open_scene(
-            self.values['tree'], wood=lambda found: species_named(named) if named else found
+            self.values['tree'],
+            wood=lambda found: species_named(named) if named else found,
+            in_leaf=LEAVES[self.values['leaves']],
+            warn=False,
         )
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
@@ -221,6 +224,7 @@ class SolverNode(TreeSwayNode):
         self.subscription(WIND_AT, self._answer)
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
+        self._warnings = source.warnings
         self.report_with(source.tree.name, self._statuses)
 
     def _starting(self, felt: float) -> None:
@@ -413,4 +417,6 @@ class SolverNode(TreeSwayNode):
             self._run, self.pacer, self.stream.frames, replay, wind, poses
         )
         statuses += self.refusals.statuses()
+        level, text = (WARN, '; '.join(self._warnings)) if self._warnings else (OK, 'as stated')
+        statuses.append(Status('tree', level, shown(text, LONGEST_NOTE), {}))
         return statuses if self._imu is None else [*statuses, *self._imu.statuses()]
