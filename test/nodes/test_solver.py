@@ -356,3 +356,15 @@ def test_it_answers_what_the_wind_at_a_place_is(compose, observer, statuses, tre
         'a warning', poll=0.1,
     )  # fmt: skip
     assert nodes['solver'].is_active
+
+
+def test_a_scan_that_was_changed_is_said_on_diagnostics(compose, observer, statuses, tmp_path):
+    head = 'ID,parentID,startX,startY,startZ,endX,endY,endZ,radius,branchOrder,growthLength'
+    rows = [f'{i},{i - 1},0,0,{2 * i},0,0,{2 * i + 2},0.03,0,{20 - 2 * i}' for i in range(10)]
+    scan = tmp_path / 'pole.csv'
+    scan.write_text('\n'.join([head, *rows]))
+    compose(solver={'tree': str(scan), 'model': 2})
+    observer.until(lambda: statuses('solver: tree') is not None, 'diagnostics')
+    status = statuses('solver: tree')
+    assert status.level == bytes([WARN])
+    assert 'of 10 segments of 1 limb thickened' in status.message

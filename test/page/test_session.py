@@ -329,3 +329,12 @@ def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:
     assert felt[60 * 3] == pytest.approx(8.0)
     assert 0.0 < felt[-1] < 0.1
     assert np.abs(np.diff(felt[10:])).max() < 0.5
+
+
+def test_the_page_is_told_what_was_changed_in_its_tree() -> None:
+    told = {'seedling': ('changed, as bare it could carry 50 %',)}
+    session = Session(
+        lambda _: open_scene(SEEDLING).simulator(model=4), Choices('seedling', model='4'),
+        Measured(), warnings=told,
+    )  # fmt: skip
+    assert session.status()['warnings'] == ['changed, as bare it could carry 50 %']

@@ -16,8 +16,8 @@ from tree_sway.commands.arguments import (
     add_tree_arguments,
     chosen_leaves,
     opened_tree,
-    say_warnings,
     output_path,
+    say_warnings,
     write_tree_file,
 )
 from tree_sway.commands.progress import waiting

@@ -146,7 +146,7 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
 
 
 def files_of(cases: Sequence[Case], opened: dict[str, Any]) -> dict[str, Any]:
-    """Trees and winds of the files of some cases, by their path; each is opened once in a season."""
+    """Trees and winds of the files of some cases, by path; each is opened once in a season."""
     found = {}
     for case in cases:
         in_leaf = case.settings.get('in_leaf')

@@ -32,7 +32,7 @@ def limp_tree(seed):
     nodes, diameter, above = [BASE], [0.02], [-1]
     for row in range(1, 40):
         parent = int(rng.integers(max(1, row - 6), row)) if row > 1 else 0
-        up = rng.normal(0.0, 0.2, 3) + [0.0, 0.0, 0.4]
+        up = np.array([0.0, 0.0, 0.4]) + rng.normal(0.0, 0.2, 3)
         nodes.append(nodes[parent] + up)
         diameter.append(float(diameter[parent] * rng.uniform(0.7, 0.99)))
         above.append(parent)
@@ -88,7 +88,8 @@ def swc_of(path, nodes, diameter, above):
 def mtg_of(path, nodes, diameter, above):
     """Write each node as a vertex in the column of its depth, in cm and mm."""
     columns = 45
-    head = ['CODE:\tFORM-A', '', 'CLASSES:', 'SYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION',
+    head = ['CODE:\tFORM-A', '', 'CLASSES:',
+            'SYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION',
             '$\t0\tFREE\tFREE\tIMPLICIT', 'P\t1\tCONNECTED\tFREE\tEXPLICIT',
             'S\t2\tNONE\tFREE\tIMPLICIT', '', 'MTG:', '',
             'ENTITY-CODE' + '\t' * columns + 'XX\tYY\tZZ\tTopDia']  # fmt: skip
@@ -145,7 +146,7 @@ def pole_rows(length, diameter):
     piece = length / 12
     head = 'ID,parentID,startX,startY,startZ,endX,endY,endZ,radius,branchOrder,growthLength'
     rows = [
-        f'{i},{i - 1},0,0,{i * piece},0,0,{(i + 1) * piece},{0.5 * diameter},0,{length - i * piece}'
+        f'{i},{i - 1},0,0,{i * piece},0,0,{(i + 1) * piece},{0.5 * diameter},0,{12 - i}'
         for i in range(12)
     ]
     return '\n'.join([head, *rows])

@@ -96,9 +96,7 @@ def _trees(
     )
 
     @cache
-    def opened(
-        tree: str, seed: int, species: str | None, leaf_on: bool | None
-    ) -> TreeFile:
+    def opened(tree: str, seed: int, species: str | None, leaf_on: bool | None) -> TreeFile:
         """Open a tree once for all of its kind."""
         asked: dict[str, Any] = {} if leaf_on is None else {'in_leaf': leaf_on}
         if species is not None:
@@ -120,9 +118,7 @@ def _trees(
             inner = f'{error.where}: {error.what}' if error.where else error.what
             raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
         place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
-        placed = PlacedTree(
-            name, file.tree, species=file.species, learned=file.learned, **place
-        )
+        placed = PlacedTree(name, file.tree, species=file.species, learned=file.learned, **place)
         trees.append(placed)
         notes += [f'{name}: {note}' for note in file.notes]
         faults += [f'{name}: {fault}' for fault in file.faults]
