@@ -97,7 +97,7 @@ class Thickening:
             f'changed, as {season} it could carry {100.0 * self.carried:.0f} % of its weight: '
             f'{self.segments} of {tree.n_segments} segments of {limbs} thickened, '
             f"most '{worst}', from {from_mm:.3g} to {to_mm:.3g} mm; "
-            f'{100.0 * self.added:.2g} % of wood added (thicken=no leaves it)'
+            f'{100.0 * self.added:.3g} % of wood added (thicken=no leaves it)'
         )
 
 
