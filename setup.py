@@ -53,8 +53,8 @@ data_files = [
 if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
 
-#: Versions of CPython for which all that is needed has wheels: test/test_packaging.py compares every
-#: file that names some with them.
+#: Versions of CPython for which all that is needed has wheels. test/test_packaging.py compares
+#: every file that names versions.
 PYTHONS = tuple(f'3.{minor}' for minor in range(10, 16))
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 #: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
