@@ -102,7 +102,7 @@ def test_a_viewer_gets_the_description_and_then_a_frame_per_credit(server: PageS
     run(server, script)
 
 
-def test_a_status_that_fails_is_told_once_and_comes_again(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_status_that_fails_is_told_and_comes_again(caplog: pytest.LogCaptureFixture) -> None:
     n_asked = 0
 
     def status() -> dict[str, object]:
