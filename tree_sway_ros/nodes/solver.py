@@ -111,6 +111,9 @@ class SolverNode(TreeSwayNode):
     def activate(self) -> None:
         """Start the steps and the stream."""
         self._state.start()
+        if not self._hears_wind:  # a replay begins once there is a subscription
+            self.subscription(WIND_FILTERED, self._receive)
+            self._hears_wind = True
         if self._learned is not None:
             self.on_close(self._keep_learned)
         self.run_worker(self.pacer)
@@ -206,7 +209,8 @@ class SolverNode(TreeSwayNode):
         leaves = source.leaves(LEAVES[self.values['leaves']], _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
-        self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
+        self._topic = self.resolve_topic_name(WIND_FILTERED.name)
+        self._hears_wind = False
         self.subscription(CAMERA, self._see)
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):
