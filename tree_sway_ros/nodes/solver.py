@@ -372,7 +372,8 @@ class SolverNode(TreeSwayNode):
     def _await_samples(self, to: int) -> None:
         """Wait for the samples that act before a time in [ns], once for each that is lost."""
         begin = time.monotonic()
-        while not self.pacer.is_stopping:
+        clock = self.get_clock()
+        while not self.pacer.is_stopping and clock.now().nanoseconds >= to:  # or was set back
             self._arrived.clear()
             lacking = set(self._lacking(to))
             if lacking <= self._missed:
