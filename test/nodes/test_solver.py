@@ -29,7 +29,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     TREE_DESCRIPTION,
     WIND_FILTERED,
 )
-from tree_sway_ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.reports.diagnostics import ERROR, OK, WARN  # noqa: E402
 from tree_sway_ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
@@ -133,7 +133,7 @@ def test_a_dropout_decays_to_rest_while_poses_go_on(
 
     def at_rest():
         levels.append(level('solver: wind'))
-        return levels[-1] == STALE and np.abs(block(frames[-1]) - rest).max() < 1e-4
+        return levels[-1] == ERROR and np.abs(block(frames[-1]) - rest).max() < 1e-4
 
     observer.until(at_rest, 'rest')
     breeze.vector = (8.0, 0.0, 0.0)
