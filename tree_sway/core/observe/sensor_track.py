@@ -269,6 +269,7 @@ class SensorTrack:
         self._next_fit = round(LEARNING / dt)
         self._absent = self._agreed = 0.0
         self._is_refused = False
+        self._quantities = sensor.quantities
         self._values, self._moved = np.zeros((2, 9))
         self.fitted_motion = self.watched_motion = self._moved[:3]
         """
@@ -326,6 +327,10 @@ class SensorTrack:
             return f'{name}: all of {counts.refused} samples were refused: {counts.why_refused}'
         if counts.accepted == 0:
             return f'{name}: no sample yet'
+        if self.is_silent and self.sensor.trouble:
+            return f'{name}: refused for {self._absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent:
+            return f'{name}: silent for {self._absent:.0f} s: check its battery and connection'
         if self.alignment is None:
             left = (self._next_fit - self._count) * self._dt
             return f'{name}: its mounting is found within {left:.0f} s of sway'
@@ -333,7 +338,7 @@ class SensorTrack:
             return f'{name}: {self.alignment.problem}'
         if self._is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
-        return f'{name}: silent: check its battery and connection'
+        return f'{name}: no sample at the time of the steps: check its clock'
 
     @property
     def is_silent(self) -> bool:
@@ -359,6 +364,8 @@ class SensorTrack:
             Whether there is a sample, and its mounting is known.
 
         """
+        if self.sensor.quantities != self._quantities:
+            self._begin()
         row = self._count % len(self._sensed)
         memory = self._sensed, self._computed
         if not self._read(
@@ -370,6 +377,13 @@ class SensorTrack:
         self._absent = 0.0
         self._count += 1
         return self.alignment is not None and not self.alignment.problem
+
+    def _begin(self) -> None:
+        """Find the mounting of a sensor that measures other quantities."""
+        self._quantities = self.sensor.quantities
+        self.alignment, self.in_use, self._is_refused = None, False, False
+        self._count, self._next_fit = 0, round(LEARNING / self._dt)
+        self.excess = 1.0
 
     def _miss(self) -> None:
         self._absent += self._dt
