@@ -18,7 +18,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
-import math
+from math import dist, inf, isfinite, nan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,6 +53,7 @@ _LEAST_STILL = 5
 """Time [s] and number of equal samples after which a sensor is dead."""
 
 _APART = 20.0
+_LEAST_CHANGE = LEAST_NOISE.tolist()
 """Change of a quantity that is a spike, over a running median of its changes, or over noise."""
 _SPIKES, _USUAL = 3, 20
 """Spikes in a row that may be, and samples before the first."""
@@ -147,9 +148,10 @@ class MotionSensor:
         self._reference: Floats | None = None
         self._first_turn: Floats = np.eye(3)
         self._unit = np.zeros(4)
+        self._is_given: tuple[bool, ...] = ()
         self._lead = 0
-        self._numbers: list[float] = []
-        self._moved_at, self._n_still = math.inf, 0
+        self._numbers = b''
+        self._moved_at, self._n_still = inf, 0
         self._kept: list[float] = []
         self._changes = [0.0] * 3  # running medians
         self._n_spikes = -_USUAL
@@ -209,7 +211,7 @@ class MotionSensor:
 
         """
         values = self._sample
-        values[:] = math.nan
+        values[:] = nan
         with suppress(TypeError, ValueError, OverflowError):
             if acceleration is not None:
                 values[0:3] = acceleration
@@ -230,11 +232,12 @@ class MotionSensor:
 
     def _check(self, time: float, numbers: list[float]) -> int:
         """Keep the sample in `_sample` unless it is bad; return what became of it."""
-        self._vote(tuple(math.isfinite(sum(numbers[k : k + 3])) for k in (0, 3, 6)))
-        if self._is_still(time, numbers):
+        a, b, c, d, e, f, g, h, i = numbers
+        self._vote((isfinite(a + b + c), isfinite(d + e + f), isfinite(g + h + i)))
+        if self._is_still(time):
             self._kept = []
             return STUCK
-        if self._is_spike(numbers):
+        if self._kept and self._is_spike(numbers):
             return SPIKE
         outcome = self._keep(time)
         if outcome in {KEPT, RESTARTED}:
@@ -243,31 +246,29 @@ class MotionSensor:
 
     def _vote(self, is_given: tuple[bool, ...]) -> None:
         """Let a sample vote for its quantities; a majority for others begins the sensor anew."""
-        if not any(is_given):
-            return
-        pairs = zip(QUANTITIES, is_given, strict=True)
-        given = tuple([name for name, is_there in pairs if is_there])
-        if given == self.quantities:
+        if is_given == self._is_given:
             self._lead = min(self._lead + 1, _MOST_LEAD)
             return
-        self._lead -= 1
+        self._lead -= any(is_given)
         if self._lead >= 0:
             return
+        before, pairs = self.quantities, zip(QUANTITIES, is_given, strict=True)
+        self.quantities = tuple([name for name, is_there in pairs if is_there])
         if self.counts.accepted > _MOST_LEAD:
-            self.lost = tuple([name for name in self.quantities if name not in given])
-        self.quantities, self._lead = given, 1
+            self.lost = tuple([name for name in before if name not in self.quantities])
+        self._is_given, self._lead = is_given, 1
         self._is_measured[:] = np.repeat(is_given, 3)
         self._kept, self._n_spikes = [], -_USUAL
         self.ring['at'] = 0
-        if 'orientation' in given:
+        if is_given[2]:
             self._reference = None
             self._sample[6:9] = self._turn(self._unit)
 
-    def _is_still(self, time: float, numbers: list[float]) -> bool:
+    def _is_still(self, time: float) -> bool:
         """Whether the sensor has repeated its numbers for too long: it is dead, not at rest."""
-        measured = [each for each in numbers if not math.isnan(each)]
-        if measured != self._numbers:
-            self._numbers, self._moved_at, self._n_still = measured, time, 0
+        numbers = self._sample.tobytes()
+        if numbers != self._numbers:
+            self._numbers, self._moved_at, self._n_still = numbers, time, 0
             return False
         self._moved_at = min(self._moved_at, time)
         self._n_still += 1
@@ -276,12 +277,11 @@ class MotionSensor:
     def _is_spike(self, numbers: list[float]) -> bool:
         """Whether a sample is far from the one before, unless it is the last of several."""
         is_far = False
-        for k, least in enumerate(LEAST_NOISE.tolist()):
-            old, new = self._kept[3 * k : 3 * k + 3], numbers[3 * k : 3 * k + 3]
-            if not old or not math.isfinite(sum(old) + sum(new)):
+        for k, is_given in enumerate(self._is_given):
+            if not is_given:
                 continue
-            change = math.dist(old, new)
-            usual = max(self._changes[k] or change, least)
+            change = dist(self._kept[3 * k : 3 * k + 3], numbers[3 * k : 3 * k + 3])
+            usual = max(self._changes[k] or change, _LEAST_CHANGE[k])
             is_far |= change > _APART * usual
             # A running median: up or down by a twentieth.
             self._changes[k] = usual * (1.05 if change > usual else 0.95)

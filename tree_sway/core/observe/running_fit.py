@@ -72,6 +72,11 @@ class RunningFit:
         self.found: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
 
+    def follow(self, before: RunningFit) -> None:
+        """Go on from a fit before, whose model is as it was made."""
+        self._stiffness, self._damping = before._stiffness, before._damping
+        self.found = before.found
+
     def add(self, is_known: NDArray[np.bool_], forces: Floats, east: float, north: float) -> None:
         """Add the motion that sensors have just read, forces of the wind, (n,), and the wind."""
         self._east += east
