@@ -4,8 +4,8 @@
 One sender for a source: the samples of two instruments are never mixed.
 
 The first that is heard twice is followed. Others are refused, counted and named, until it has been
-silent for some periods, its own and theirs. One that was heard once gives way: it may be a stray message, or a
-sender whose next message comes from another port.
+silent for some periods, its own and theirs. One that was heard once gives way: it may be a stray
+message, or a sender whose next message comes from another port.
 """
 
 from __future__ import annotations
