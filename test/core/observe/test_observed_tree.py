@@ -464,3 +464,28 @@ def test_learned_damping_is_that_of_the_real_tree_where_a_ratio_is_given() -> No
     learned = twin.learned
     assert learned is not None
     assert learned.of(SPECIES, in_leaf=False).damping(False) == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(
+    ('fault', 'cause'),
+    [
+        ('dead', 'repeats the same numbers'),
+        ('silent', 'silent for'),
+        ('ahead', 'its times are +60.0 s from the steps'),
+        ('nan', 'some values are no numbers'),
+    ],
+)
+def test_the_true_cause_is_told_within_five_seconds(fault: str, cause: str) -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    motion = measured()
+    for k, each in enumerate(truth().wind[: 25 * 60]):
+        time, row, is_wrong = (k + 1) * DT, motion.acceleration[k], k >= 20 * 60
+        if is_wrong and fault == 'dead':
+            row = motion.acceleration[20 * 60]
+        if is_wrong and fault == 'nan':
+            row = row * np.nan
+        if not (is_wrong and fault == 'silent'):
+            twin.offer('phone', time + 60.0 * (is_wrong and fault == 'ahead'), acceleration=row)
+        twin.step(each, DT)
+    assert len(twin.problems) == 1
+    assert cause in twin.problems[0]

@@ -267,7 +267,8 @@ class SensorTrack:
         self._count = 0
         self._window = max(round(_COMPARED / (frequency * dt)), 1)
         self._next_fit = round(LEARNING / dt)
-        self._absent = self._agreed = 0.0
+        self._absent = self._agreed = self._unheard = self._apart = 0.0
+        self._newest = sensor.newest
         self._is_refused = False
         self._quantities = sensor.quantities
         self._values, self._moved = np.zeros((2, 9))
@@ -329,6 +330,8 @@ class SensorTrack:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
             return f'{name}: refused for {self._absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent and self._unheard <= _ABSENT_AFTER:
+            return f'{name}: its times are {self._apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
             return f'{name}: silent for {self._absent:.0f} s: check its battery and connection'
         if self.alignment is None:
@@ -338,7 +341,7 @@ class SensorTrack:
             return f'{name}: {self.alignment.problem}'
         if self._is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
-        return f'{name}: no sample at the time of the steps: check its clock'
+        return f'{name}: it is followed from the next sample on'
 
     @property
     def is_silent(self) -> bool:
@@ -372,7 +375,7 @@ class SensorTrack:
             self.sensor.ring, time, self._dt, computed, self._mounting, row, *memory,
             self._values, self._moved, beyond,
         ):  # fmt: skip
-            self._miss()
+            self._miss(time)
             return False
         self._absent = 0.0
         self._count += 1
@@ -385,8 +388,11 @@ class SensorTrack:
         self._count, self._next_fit = 0, round(LEARNING / self._dt)
         self.excess = 1.0
 
-    def _miss(self) -> None:
+    def _miss(self, time: float) -> None:
         self._absent += self._dt
+        newest = self.sensor.newest
+        self._unheard = 0.0 if newest != self._newest else self._unheard + self._dt
+        self._newest, self._apart = newest, newest - time
         if self.is_silent:
             if self.in_use:
                 self.sensor.counts.silent += 1
