@@ -3,8 +3,8 @@
 """
 Samples of a live motion sensor, with times of this machine, and news for the terminal.
 
-What a second sender sends is refused, counted and named (`OneSender`). Samples whose clock jumps are refused until the clock has been
-compared again (`SenderClock`).
+What a second sender sends is refused, counted and named (`OneSender`). Samples whose clock jumps
+are refused until the clock has been compared again (`SenderClock`).
 """
 
 from __future__ import annotations
