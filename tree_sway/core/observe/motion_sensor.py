@@ -233,8 +233,9 @@ class MotionSensor:
     def _check(self, time: float, numbers: list[float]) -> int:
         """Keep the sample in `_sample` unless it is bad; return what became of it."""
         a, b, c, d, e, f, g, h, i = numbers
-        self._vote((isfinite(a + b + c), isfinite(d + e + f), isfinite(g + h + i)))
-        if self._is_still(time):
+        is_given = isfinite(a + b + c), isfinite(d + e + f), isfinite(g + h + i)
+        self._vote(is_given)
+        if any(is_given) and self._is_still(time):
             self._kept = []
             return STUCK
         if self._kept and self._is_spike(numbers):
