@@ -288,7 +288,7 @@ class Session:
                 'residual': round(each.residual, 2),
                 'rate': round(each.rate, 1),
                 'refused': each.refused,
-                'notes': list(each.notes),
+                'notes': [*each.notes, *filter(None, [live[each.name].note])],
             }
             for each in sensor_reports(simulator)
         ]
