@@ -6,9 +6,11 @@ import contextlib
 import faulthandler
 import gc
 from importlib.metadata import EntryPoint
+import importlib.util
 import os
 from pathlib import Path
 import random
+import re
 import socket
 import sys
 import time
@@ -25,6 +27,7 @@ import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
 from tree_sway.cache.model_cache import MODELS as ON_DISK  # noqa: E402
+from tree_sway.commands import cli  # noqa: E402
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.model.model_cache import PREPARED  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
@@ -245,14 +248,40 @@ def pytest_runtest_setup(item):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_makereport(item, call):
-    """Skip what turns out to need them: a model that is refused without."""
-    if not (WHY_PLAIN and call.excinfo and call.excinfo.errisinstance(MissingDependencyError)):
-        return
-    if 'needs compiled kernels' in str(call.excinfo.value):
+    """Skip what turns out to need compiled kernels, or an optional package that is missing."""
+    if call.excinfo and _lacks(call.excinfo.value):
         try:
             pytest.skip(str(call.excinfo.value))
         except pytest.skip.Exception:
             call.excinfo = pytest.ExceptionInfo.from_current()
+
+
+def _lacks(error):
+    """Tell whether an error is that of something optional, and that is not there indeed."""
+    if WHY_PLAIN and 'needs compiled kernels' in str(error):
+        return isinstance(error, MissingDependencyError)
+    if not isinstance(error, (MissingDependencyError, ModuleNotFoundError)):
+        return False
+    missing = re.search(r"No module named '(\w+)", str(error))
+    return missing is not None and importlib.util.find_spec(missing[1]) is None
+
+
+@pytest.fixture
+def installed():
+    """Give a function that skips a test of a command whose modules are not installed."""
+
+    def check(*words):
+        table, group = cli._table(words[0])
+        command = words[bool(group)]
+        known = command in table or command not in ('lab', 'demo', 'listen', 'relay', 'record')
+        if not known:
+            pytest.skip(f'{command} is of a part that is not installed')
+        for module in table[command].needs.split() if command in table else ():
+            pytest.importorskip(module, reason=f'{command} needs {module}')
+        if command == 'demo':
+            pytest.importorskip('geometry_msgs', reason='ROS 2 is not installed')
+
+    return check
 
 
 def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species='broadleaf'):

@@ -149,10 +149,14 @@ if bdist_wheel is not None:
     commands['bdist_wheel'] = AnyPython
 
 
+#: Versions of CPython for which all that is needed has wheels. test/test_packaging.py compares
+#: every file that names versions.
+PYTHONS = tuple(f'3.{minor}' for minor in range(10, 16))
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 #: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
 NUMBA = (
-    'numba>=0.59; platform_python_implementation == "CPython" and python_version < "3.15" and '
+    'numba>=0.59; platform_python_implementation == "CPython" and '
+    f'python_version <= "{PYTHONS[-1]}" and '
     '(sys_platform == "linux" and platform_machine == "x86_64" or '
     'sys_platform == "linux" and platform_machine == "aarch64" or '
     'sys_platform == "win32" and platform_machine == "AMD64" or '
@@ -226,7 +230,8 @@ setup(
         ]
     },
     data_files=data_files,
-    python_requires='>=3.10',
+    python_requires=f'>={PYTHONS[0]}',
+    classifiers=[f'Programming Language :: Python :: {version}' for version in PYTHONS],
     install_requires=[
         'setuptools',
         'numpy>=1.26',

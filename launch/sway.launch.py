@@ -20,6 +20,9 @@ from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
 from launch_ros.actions import Node
 import yaml
 
+from tree_sway.errors import ParameterError
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
+
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
 SOURCES = {
@@ -31,34 +34,45 @@ SOURCES = {
 }
 """Nodes of each source of wind."""
 
+PARAMETERS = {node: {each.name: each for each in table} for node, table in NODE_PARAMETERS.items()}
+
+OF_PARAMETERS = {
+    'tree': ('solver', 'tree'),
+    'species': ('solver', 'species'),
+    'leaves': ('solver', 'leaves'),
+    'model': ('solver', 'model'),
+    'solver_rate': ('solver', 'rate'),
+    'wind_delay': ('solver', 'wind_delay'),
+    'pose': ('solver', 'pose'),
+    'imu': ('solver', 'imu'),
+    'learn': ('solver', 'learn'),
+    'mean_speed': ('anemometer', 'mean_speed'),
+    'sensor_address': ('sensor', 'address'),
+    'wind_file': ('player', 'file'),
+    'reader_options': ('player', 'reader_options'),
+    'playback_start': ('player', 'start'),
+    'playback_rate': ('player', 'rate'),
+    'playback_loop': ('player', 'loop'),
+    'frame_id': ('', 'frame_id'),
+    'autostart': ('', 'autostart'),
+}
+"""Parameter of a node, or of every node that has it, by the argument; as configured if empty."""
+
 ARGUMENTS = (
-    ('tree', '', 'Built-in tree, or file of a tree or a forest; as configured if empty.'),
     (
         'wind_source',
         'simulated',
         'Where the wind comes from: simulated, player (a record), sensor (an anemometer), topic '
         '(of its driver), or remote (wind/filtered of another host).',
     ),
-    ('wind_file', '', 'Wind record, for wind_source:=player.'),
-    ('reader_options', '', "Options for the reader of the file: 'topic=/mast/wind yaw=1.57'."),
-    ('playback_start', '', 'Skipped time at the beginning of the record [s].'),
-    ('playback_rate', '', 'Playback rate of the record; as configured if empty.'),
-    ('playback_loop', '', 'Repeat the record; as configured if empty.'),
-    ('sensor_address', '', 'The instrument of wind_source:=sensor, such as tcp://host:port.'),
-    ('wind_topic', 'wind', 'Topic of the driver, for wind_source:=topic.'),
-    (
-        'imu',
-        '',
-        "Motion sensors on the real tree and their places: 'tree/imu@3.2', 'limb/imu@b12:0.5'.",
+    *(
+        (name, '', PARAMETERS[node or 'solver'][key].description)
+        for name, (node, key) in OF_PARAMETERS.items()
     ),
-    ('learn', '', 'Tree to write with what those sensors tell, such as oak.twin.yaml.'),
-    ('solver_rate', '', 'Steps of the solver per second [Hz]; as configured if empty.'),
-    ('pose', '', "Place of the tree in its frame: '3 0 0 1.57' for x y z [m] and yaw [rad]."),
-    ('frame_id', '', 'Frame of all published messages; as configured if empty.'),
+    ('wind_topic', 'wind', 'Topic of the driver, for wind_source:=topic.'),
     ('namespace', '', 'Namespace of all nodes and topics: one per tree.'),
     ('params_file', '', 'ROS parameter file, whose values override those of config/.'),
     ('use_sim_time', '', 'Follow /clock, which the player of wind_source:=player publishes.'),
-    ('autostart', '', 'false leaves the start of the nodes to a lifecycle manager.'),
     ('shard_count', '1', "Number of solvers that share the trees of a stand, in 'shard<n>'."),
     ('local_shards', '', 'Shards that run on this host, such as 0,1; all of them if empty.'),
     ('use_viewer', 'false', 'Serve a page for the browser.'),
@@ -165,39 +179,30 @@ def is_true(name, text):
 
 def overrides_of(name, given):
     """Values of a node's parameters that arguments ask for; nothing where nothing was given."""
-    overrides = {}
-    if given['frame_id'] and name != 'viewer':
-        overrides['frame_id'] = given['frame_id']
+    overrides = {
+        key: value_of(argument, given[argument], PARAMETERS[name][key])
+        for argument, (node, key) in OF_PARAMETERS.items()
+        if given[argument] and node in (name, '') and key in PARAMETERS[name]
+    }
     if given['use_sim_time']:
         with_clock = is_true('use_sim_time', given['use_sim_time'])
         overrides['use_sim_time'] = with_clock and name != 'player'
         if name == 'player':
             overrides['publish_clock'] = with_clock
-    if given['autostart']:
-        overrides['autostart'] = is_true('autostart', given['autostart'])
-    if name == 'sensor' and given['sensor_address']:
-        overrides['address'] = given['sensor_address']
-    if name == 'player':
-        texts = {'file': 'wind_file', 'reader_options': 'reader_options'}
-        overrides.update({to: given[each] for to, each in texts.items() if given[each]})
-        numbers = {'start': 'playback_start', 'rate': 'playback_rate'}
-        overrides.update(
-            {to: number(each, given[each]) for to, each in numbers.items() if given[each]}
-        )
-        if given['playback_loop']:
-            overrides['loop'] = is_true('playback_loop', given['playback_loop'])
-    if name == 'solver':
-        if given['tree']:
-            overrides['tree'] = given['tree']
-        if given['imu']:
-            overrides['imu'] = given['imu']
-        if given['learn']:
-            overrides['learn'] = given['learn']
-        if given['solver_rate']:
-            overrides['rate'] = number('solver_rate', given['solver_rate'])
-        if given['pose']:
-            overrides['pose'] = [number('pose', each) for each in given['pose'].split()]
+    if name == 'player' and given['shard_count'] not in ('', '1'):
+        overrides['subscribers'] = whole('shard_count', given['shard_count'])
     return overrides
+
+
+def value_of(name, text, parameter):
+    """Return the value of an argument for a parameter; refuse what that does not accept."""
+    kind = type(parameter.default)
+    try:
+        if kind is tuple:
+            return list(parameter.checked([number(name, each) for each in text.split()]))
+        return parameter.checked(number(name, text) if kind in (int, float) else text)
+    except ParameterError as error:
+        raise ValueError(str(error.at(f"launch argument '{name}'"))) from None
 
 
 def refuse_params_file(path):

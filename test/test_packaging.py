@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import ast
 import asyncio
+from importlib.metadata import metadata, PackageNotFoundError
 import os
 from pathlib import Path
 import re
@@ -128,6 +129,46 @@ def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> N
     assert setup_words['long_description'].startswith('# ')
     shared = [name for _, names in setup_words['data_files'] for name in names]
     assert {'package.xml', 'launch/sway.launch.py', 'config/solver.yaml'} <= set(shared)
+
+
+def test_every_file_names_the_same_pythons(setup_words: dict[str, Any]) -> None:
+    named = [each.rpartition(' ')[2] for each in setup_words['classifiers']]
+    oldest, newest = min(named, key=minor), max(named, key=minor)
+    assert setup_words['python_requires'] == f'>={oldest}'
+    assert f'python_version <= "{newest}"' in str(setup_words['install_requires'])
+    whole = ', '.join(f'"{each}"' for each in named)
+    for file, text in {
+        'README.md': f'with Python {oldest}-{newest} ',
+        'doc/faq.md': f'**Which Python?** {oldest} to {newest}.',
+        'QUALITY_DECLARATION.md': f'Python {oldest} to {newest},',
+        'pixi.toml': f'python = ">={oldest},<3.{minor(newest) + 1}"',
+        '.github/workflows/checks.yml': f'python: [{whole}]',
+        '.github/workflows/release.yml': f'python: ["{oldest}", "{newest}"]',
+        '.ci/in_venv.py': f'OLDEST, NEWEST_WITH_ROS = (3, {minor(oldest)}), ',
+        'lab/pyproject.toml': f'requires-python = ">={oldest}"',
+    }.items():
+        if (ROOT / file).is_file():
+            assert text in (ROOT / file).read_text(encoding='utf-8'), file
+
+
+def test_the_newest_python_of_what_is_needed_is_among_them(setup_words: dict[str, Any]) -> None:
+    """Of packages that are compiled for each version, and name those that they have wheels for."""
+    named = {minor(each.rpartition(' ')[2]) for each in setup_words['classifiers']}
+    assert sys.version_info[1] in named
+    newest = []
+    for package in ('numpy', 'scipy', 'numba', 'PyYAML'):
+        try:
+            classifiers = metadata(package).get_all('Classifier') or []
+        except PackageNotFoundError:
+            continue
+        versions = [re.fullmatch(r'Programming Language :: Python :: 3\.(\d+)', each)
+                    for each in classifiers]  # fmt: skip
+        newest.append(max(int(each[1]) for each in versions if each))
+    assert min(newest) <= max(named)
+
+
+def minor(version: str) -> int:
+    return int(version.partition('.')[2])
 
 
 def test_numba_comes_where_it_has_a_wheel_and_is_not_needed(setup_words: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import json
 from pathlib import Path
 
@@ -27,8 +28,10 @@ def wind_file(tmp_path: Path) -> Path:
 
 
 def test_plot_draws_wind_and_tip(
-    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str],
+    installed: Callable[..., None],
+) -> None:  # fmt: skip
+    installed('plot')
     picture = tmp_path / 'sway.png'
     assert cli.main(['plot', 'goldcrest', '--wind', str(wind_file), '-o', str(picture)]) == 0
     assert picture.read_bytes().startswith(PNG)
@@ -37,8 +40,10 @@ def test_plot_draws_wind_and_tip(
 
 @pytest.mark.parametrize('arguments', [['goldcrest', '--portrait'], ['--portrait', SEEDLING]])
 def test_plot_tree_draws_the_tree(
-    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch,
+    installed: Callable[..., None],
+) -> None:  # fmt: skip
+    installed('plot')
     monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'tree.png'
     assert cli.main(['plot', *arguments, '--leaves', 'on', '-o', str(picture)]) == 0
@@ -46,8 +51,9 @@ def test_plot_tree_draws_the_tree(
 
 
 def test_plot_refuses_a_wind_too_short_to_draw(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], installed: Callable[..., None]
 ) -> None:
+    installed('plot')
     path = tmp_path / 'wind.csv'
     path.write_text('time,u,v,w\n0,1,0,0\n0.01,1,0,0\n')
     arguments = ['plot', SEEDLING, '--wind', str(path), '-o', str(tmp_path / 'x.png')]
@@ -56,8 +62,10 @@ def test_plot_refuses_a_wind_too_short_to_draw(
 
 
 def test_plot_refuses_a_format_it_cannot_draw(
-    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str],
+    installed: Callable[..., None],
+) -> None:  # fmt: skip
+    installed('plot')
     arguments = ['plot', SEEDLING, '--wind', str(wind_file), '-o', str(tmp_path / 'x.doc')]
     assert cli.main(arguments) == 2
     assert "'.doc' is no picture format" in capsys.readouterr().err
@@ -214,7 +222,10 @@ def test_what_was_made_of_a_station_is_said(
 
 
 @pytest.mark.parametrize('command', ['simulate', 'convert', 'plot', 'render', 'grow', 'calibrate'])
-def test_where_nothing_can_be_written_is_said_before_any_work(command, tmp_path, capsys):
+def test_where_nothing_can_be_written_is_said_before_any_work(
+    command, tmp_path, capsys, installed
+):
+    installed(command)
     suffix = {'simulate': '.csv', 'plot': '.png', 'render': '.gif'}.get(command, '.yaml')
     path = tmp_path / 'nowhere' / f'out{suffix}'
     needed = {'grow': ['--height', '3'], 'calibrate': ['--frequency', '3']}.get(command, [])

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import json
 from pathlib import Path
 import time
@@ -117,8 +118,10 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
     ],
 )
 def test_what_cannot_be_says_why(
-    forest: str, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+    forest: str, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str],
+    installed: Callable[..., None],
+) -> None:  # fmt: skip
+    installed(*arguments)
     assert cli.main([each.format(forest) for each in arguments]) == 2
     error = capsys.readouterr().err
     assert message in error

@@ -87,19 +87,36 @@ def test_a_tree_that_cannot_stand_has_its_size_reported(
     assert found['frequencies'] == []
 
 
+def write_scan(path: Path) -> str:
+    """Write a pole of 20 m, 6 cm thick, as SimpleForest does: it cannot stand."""
+    head = 'ID,parentID,startX,startY,startZ,endX,endY,endZ,radius,branchOrder,growthLength'
+    rows = [f'{i},{i - 1},0,0,{2 * i},0,0,{2 * i + 2},0.03,0,{20 - 2 * i}' for i in range(10)]
+    path.write_text('\n'.join([head, *rows]))
+    return str(path)
+
+
 def test_a_scan_that_cannot_stand_is_thickened_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    rows = [f'{i},{i - 1},0,0,{i},0,0,{i + 1},0.02' for i in range(12)]
-    path = tmp_path / 'pole.csv'
-    path.write_text('\n'.join(['segment,parent,x0,y0,z0,x1,y1,z1,d0', *rows]))
-    found = facts(capsys, str(path), '--leaves', 'on')
+    path = write_scan(tmp_path / 'pole.csv')
+    found = facts(capsys, path, '--leaves', 'on')
     assert found['gravity'] > 0.0
     assert found['frequencies'][0] > 0.01
-    assert '1 limb thickened' in found['warnings'][0]
-    as_it_is = facts(capsys, str(path), '--leaves', 'on', '--option', 'thicken=false')
-    assert as_it_is['base_diameter'] == pytest.approx(0.02)
+    assert 'of 10 segments of 1 limb thickened' in found['warnings'][0]
+    assert 'of wood added' in found['warnings'][0]
+    as_it_is = facts(capsys, path, '--leaves', 'on', '--option', 'thicken=no')
+    assert as_it_is['base_diameter'] == pytest.approx(0.06)
     assert as_it_is['frequencies'] == []
+
+
+def test_every_command_says_that_a_scan_was_changed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_scan(tmp_path / 'pole.csv')
+    assert cli.main(['simulate', path, '--seconds', '1', '-o', str(tmp_path / 'sway.csv')]) == 0
+    warned = [line for line in capsys.readouterr().err.splitlines() if 'thickened' in line]
+    assert len(warned) == 1
+    assert warned[0].startswith('warning: changed, as bare it could carry')
 
 
 def test_natural_modes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

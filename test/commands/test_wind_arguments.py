@@ -30,7 +30,8 @@ OPTION = ('--wind-option', 'rate=20')
         ('simulate', ('--seconds', '1e6'), '1e+06 s at 60 Hz are 6e+07 steps; give at most'),
     ],
 )
-def test_what_would_be_ignored_is_refused(command, options, words, tmp_path, capsys):
+def test_what_would_be_ignored_is_refused(command, options, words, tmp_path, capsys, installed):
+    installed(command)
     suffix = {'convert': '.obj', 'plot': '.png', 'render': '.gif', 'simulate': '.csv'}[command]
     output = tmp_path / f'out{suffix}'
     assert main([command, 'goldcrest', *options, '-o', str(output)]) == 2

@@ -37,7 +37,7 @@ pytestmark = [pytest.mark.long, pytest.mark.ros]
 DEADLINE = 300.0
 OTHERS = ('colcon', 'cd', 'mkdir', 'rosdep', 'ros2', 'foxglove-studio', 'pip', '.ci/run')
 """Programs that are not ours, or the whole of CI."""
-OTHERS += ('python3 -m venv', 'python3 -m colcon', 'python3 .ci/in_venv.py ruff', 'git clone')
+OTHERS += ('python3 -m venv', 'python3 -m colcon', 'python3 .ci/in_venv.py ruff')
 OTHERS += ('python3 .ci/in_venv.py mypy', 'python3 .ci/in_venv.py pytest')
 PROMISED = {
     'show': r'http://\S+',
@@ -209,16 +209,15 @@ def test_its_commands_do_what_they_promise(
 
 
 def test_the_first_commands_of_the_readme_move_a_tree(machine: Machine) -> None:
-    """In a new clone with an environment of its own, as a new user types them."""
+    """In sources with an environment of its own, as a new user types them."""
     if find_spec('ensurepip') is None:
         pytest.skip('this Python cannot make environments')
     (_, text), *_ = blocks(PAGES[0], 'bash')
-    clone, *commands = (line.split(' # ')[0].strip() for line in text.splitlines())
-    assert clone.startswith('git clone <this repository> ')
+    commands = [line.split(' # ')[0].strip() for line in text.splitlines()]
     own = {key: value for key, value in machine.environment.items() if key != 'PYTHONPATH'}
     machine.environment = {key: own[key] for key in own if key != 'TREE_SWAY_VENV'}
-    clone = clone.replace('<this repository>', str(ROOT))
-    subprocess.run(['bash', '-c', f'set -e; {clone}; pwd'], cwd=machine.folder, check=True)
+    clone = ['git', 'clone', str(ROOT), 'tree_sway_ros']
+    subprocess.run(clone, cwd=machine.folder, check=True)
     machine.folder = machine.folder / 'tree_sway_ros'
     assert len(commands) == 2
     for command in commands:

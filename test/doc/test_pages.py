@@ -12,6 +12,7 @@ are read.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 import os
 from pathlib import Path
 import re
@@ -107,14 +108,34 @@ def commands() -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(('page', 'line'), commands())
-def test_its_commands_are_commands(page: str, line: str) -> None:
+def test_its_commands_are_commands(page: str, line: str, installed: Callable[..., None]) -> None:
     words = shlex.split(line)
     if words[0].isupper():
         pytest.fail(f"{page}: no command in '{line}'")
     if '--help' not in words:
+        installed(*words)
         table, group = cli._table(words[0])
         words = words[bool(group) :]
         assert cli._parser(words[0], table, group).parse_args(words).command == words[0]
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name)
+def test_its_commands_can_be_typed_as_they_stand(page: Path) -> None:
+    lines = [line for _, text in blocks(page, 'sh', 'bash') for line in text.splitlines()]
+    assert [line for line in lines if re.search(r'<[A-Za-z][\w ./-]*>', line)] == []
+
+
+def test_the_first_picture_leads_to_the_file_that_a_release_has() -> None:
+    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+    asset = re.search(r'^\[!\[.*\]\(../../releases/latest/download/(\S+)\)$', text, re.MULTILINE)
+    assert asset is not None
+    writes = f'tree-sway convert broadleaf -o {asset[1]}'
+    release = (ROOT / '.github' / 'workflows' / 'release.yml').read_text(encoding='utf-8')
+    assert f'- run: {writes}\n' in release
+    assert re.search(rf'gh release create .* {asset[1]} ', release)
+    assert f'python3 .ci/in_venv.py {writes}`' in text
+    words = shlex.split(writes)[1:]
+    assert cli._parser('convert', cli._table('')[0], '').parse_args(words).output == asset[1]
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name)
@@ -122,7 +143,7 @@ def test_its_links_lead_somewhere(page: Path) -> None:
     text = re.sub(r'^```.*?^```$', '', page.read_text(encoding='utf-8'), flags=re.M | re.S)
     for link in LINK.findall(text):
         path, _, heading = link.partition('#')
-        if '://' in link:
+        if '://' in link or link.startswith('../../releases/'):
             continue
         target = (page.parent / path) if path else page
         assert target.exists(), f'{link} in {name(page)}'
@@ -164,13 +185,16 @@ SPAN = re.compile(r'`tree-sway ([a-z][^`]*)`')
 
 
 @pytest.mark.parametrize('page', [p for p in PAGES if SPAN.search(p.read_text('utf-8'))], ids=name)
-def test_no_sentence_names_a_command_or_an_option_that_is_not_there(page: Path) -> None:
+def test_no_sentence_names_a_command_or_an_option_that_is_not_there(
+    page: Path, installed: Callable[..., None]
+) -> None:
     for span in SPAN.findall(page.read_text(encoding='utf-8')):
         words = shlex.split(span)
         table, group = cli._table(words[0])
         words = words[bool(group) :]
         if not words:
             continue
+        installed(*shlex.split(span))
         assert words[0] in table, span
         parser = argparse.ArgumentParser()
         cli._module(table[words[0]]).add_arguments(parser)

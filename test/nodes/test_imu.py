@@ -119,6 +119,26 @@ def test_a_clock_of_its_own_is_told_with_the_cure(compose, observer, tree_file, 
     observer.until(is_told, 'the cure')
 
 
+def test_of_two_publishers_of_a_topic_one_is_followed(compose, observer, tree_file, statuses):
+    compose(solver={'tree': tree_file, **PARAMETERS})
+    first = observer.publisher(IMU, name='tree/imu')
+
+    def values_after(*publishers):
+        for publisher in publishers:
+            publisher.publish(imu(time.time()))
+        if (report := statuses(REPORT)) is None:
+            return {}
+        return {each.key: each.value for each in report.values}
+
+    observer.until(lambda: int(values_after(first).get('accepted', 0)) > 5, 'the first')
+    second = observer.publisher(IMU, name='tree/imu')
+    key = 'of other publishers, refused'
+    observer.until(lambda: int(values_after(first, second)[key]) > 5, 'the second')
+    assert '2 publishers: ' in statuses(REPORT).message
+    assert 'one is followed' in statuses(REPORT).message
+    assert statuses(REPORT).level[0] == WARN
+
+
 PERIOD = 16_666_667
 BEGIN = 60_000 * PERIOD
 """Period of the steps, and stamp of the first sample [ns]."""
@@ -149,12 +169,12 @@ def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():
     node, run = IntakeNode(), Run(twin, 60.0)
     intake = ImuIntake(node, run, twin, arrived=lambda: arrived.append(True))
     assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', UNHEARD)]
-    node.receive(imu(BEGIN * 1e-9))
+    node.receive(imu(BEGIN * 1e-9), {})
     assert arrived
     # Samples within half a period about the time are averaged.
     assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', BEGIN)]
     assert not list(intake.lacking(BEGIN, 0.01))
-    node.receive(imu((BEGIN + PERIOD) * 1e-9))
+    node.receive(imu((BEGIN + PERIOD) * 1e-9), {})
     assert not list(intake.lacking(BEGIN, 0.0))
     assert list(intake.lacking(BEGIN + PERIOD, 0.0)) == [('tree/imu', BEGIN + PERIOD)]
 
@@ -257,7 +277,7 @@ def test_messages_move_a_tree_as_a_recording_does():
             (message.angular_velocity, rate),
         ):
             vector.x, vector.y, vector.z = values.tolist()
-        node.receive(message)
+        node.receive(message, {})
     for k, each in enumerate(wind.tolist()):
         if k % 6 == 0:
             run.offer(BEGIN + k * PERIOD, tuple(each), BEGIN + k * PERIOD)

@@ -1,6 +1,5 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import ast
 import importlib.util
 from pathlib import Path
 import re
@@ -14,23 +13,6 @@ import yaml
 from tree_sway_ros.process.topics import TOPICS  # noqa: I100
 
 ROOT = Path(__file__).parents[2]
-ARGUMENTS = (
-    'tree',
-    'sensor_address',
-    'wind_file',
-    'reader_options',
-    'imu',
-    'learn',
-    'solver_rate',
-    'playback_start',
-    'playback_rate',
-    'playback_loop',
-    'pose',
-    'frame_id',
-    'use_sim_time',
-    'autostart',
-)
-GIVEN = dict.fromkeys(ARGUMENTS, '')
 HAS_LAUNCH = importlib.util.find_spec('launch_ros') is not None
 
 
@@ -50,6 +32,13 @@ def launch_file(monkeypatch):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture
+def overrides_of(launch_file):
+    """Give the overrides of a node by some arguments."""
+    defaults = {name: default for name, default, _ in launch_file.ARGUMENTS}
+    return lambda node, **given: launch_file.overrides_of(node, defaults | given)
 
 
 def start(launch_file, monkeypatch, **given):
@@ -105,39 +94,37 @@ def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
 
 
 @pytest.mark.parametrize('word', ['True', 'true', '1'])
-def test_yes_is_yes_however_it_is_written(launch_file, monkeypatch, word):
+def test_yes_is_yes_however_it_is_written(launch_file, overrides_of, monkeypatch, word):
     nodes = start(launch_file, monkeypatch, use_sim_time=word, use_rviz=word, wind_source='player')
     assert 'rviz2' in nodes
-    assert launch_file.overrides_of('solver', GIVEN | {'use_sim_time': word}) == {
-        'use_sim_time': True
-    }
-    assert launch_file.overrides_of('player', GIVEN | {'use_sim_time': word}) == {
+    assert overrides_of('solver', use_sim_time=word) == {'use_sim_time': True}
+    assert overrides_of('player', use_sim_time=word) == {
         'use_sim_time': False,
         'publish_clock': True,
     }
 
 
-def test_neither_yes_nor_no_is_refused(launch_file):
+def test_neither_yes_nor_no_is_refused(overrides_of):
     with pytest.raises(ValueError, match="'use_sim_time': 'maybe' is neither true nor false"):
-        launch_file.overrides_of('wind', GIVEN | {'use_sim_time': 'maybe'})
+        overrides_of('wind', use_sim_time='maybe')
 
 
-def test_arguments_that_are_not_given_override_nothing(launch_file):
+def test_arguments_that_are_not_given_override_nothing(overrides_of):
     for name in ('anemometer', 'player', 'wind', 'solver'):
-        assert launch_file.overrides_of(name, GIVEN) == {}
-    placed = launch_file.overrides_of('solver', GIVEN | {'pose': '3 0 0 1.57'})
+        assert overrides_of(name) == {}
+    placed = overrides_of('solver', pose='3 0 0 1.57')
     assert placed == {'pose': [3.0, 0.0, 0.0, 1.57]}
 
 
-def test_the_player_learns_how_to_read_and_where_to_begin(launch_file):
+def test_the_player_learns_how_to_read_and_where_to_begin(overrides_of):
     given = {'reader_options': 'topic=/mast/wind yaw=1.57'}
     given |= {'playback_start': '30', 'playback_rate': '2', 'playback_loop': 'False'}
-    overrides = launch_file.overrides_of('player', GIVEN | given)
+    overrides = overrides_of('player', **given)
     assert overrides == {
         'reader_options': 'topic=/mast/wind yaw=1.57',
         **{'start': 30.0, 'rate': 2.0, 'loop': False},
     }
-    assert launch_file.overrides_of('solver', GIVEN | given) == {}
+    assert overrides_of('solver', **given) == {}
 
 
 def test_what_is_shipped_in_config_overrides_no_default():
@@ -171,9 +158,21 @@ def test_a_number_of_shards_that_is_none_is_named(launch_file, given):
         ('solver', 'pose'),
     ],
 )
-def test_a_number_that_is_none_is_named(launch_file, node, name):
+def test_a_number_that_is_none_is_named(overrides_of, node, name):
     with pytest.raises(ValueError, match=f"launch argument '{name}': 'fast' is no number"):
-        launch_file.overrides_of(node, GIVEN | {name: 'fast'})
+        overrides_of(node, **{name: 'fast'})
+
+
+def test_an_argument_is_checked_as_the_parameter_that_it_is(overrides_of):
+    given = {'model': 'full', 'species': 'ash', 'leaves': 'on', 'wind_delay': '0.5'}
+    assert overrides_of('solver', **given) == {**given, 'wind_delay': 0.5}
+    assert overrides_of('wind', **given, mean_speed='9') == {}
+    assert overrides_of('anemometer', mean_speed='9') == {'mean_speed': 9.0}
+    assert overrides_of('player', shard_count='3') == {'subscribers': 3}
+    with pytest.raises(ValueError, match=r"argument 'wind_delay': 3 is out of range; give 0 .. 2"):
+        overrides_of('solver', wind_delay='3')
+    with pytest.raises(ValueError, match=r"argument 'model': 'ful' is not .*'full'"):
+        overrides_of('solver', model='ful')
 
 
 @pytest.mark.parametrize(
@@ -224,14 +223,8 @@ def test_every_argument_is_declared(launch_file):
     assert declared == {name for name, *_ in launch_file.ARGUMENTS}
 
 
-def test_the_pages_give_arguments_that_exist():
-    source = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
-    table = next(
-        node.value
-        for node in ast.walk(ast.parse(source))
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == 'ARGUMENTS'
-    )
-    declared = {row.elts[0].value for row in table.elts}
+def test_the_pages_give_arguments_that_exist(launch_file):
+    declared = {name for name, *_ in launch_file.ARGUMENTS}
     pages = ''.join(path.read_text(encoding='utf-8') for path in (ROOT / 'doc').rglob('*.md'))
     given = re.findall(r'launch_arguments=\{(.*?)\}', pages, re.DOTALL)
     typed = re.findall(r'sway\.launch\.py((?: +\S+:=\S+)+)', pages)

@@ -22,6 +22,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     WIND,
     WIND_FILTERED,
 )
+from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.timing.playback import LONGEST_CLOCK_STEP  # noqa: E402
 from tree_sway_ros.wire.cdr import poses_of as poses_in  # noqa: E402
 from tree_sway_ros.wire.cdr import stamp_of  # noqa: E402
@@ -171,6 +172,40 @@ def test_nothing_begins_before_a_subscriber_is_there_nor_does_the_clock(
     said = observer.listen(WIND)
     observer.until(lambda: said, 'wind')
     assert stamp_to_ns(said[0].header.stamp) == 10**9
+
+
+def test_a_replay_waits_for_a_solver_that_takes_its_time(
+    compose, observer, statuses, wind_file, tree_file
+):
+    """And has the same frames each time that it is played, however late the solver is."""
+    frames, runs = observer.listen(SEGMENT_POSES, raw=True, depth=1000), []
+    simulated, name = {'use_sim_time': True}, 'player: playback'
+    for autostart in (True, False):
+        frames.clear()
+        record = {'file': wind_file, 'publish_clock': True, 'loop': False}
+        nodes = compose(player=record, wind=simulated)
+
+        def is_waiting():
+            status = statuses(name)
+            return status is not None and status.level[0] == WARN
+
+        observer.until(is_waiting, 'a warning')
+        observer.until(lambda: 'wind/filtered (0 of 1)' in statuses(name).message, 'the reason')
+        solver = nodes.add('solver', {'tree': tree_file, 'autostart': autostart, **simulated})
+        if not autostart:
+            solver.trigger_configure()
+            observer.until(is_waiting, 'a warning')
+            assert nodes['player']._playback.progress()['samples'] == 0.0
+            solver.trigger_activate()
+        player = nodes['player']
+        observer.until(lambda player=player: player.is_done, 'the end')
+        nodes.close()
+        assert 'waiting' not in statuses(name).message
+        runs.append({stamp_of(data): poses_in(data).tobytes() for data in list(frames)})
+    first, second = runs
+    both = [stamp for stamp in first if stamp in second]
+    assert len(both) > 60
+    assert [stamp for stamp in both if first[stamp] != second[stamp]] == []
 
 
 @pytest.mark.parametrize('rate', [1.0, 1000.0])

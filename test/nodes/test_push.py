@@ -16,9 +16,10 @@ from scipy.spatial.transform import Rotation
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import WrenchStamped  # noqa: E402, I100
+from geometry_msgs.msg import Transform, Vector3, Wrench, WrenchStamped  # noqa: E402, I100
+from sensor_msgs.msg import MultiDOFJointState  # noqa: E402
 
-from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES, TF, TF_STATIC  # noqa: E402
+from tree_sway_ros.process.topics import PULL, PUSH, SEGMENT_POSES, TF, TF_STATIC  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 
 
@@ -77,6 +78,51 @@ def test_a_push_that_cannot_be_is_refused_and_counted(
     wrong = wrench(frame_id, x=force)
     observer.until(lambda: push.publish(wrong) or is_warned(statuses), 'a warning', poll=0.1)
     assert why in statuses('solver: push').message
+    assert not solver.simulator.push_load.any()
+
+
+def pull(frame_id, x=1.0, stiffness=5.0):
+    return MultiDOFJointState(
+        joint_names=[frame_id],
+        transforms=[Transform(translation=Vector3(x=x, z=1.0))],
+        wrench=[Wrench(force=Vector3(x=stiffness))],
+    )
+
+
+def test_springs_pull_segments_until_they_are_let_go(compose, observer, tree_file):
+    solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
+    hand = observer.publisher(PULL, name='solver/pull')
+    held = pull('tree/stem/2')
+
+    def force():
+        return float(np.linalg.norm(solver.simulator.push_load[:3]))
+
+    observer.until(lambda: hand.publish(held) or force() > 1.0, 'a force')
+    observer.until(lambda: hand.publish(pull('tree/stem/2', stiffness=0.0)) or not force(), 'none')
+    assert solver.refusals.statuses()[2].message == 'none refused'
+
+
+@pytest.mark.parametrize(
+    ('wrong', 'why'),
+    [
+        (pull('stem/2'), "'stem/2' is the frame of no segment: one is 'tree/stem/0'"),
+        (pull('tree/stem/2', x=float('nan')), 'pull: to'),
+        (pull('tree/stem/2', stiffness=-1.0), 'pull: stiffness'),
+        (MultiDOFJointState(joint_names=['tree/stem/2']), 'for each of joint_names'),
+    ],
+)
+def test_a_pull_that_cannot_be_is_refused_with_the_reason(
+    compose, observer, statuses, tree_file, wrong, why
+):
+    solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
+    hand = observer.publisher(PULL, name='solver/pull')
+
+    def is_told():
+        hand.publish(wrong)
+        status = statuses('solver: pull')
+        return status is not None and why in status.message
+
+    observer.until(is_told, 'the reason', poll=0.1)
     assert not solver.simulator.push_load.any()
 
 

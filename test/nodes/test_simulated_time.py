@@ -113,6 +113,16 @@ def test_a_clock_set_back_resets_and_goes_on_within_two_periods(world, observer)
     observer.until(lambda: world.sway() > 1e-3, 'the tree to bend again')
 
 
+def test_a_clock_set_back_ends_the_wait_for_samples_of_before(world, observer, monkeypatch):
+    """As at the end of a record that ``ros2 bag play --loop --clock`` plays."""
+    monkeypatch.setattr(solver, '_PATIENCE', 1e3)
+    world.run(1.0, wind=(8.0, 0.0, 0.0))
+    world.run(0.5)
+    world.set(START - 500 * 10**9)
+    world.run(0.1)
+    observer.until(lambda: world.stamps[-1] < START, 'a frame of the new time', deadline=20.0)
+
+
 def test_a_clock_set_forward_is_no_explosion(world, observer):
     world.run(2.0, wind=(8.0, 0.0, 0.0))
     observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, 'the newest frame')

@@ -29,7 +29,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     TREE_DESCRIPTION,
     WIND_FILTERED,
 )
-from tree_sway_ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.reports.diagnostics import ERROR, OK, WARN  # noqa: E402
 from tree_sway_ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
@@ -133,7 +133,7 @@ def test_a_dropout_decays_to_rest_while_poses_go_on(
 
     def at_rest():
         levels.append(level('solver: wind'))
-        return levels[-1] == STALE and np.abs(block(frames[-1]) - rest).max() < 1e-4
+        return levels[-1] == ERROR and np.abs(block(frames[-1]) - rest).max() < 1e-4
 
     observer.until(at_rest, 'rest')
     breeze.vector = (8.0, 0.0, 0.0)
@@ -356,3 +356,15 @@ def test_it_answers_what_the_wind_at_a_place_is(compose, observer, statuses, tre
         'a warning', poll=0.1,
     )  # fmt: skip
     assert nodes['solver'].is_active
+
+
+def test_a_scan_that_was_changed_is_said_on_diagnostics(compose, observer, statuses, tmp_path):
+    head = 'ID,parentID,startX,startY,startZ,endX,endY,endZ,radius,branchOrder,growthLength'
+    rows = [f'{i},{i - 1},0,0,{2 * i},0,0,{2 * i + 2},0.03,0,{20 - 2 * i}' for i in range(10)]
+    scan = tmp_path / 'pole.csv'
+    scan.write_text('\n'.join([head, *rows]))
+    compose(solver={'tree': str(scan), 'model': 2})
+    observer.until(lambda: statuses('solver: tree') is not None, 'diagnostics')
+    status = statuses('solver: tree')
+    assert status.level == bytes([WARN])
+    assert 'of 10 segments of 1 limb thickened' in status.message

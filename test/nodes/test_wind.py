@@ -26,7 +26,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.reports.diagnostics import ERROR, OK, WARN  # noqa: E402
 from tree_sway_ros.wire import frames  # noqa: E402
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
@@ -249,13 +249,13 @@ def test_a_frozen_sensor_is_a_warning(compose, observer, statuses, level):
     observer.until(lambda: mast.say(3.2) and mast.say(3.1) and level('wind: wind') == OK, 'OK')
 
 
-def test_a_silent_sensor_goes_from_warn_to_stale(compose, observer, statuses, level):
+def test_a_silent_sensor_goes_from_warn_to_error(compose, observer, statuses, level):
     compose(wind={'timeout': 0.3})
     observer.until(lambda: level('wind: wind') == WARN, 'a warning')
     assert 'no wind yet' in statuses('wind: wind').message
     mast = Mast(observer)
     observer.until(lambda: mast.say(3.0) and level('wind: wind') == OK, 'OK')
-    observer.until(lambda: level('wind: wind') == STALE, 'STALE')
+    observer.until(lambda: level('wind: wind') == ERROR, 'ERROR')
 
 
 def test_a_sensor_of_another_type_is_named(compose, observer, statuses):

@@ -102,6 +102,29 @@ def test_a_viewer_gets_the_description_and_then_a_frame_per_credit(server: PageS
     run(server, script)
 
 
+def test_a_status_that_fails_is_told_and_comes_again(caplog: pytest.LogCaptureFixture) -> None:
+    n_asked = 0
+
+    def status() -> dict[str, object]:
+        nonlocal n_asked
+        n_asked += 1
+        if n_asked < 3:
+            raise ZeroDivisionError('of a sensor')
+        return {'model': complex(1.0) if n_asked == 3 else 'full'}  # no JSON
+
+    async def script(viewer: Viewer) -> None:
+        for why in ('ZeroDivisionError: of a sensor', 'TypeError: '):
+            refused = await viewer.text('refused')
+            assert refused['name'] == 'status'
+            assert why in refused['reason']
+        assert (await viewer.text('status'))['model'] == 'full'
+
+    with PageServer(PageSettings(port=0), status=status) as server:
+        run(server, script)
+        assert server.n_refused == 2
+    assert 'no status (ZeroDivisionError: of a sensor)' in caplog.text
+
+
 def test_a_slow_viewer_sees_new_frames_and_holds_up_nobody(server: PageServer) -> None:
     stop = threading.Event()
 

@@ -252,6 +252,17 @@ def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> N
     assert session.status()['record_time'] == pytest.approx(7.0, abs=0.2)
 
 
+@pytest.mark.parametrize('to', [0.0, 90.0])
+def test_a_seek_while_samples_are_taken_leaves_none_outside_their_time(to: float) -> None:
+    wind = RecordedWind(np.arange(0.0, 100.0, 0.1), np.ones((1000, 3)))
+    wind.seek(50.0, now=100.0)
+    samples = wind.between(100.0, 101.0)
+    times = [next(samples)[0]]
+    wind.seek(to, now=100.0)
+    times += [time for time, _ in samples]
+    np.testing.assert_allclose(times, np.arange(100.1, 101.05, 0.1))
+
+
 def test_viewers_are_told_of_gusts_to_come_that_are_known(live: tuple[Session, Sink]) -> None:
     session, _ = live
     session.wind = RecordedWind(np.arange(20.0), np.outer(np.arange(20.0), [0.6, 0.8, 0.0]))
@@ -329,3 +340,12 @@ def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:
     assert felt[60 * 3] == pytest.approx(8.0)
     assert 0.0 < felt[-1] < 0.1
     assert np.abs(np.diff(felt[10:])).max() < 0.5
+
+
+def test_the_page_is_told_what_was_changed_in_its_tree() -> None:
+    told = {'seedling': ('changed, as bare it could carry 50 %',)}
+    session = Session(
+        lambda _: open_scene(SEEDLING).simulator(model=4), Choices('seedling', model='4'),
+        Measured(), warnings=told,
+    )  # fmt: skip
+    assert session.status()['warnings'] == ['changed, as bare it could carry 50 %']

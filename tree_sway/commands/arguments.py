@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 import dataclasses
 import math
 from pathlib import Path
+import sys
 from typing import Any
 
 from tree_sway.commands.progress import waiting
@@ -69,14 +70,24 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     """
     wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
-        return open_tree(arguments.tree, arguments.seed, wood=wood, **_options(arguments))
+        opened = open_tree(
+            arguments.tree,
+            arguments.seed,
+            wood=wood,
+            in_leaf=chosen_leaves(arguments),
+            warn=False,
+            **_options(arguments),
+        )
+    say_warnings(opened.warnings)
+    return opened
 
 
-def opened_scene(arguments: argparse.Namespace) -> Scene:
+def opened_scene(arguments: argparse.Namespace, *, says: bool = True) -> Scene:
     """
-    Open the tree or the forest of the arguments, with their wood.
+    Open the tree or the forest of the arguments, with their wood, and print its warnings.
 
-    Errors are those of `opened_tree`, and values of one tree for several.
+    Errors are those of `opened_tree`, and values of one tree for several. A command that shows the
+    warnings in its own form has ``says=False``.
     """
     wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
@@ -85,8 +96,12 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
             arguments.seed,
             exact=getattr(arguments, 'exact', False),
             wood=wood,
+            in_leaf=chosen_leaves(arguments),
+            warn=False,
             **_options(arguments),
         )
+    if says:
+        say_warnings(scene.warnings)
     if _wood(arguments) and not scene.is_one_tree:
         raise ParameterError(
             'modulus or density for a whole forest',
@@ -94,6 +109,12 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
             cure='use --species, or files of trees with their own wood',
         )
     return scene
+
+
+def say_warnings(warnings: Iterable[str]) -> None:
+    """Print what was changed in a tree, and what is odd about it, on lines of their own."""
+    for warning in warnings:
+        print(f'warning: {warning}', file=sys.stderr)
 
 
 def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
@@ -163,8 +184,8 @@ def add_leaves_argument(
 
 
 def chosen_leaves(arguments: argparse.Namespace) -> bool | None:
-    """Whether trees bear leaves; None is by their species."""
-    return LEAVES[arguments.leaves]
+    """Whether trees bear leaves; None, as for a command without the choice, is by species."""
+    return LEAVES[getattr(arguments, 'leaves', 'auto')]
 
 
 def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | None:

@@ -17,6 +17,7 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     opened_tree,
     output_path,
+    say_warnings,
     write_tree_file,
 )
 from tree_sway.commands.progress import waiting
@@ -106,8 +107,8 @@ def run(arguments: argparse.Namespace) -> int:
         )
     in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
     oddity = sway_oddity(tree_file.tree, fitted.species, fitted.frequency)
-    for each in (*tree_file.of_species(fitted.species).warnings, *([oddity] if oddity else [])):
-        print(f'warning: {each}', file=sys.stderr)
+    new = set(tree_file.of_species(fitted.species).warnings) - set(tree_file.warnings)
+    say_warnings([*sorted(new), *([oddity] if oddity else [])])
     if arguments.branch is None and fitted.branch != tree_file.tree.branch_names[0]:
         stem = tree_file.tree.branch_names[0]
         print(f'note: this sway is of a limb; one measured on the stem: --branch {stem}',

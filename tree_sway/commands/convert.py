@@ -18,7 +18,6 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     drawn_leaves,
     opened_scene,
-    opened_tree,
     OUTPUT_HELP,
     output_path,
     refuse_unused,
@@ -40,11 +39,8 @@ from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_writing import write_usd
 from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
 from tree_sway.files.models.model_writer import write_model
-from tree_sway.files.paths import path_of
-from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.whole_file import write_text_whole
-from tree_sway.files.yaml_document import begins_with_key
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -98,8 +94,6 @@ def run(arguments: argparse.Namespace) -> int:
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)
-    for oddity in scene.warnings:
-        print(f'warning: {oddity}', file=sys.stderr)
     if suffix == '.obj':
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
@@ -109,7 +103,8 @@ def run(arguments: argparse.Namespace) -> int:
     ):
         _write_swaying(scene, arguments, suffix)
     elif suffix != '.glb' and scene.is_one_tree:
-        write_tree(output, _with_what_was_learned(scene, arguments))
+        one = scene.trees[0]
+        write_tree(output, TreeFile(scene.tree, one.species, scene.source, learned=one.learned))
     else:
         species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
@@ -180,15 +175,6 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             write_usd(arguments.output, simulator, leaves)
         else:
             write_text_whole(arguments.output, _HINGED[suffix](simulator))
-
-
-def _with_what_was_learned(scene: Scene, arguments: argparse.Namespace) -> TreeFile:
-    """Return the only tree of a scene, with what motion sensors told if its file has it."""
-    path = path_of(arguments.tree)
-    learned = None
-    if path.is_file() and begins_with_key(path, read_head(path), 'learned'):
-        learned = opened_tree(arguments).learned
-    return TreeFile(scene.tree, scene.trees[0].species, scene.source, learned=learned)
 
 
 def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:

@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_unused_exposure(arguments, '--speed U')
     else:
         SWAY['mean_speed'].checked(arguments.speed)
-    scene = opened_scene(arguments)
+    scene = opened_scene(arguments, says=False)
     kinds = scene.kinds
     if scene.is_one_tree:
         kinds = [kinds[0]._replace(tree=scene.tree)]

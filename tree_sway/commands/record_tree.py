@@ -17,6 +17,7 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
+from tree_sway.commands.arguments import say_warnings
 from tree_sway.commands.live_motion_arguments import sensing
 from tree_sway.commands.record_clock import RecordClock
 from tree_sway.commands.record_wind import WindTable
@@ -63,7 +64,8 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     if folder.suffix or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
         what = f"'{folder}' is no new folder"
         raise ParameterError(what, where='--output', cure='name a folder that is not there yet')
-    opened = open_tree(arguments.tree)
+    opened = open_tree(arguments.tree, warn=False)
+    say_warnings(opened.warnings)
     for at in arguments.at:
         with inside('--at'):
             place_on(opened.tree, at)

@@ -115,11 +115,13 @@ def _serve(
         choices = replace(choices, sensor_at=next(iter(motion.places.values())))
     learning = Learning(arguments.learn)
     history = TreeHistory(arguments.history, list(motion.places)) if arguments.history else None
+    told: dict[str, tuple[str, ...]] = {}
     session = Session(
-        lambda wanted: build_scene(wanted, arguments, motion.places, learning),
+        lambda wanted: build_scene(wanted, arguments, motion.places, learning, told),
         choices,
         wind,
         motion=motion,
+        warnings=told,
     )
     critical_winds = _critical_winds(arguments.risk, session.names)
     panel = ControlPanel()
@@ -184,9 +186,10 @@ def build_scene(
     arguments: argparse.Namespace,
     places: Mapping[str, str] | None = None,
     learning: Learning | None = None,
+    told: dict[str, tuple[str, ...]] | None = None,
 ) -> Simulator:
     """
-    Make the simulator of some choices.
+    Make the simulator of some choices, with the warnings of its tree in ``told``.
 
     The tree that the command names follows the sensors at the places, and learns; others have
     none.
@@ -195,7 +198,9 @@ def build_scene(
     if is_first:
         scene = opened_scene(arguments)
     else:
-        scene = _grown(choices) if choices.is_grown else open_scene(choices.tree)
+        scene = _grown(choices) if choices.is_grown else open_scene(choices.tree, warn=False)
+    if told is not None:
+        told[choices.tree] = scene.warnings
     count = int(choices.count)
     if count > 1:
         if not scene.is_one_tree:

@@ -15,7 +15,7 @@ def reader_options(words: Iterable[str]) -> dict[str, Option]:
     """
     Read options for `read_wind`, `read_trees` and `open_tree` from words ``NAME=VALUE``.
 
-    Numbers and booleans are converted, words separated by commas are a tuple. Raises a
+    Numbers, true, false, yes and no are converted, words separated by commas are a tuple. Raises a
     `ParameterError` for a word without a value.
     """
     options: dict[str, Option] = {}
@@ -28,8 +28,8 @@ def reader_options(words: Iterable[str]) -> dict[str, Option]:
 
 
 def _value(text: str) -> Option:
-    if text in ('true', 'false'):
-        return text == 'true'
+    if text in ('true', 'yes', 'false', 'no'):
+        return text in ('true', 'yes')
     if ',' in text:
         return tuple(part.strip() for part in text.split(','))
     try:

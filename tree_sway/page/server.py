@@ -398,8 +398,7 @@ class PageServer:
 
     def _refuse(self, client: PageClient, name: str, why: str) -> None:
         self._refusals.count += 1
-        refused = {'name': name, 'reason': why[:_LONGEST_REASON]}
-        client.say({'refused': refused, 'values': self._panel.values()})
+        client.say({'refused': _refusal(name, why), 'values': self._panel.values()})
 
     def _send_all(self, content: Mapping[str, object]) -> None:
         for client in self._clients:
@@ -413,16 +412,30 @@ class PageServer:
             self._drop(client)
 
     async def _send_status(self) -> None:
+        """Send the status at its interval; pages are told once why there is none."""
+        told = ''
         while True:
             await asyncio.sleep(STATUS_PERIOD)
             now = time.monotonic()
             for client in tuple(self._clients):
                 if client.is_stuck(now):
                     self._drop(client)
-            if self._clients:
-                self._send_all({'status': {**self._status(), 'clients': len(self._clients)}})
+            why = ''
+            try:
+                if self._clients:
+                    self._send_all({'status': {**self._status(), 'clients': len(self._clients)}})
+            except Exception as error:
+                why = f'no status ({type(error).__name__}: {error})'
+                if why != told:
+                    self._refusals.note(why)
+                    self._send_all({'refused': _refusal('status', why)})
+            told = why
 
     def _drop(self, client: PageClient) -> None:
         """Close a client that does not read, without waiting for it."""
         self._clients.discard(client)
         client.drop()
+
+
+def _refusal(name: str, why: str) -> dict[str, str]:
+    return {'name': name, 'reason': why[:_LONGEST_REASON]}

@@ -9,7 +9,7 @@ continues, and exchanged between two steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 import logging
 import threading
@@ -134,6 +134,8 @@ class Session:
         Largest error that model ``auto`` allows in [m].
     motion
         Live sensors, which an observed tree follows.
+    warnings
+        What was changed in the trees that are made, and is odd about them, by ``choices.tree``.
 
     Raises
     ------
@@ -151,7 +153,9 @@ class Session:
         rate: float = RATE,
         tolerance: float = 0.005,
         motion: MotionFeed | None = None,
+        warnings: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
+        self._warnings = {} if warnings is None else warnings
         self._motion = MotionFeed() if motion is None else motion
         self._build = build
         self.wind = wind
@@ -261,6 +265,7 @@ class Session:
             'is_grown': self.choices.is_grown,
             'stem_of': self.choices.stem_of,
             'building': self._builder.wanted is not None,
+            'warnings': list(self._warnings.get(self.choices.tree, ())),
         }
         if isinstance(self.wind, RecordedWind):
             status['record_time'] = self.wind.time(self._now)
@@ -283,7 +288,7 @@ class Session:
                 'residual': round(each.residual, 2),
                 'rate': round(each.rate, 1),
                 'refused': each.refused,
-                'notes': list(each.notes),
+                'notes': [*each.notes, *filter(None, [live[each.name].note])],
             }
             for each in sensor_reports(simulator)
         ]

@@ -159,8 +159,9 @@ class RecordedWind:
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""
-        since = since + self._ahead
-        until = until + self._ahead
+        ahead = self._ahead  # a viewer's thread may seek meanwhile
+        since = since + ahead
+        until = until + ahead
         lap = max(math.floor(since / self.length), 0)
         n = len(self._time)
         i = int(self._time.searchsorted(since - lap * self.length + 1e-9, 'right'))
@@ -171,5 +172,5 @@ class RecordedWind:
             if time > until + 1e-9:
                 return
             x, y, z = self._velocity[i].tolist()
-            yield time - self._ahead, (x, y, z)
+            yield time - ahead, (x, y, z)
             i += 1

@@ -49,7 +49,7 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
         An impossible tree, wind or setting.
 
     """
-    rig, frequency = _rig(case, tree)
+    rig, frequency, warnings = _rig(case, tree)
     record = rig.run(_wind(case, wind), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
@@ -63,33 +63,36 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
     row |= _summary('base_moment', 'N m', record.base_moment)
     row['strain_largest [-]'] = float(np.abs(record.base_strain).max())
     row |= _used('wood', record.strength.wood) | _used('roots', record.strength.roots)
-    row['notes'] = '; '.join(record.notes)
+    row['notes'] = '; '.join((*warnings, *record.notes))
     return row
 
 
 _MOST_RIGS = 2
-_RIGS: OrderedDict[str, tuple[Rig, float]] = OrderedDict()
+_RIGS: OrderedDict[str, tuple[Rig, float, tuple[str, ...]]] = OrderedDict()
 """The last set-ups of this process, by tree and settings."""
 
 
-def _rig(case: Case, tree: TreeFile | None) -> tuple[Rig, float]:
-    """Set up a tree and its frequency in [Hz]; the next case often has the same."""
+def _rig(case: Case, tree: TreeFile | None) -> tuple[Rig, float, tuple[str, ...]]:
+    """Set up a tree, its frequency [Hz] and its warnings; the next case often has the same."""
     asked = json.dumps([case.tree, case.settings, case.digest], sort_keys=True)
     if asked not in _RIGS:
         use_disk_cache()  # in each process of a study
-        rig = Rig(_tree(case.tree) if tree is None else tree, **case.settings)
-        _RIGS[asked] = rig, float(rig.reductions.natural_frequencies(1)[0])
+        opened = _tree(case) if tree is None else tree
+        rig = Rig(opened, **case.settings)
+        _RIGS[asked] = rig, float(rig.reductions.natural_frequencies(1)[0]), opened.warnings
         while len(_RIGS) > _MOST_RIGS:
             _RIGS.popitem(last=False)
     return _RIGS[asked]
 
 
-def _tree(asked: Plain) -> TreeFile:
+def _tree(case: Case) -> TreeFile:
+    asked = case.tree
     if 'species' in asked:
         species = species_named(asked['species'])
         rng = np.random.default_rng(asked['seed'])
         return TreeFile(grow(species.key, asked['height'], rng=rng), species, 'grown')
-    return open_tree(asked.get('file') or asked['name'])
+    name = asked.get('file') or asked['name']
+    return open_tree(name, in_leaf=case.settings.get('in_leaf'), warn=False)
 
 
 def _wind(case: Case, record: WindRecord | None = None) -> WindRecord | Floats:

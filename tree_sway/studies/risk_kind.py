@@ -103,7 +103,7 @@ def _computed(kind: RiskKind) -> KindResult:
             note = f'a stem of {wanted:.3g} m would buckle: of {diameter:.3g} m, scaled'
     rng = np.random.default_rng(kind.seed)
     tree = grow(kind.species, kind.height, diameter, rng=rng)
-    tree, thickening = standing_tree(tree, species)
+    tree, thickening = standing_tree(tree, species, in_leaf=True)
     if thickening is not None:
         limbs = 'grown limbs that could not carry themselves are thickened'
         note = f'{note}; {limbs}' if note else limbs

@@ -11,6 +11,7 @@ cases of a lost worker are computed by a different one.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 import json
 from pathlib import Path
 from typing import Any
@@ -145,18 +146,23 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
 
 
 def files_of(cases: Sequence[Case], opened: dict[str, Any]) -> dict[str, Any]:
-    """Trees and winds of the files of some cases, by their path; each is opened once."""
+    """Trees and winds of the files of some cases, by path; each is opened once in a season."""
+    found = {}
     for case in cases:
-        for part, read in ((case.tree, open_tree), (case.wind, read_wind)):
+        in_leaf = case.settings.get('in_leaf')
+        tree = partial(open_tree, in_leaf=in_leaf, warn=False)
+        for part, read, season in ((case.tree, tree, f' {in_leaf}'), (case.wind, read_wind, '')):
             path = part.get('file')
-            if path is None or path in opened:
+            if path is None:
                 continue
-            try:
-                opened[path] = read(path)
-            except TreeSwayError:
-                opened[path] = None  # the worker finds the same error, of the case alone
-    paths = {part.get('file') for case in cases for part in (case.tree, case.wind)}
-    return {path: opened[path] for path in paths if path is not None}
+            if path + season not in opened:
+                try:
+                    opened[path + season] = read(path)
+                except TreeSwayError:
+                    # The worker finds the same error, of the case alone.
+                    opened[path + season] = None
+            found[path] = opened[path + season]
+    return found
 
 
 def _outcomes(cases: list[Case], workers: int, scheduler: str | None) -> Iterator[Outcome]:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 from contextlib import ExitStack
 from pathlib import Path
-import sys
 import tempfile
 import webbrowser
 
@@ -61,8 +60,6 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = seconds_of(arguments)
     refuse_unused_wind(arguments)
     scene = opened_scene(arguments)
-    for warning in scene.warnings:
-        print(f'warning: {warning}', file=sys.stderr)
     tree = scene.tree
     print(
         f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments; starting '

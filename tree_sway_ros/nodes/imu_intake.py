@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
+import time
 from typing import Any
 
 from tree_sway.core.observe.observed_tree import ObservedTree
@@ -15,10 +17,13 @@ from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.reports.one_publisher import OnePublisher
 from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
+
+_TYPE, _SHOWN = 'sensor_msgs/Imu', 5
 
 UNHEARD = -1
 """In place of the stamp of a topic's newest sample, before any: no stamp is negative."""
@@ -71,11 +76,16 @@ class ImuIntake:
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}
+        self._followed = {topic: OnePublisher() for topic in twin.sensors}
         for topic in twin.sensors:
             node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
     def _callback_of(self, topic: str) -> Any:
-        def receive(message: Any) -> None:
+        publishers = partial(self._node.count_publishers, topic)
+
+        def receive(message: Any, info: Mapping[str, object]) -> None:
+            if not self._followed[topic].admits(info, publishers, time.monotonic()):
+                return
             sample = motion_from_message(message)
             now = int(self._node.get_clock().now().nanoseconds)
             stamp = sample.stamp or now
@@ -154,6 +164,7 @@ class ImuIntake:
         for each in sensor_reports(self._twin):
             problem = each.problem
             counts = each.counts
+            others = self._followed[each.name].refused
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
                 'place': self._twin.at[each.name],
@@ -162,6 +173,7 @@ class ImuIntake:
                 'accepted': counts.accepted,
                 'refused': counts.refused,
                 'refused for their stamps': apart,
+                'of other publishers, refused': others,
                 'silent': counts.silent,
                 'disagreed': counts.disagreed,
                 'late [s]': round(each.late, 4),
@@ -179,6 +191,14 @@ class ImuIntake:
                 has_changed = each.change.is_change
                 values['frequencies over those before'] = round(each.change.ratio, 3)
                 values['their error by chance and wind'] = round(each.change.error, 3)
-            level = WARN if problem or has_changed else OK
-            found.append(Status(f'imu {each.name}', level, problem or '; '.join(said), values))
+            faults = [problem] if problem else []
+            if self._node.count_publishers(each.name) > 1:
+                names = sorted(self._node.publishers_of(each.name, _TYPE))
+                faults.append(
+                    f'{len(names)} publishers: {", ".join(names[:_SHOWN])}; one is followed, '
+                    f'{others} samples of others were refused'
+                )
+            level = WARN if faults or has_changed else OK
+            text = '; '.join([*([] if problem else said), *faults])
+            found.append(Status(f'imu {each.name}', level, text, values))
         return found

@@ -12,8 +12,8 @@ from tree_sway.files.reader_options import reader_options
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_ros.nodes.recorded_imu import RecordedImu
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CLOCK, IMU, WIND
-from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.process.topics import CLOCK, IMU, WIND, WIND_FILTERED
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.timing.playback import is_ros_time, Playback
 from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
 
@@ -51,8 +51,8 @@ class PlayerNode(TreeSwayNode):
         self._playback = Playback(
             self._rows.time, self._publish,
             may_start=lambda: self._wind.get_subscription_count() > 0, on_end=self._end,
-            has_all=lambda: all(each.get_subscription_count() for each in self._imu),
-            on_error=self.fail, start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
+            lacking=self._lacking, say=self.get_logger().info, on_error=self.fail,
+            start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
             **self.values.subset('rate', 'loop'),
         )  # fmt: skip
         self.report_with(self._record.source, self._report)
@@ -60,6 +60,19 @@ class PlayerNode(TreeSwayNode):
     def activate(self) -> None:
         """Play from the start, once there is a subscriber."""
         self.run_worker(self._playback)
+
+    def _lacking(self) -> str:
+        """Return which topics lack subscribers, that of the wind node among them."""
+        wanted = {each.topic_name: 1 for each in self._imu}
+        filtered = self.resolve_topic_name(WIND_FILTERED.name)
+        if self.count_publishers(filtered):
+            wanted[filtered] = self.values['subscribers']
+        counts = {topic: self.count_subscribers(topic) for topic in wanted}
+        return ', '.join(
+            f'subscribers of {topic} ({counts[topic]} of {count})'
+            for topic, count in wanted.items()
+            if counts[topic] < count
+        )
 
     def _publish(self, row: int, stamp: int) -> None:
         if row < 0:
@@ -78,4 +91,6 @@ class PlayerNode(TreeSwayNode):
 
     def _report(self) -> list[Status]:
         values = {**self._playback.progress(), 'refused in file': self._record.refused}
+        if waits_for := self._playback.waits_for:
+            return [Status('playback', WARN, f'waiting for {waits_for}', values)]
         return [Status('playback', OK, self._record.source, values)]

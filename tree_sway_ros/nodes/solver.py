@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-import json
 import math
 import threading
 import time
@@ -48,7 +47,7 @@ from tree_sway_ros.process.topics import (
     WIND_FILTERED,
     WIND_THERE,
 )
-from tree_sway_ros.reports.diagnostics import Status
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.refusals import Refusals
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
@@ -111,6 +110,9 @@ class SolverNode(TreeSwayNode):
     def activate(self) -> None:
         """Start the steps and the stream."""
         self._state.start()
+        if not self._hears_wind:  # a replay begins once there is a subscription
+            self.subscription(WIND_FILTERED, self._receive)
+            self._hears_wind = True
         if self._learned is not None:
             self.on_close(self._keep_learned)
         self.run_worker(self.pacer)
@@ -119,7 +121,10 @@ class SolverNode(TreeSwayNode):
         """Open the trees that this node sways, where they stand."""
         named = self.values['species']
         source = open_scene(
-            self.values['tree'], wood=lambda found: species_named(named) if named else found
+            self.values['tree'],
+            wood=lambda found: species_named(named) if named else found,
+            in_leaf=LEAVES[self.values['leaves']],
+            warn=False,
         )
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
@@ -206,7 +211,8 @@ class SolverNode(TreeSwayNode):
         leaves = source.leaves(LEAVES[self.values['leaves']], _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
-        self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
+        self._topic = self.resolve_topic_name(WIND_FILTERED.name)
+        self._hears_wind: bool = False
         self.subscription(CAMERA, self._see)
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):
@@ -221,6 +227,7 @@ class SolverNode(TreeSwayNode):
         self.subscription(WIND_AT, self._answer)
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
+        self._warnings = source.warnings
         self.report_with(source.tree.name, self._statuses)
 
     def _starting(self, felt: float) -> None:
@@ -263,19 +270,25 @@ class SolverNode(TreeSwayNode):
         answer.vector.x, answer.vector.y, answer.vector.z = wind.tolist()
         self._wind_there.publish(answer)
 
-    def _take_push(self, message: Any) -> None:
+    def _row(self, frame_id: str, request: str) -> int | None:
+        """Return the row of the segment with a frame; without one the request is refused."""
         frames = self.stream.tree_frames
-        frame_id = message.header.frame_id
-        segment = frames.row(frame_id)
+        row = frames.row(frame_id)
+        if row is None:
+            why = f"'{frame_id}' is the frame of no segment: one is '{frames.example}'"
+            self.refusals.note(request, why)
+        return row
+
+    def _take_push(self, message: Any) -> None:
+        segment = self._row(message.header.frame_id, 'push')
         force = message.wrench.force
         components = (force.x, force.y, force.z)
         if segment is None:
-            why = f"'{frame_id}' is the frame of no segment: one is '{frames.example}'"
-            self.refusals.note('push', why)
-        elif not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
+            return
+        if not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
             self.refusals.note('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
-            frames.show(segment)
+            self.stream.tree_frames.show(segment)
             self._run.request(
                 lambda: self._push(segment, components),
                 lambda why: self.refusals.note('push', why),
@@ -287,14 +300,18 @@ class SolverNode(TreeSwayNode):
         self.simulator.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
 
     def _take_pull(self, message: Any) -> None:
-        try:
-            why = self._hands.pull(
-                json.loads(message.data), lambda why: self.refusals.note('pull', why)
-            )
-        except (ValueError, RecursionError) as error:
-            why = f'not JSON ({error})'
-        if why is not None:
-            self.refusals.note('pull', why)
+        parts = message.joint_names, message.transforms, message.wrench
+        if len({*map(len, parts)}) > 1:
+            self.refusals.note('pull', 'not one of transforms and wrench for each of joint_names')
+            return
+        for frame_id, wanted, spring in zip(*parts, strict=True):
+            if (segment := self._row(frame_id, 'pull')) is None:
+                continue
+            at = wanted.translation
+            pull = {'segment': segment, 'to': [at.x, at.y, at.z], 'stiffness': spring.force.x}
+            why = self._hands.pull(pull, lambda why: self.refusals.note('pull', why))
+            if why is not None:
+                self.refusals.note('pull', why)
 
     def _pull(
         self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
@@ -359,7 +376,8 @@ class SolverNode(TreeSwayNode):
     def _await_samples(self, to: int) -> None:
         """Wait for the samples that act before a time in [ns], once for each that is lost."""
         begin = time.monotonic()
-        while not self.pacer.is_stopping:
+        clock = self.get_clock()
+        while not self.pacer.is_stopping and clock.now().nanoseconds >= to:  # or was set back
             self._arrived.clear()
             lacking = set(self._lacking(to))
             if lacking <= self._missed:
@@ -413,4 +431,6 @@ class SolverNode(TreeSwayNode):
             self._run, self.pacer, self.stream.frames, replay, wind, poses
         )
         statuses += self.refusals.statuses()
+        level, text = (WARN, '; '.join(self._warnings)) if self._warnings else (OK, 'as stated')
+        statuses.append(Status('tree', level, shown(text, LONGEST_NOTE), {}))
         return statuses if self._imu is None else [*statuses, *self._imu.statuses()]

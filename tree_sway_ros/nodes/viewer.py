@@ -5,14 +5,16 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 import json
 import time
 from typing import Any
 
+from geometry_msgs.msg import Transform, Vector3, Wrench
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from std_msgs.msg import String
+from sensor_msgs.msg import MultiDOFJointState
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
@@ -25,7 +27,6 @@ from tree_sway.stream.protocol import decode_description, Description, encode_st
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
     PULL,
-    qos_profile,
     TREE_DESCRIPTION,
     TREE_STATE,
     WIND,
@@ -64,7 +65,8 @@ class ViewerNode(TreeSwayNode):
         require_token(self._settings.address, read_token(self._settings.token_file))
         controls = _controls(), self._apply, self._pull
         self._panel = ControlPanel(*controls) if self.values['control'] else None
-        self._pulls = self.create_publisher(String, 'solver/pull', qos_profile(PULL))
+        self._pulls = self.publisher(replace(PULL, name='solver/pull'))
+        self._frame_ids: list[str] = []
         self._description: Description | None = None
         self._described = ''
         self._sequence = 0
@@ -138,12 +140,15 @@ class ViewerNode(TreeSwayNode):
             return
         self._described = message.data
         try:
-            data = read_state_entry(json.loads(message.data))
+            content = json.loads(message.data)
         except ValueError as error:
             raise FormatError(f'not JSON ({error})', where='tree_description') from None
+        data = read_state_entry(content)
         if data is None:
             return
         self._description = decode_description(data)
+        names = content['segments']['names']
+        self._frame_ids = [f'{content["tree_frame"]}/{each}' for each in names]
         server.describe(data)
 
     def _receive(self, message: Any) -> None:
@@ -185,8 +190,13 @@ class ViewerNode(TreeSwayNode):
             raise ParameterError("model 'branch' cannot be pulled", where='pull')
         if self._pulls.get_subscription_count() == 0:
             raise ParameterError('nothing offers solver/pull', cure='start the solver')
-        pull = {'segment': segment, 'to': to, 'stiffness': stiffness}
-        self._pulls.publish(String(data=json.dumps(pull)))
+        if not 0 <= segment < len(self._frame_ids):
+            raise ParameterError(f'no segment {segment} is described', where='pull')
+        x, y, z = map(float, to)
+        pull = MultiDOFJointState(joint_names=[self._frame_ids[segment]])
+        pull.transforms = [Transform(translation=Vector3(x=x, y=y, z=z))]
+        pull.wrench = [Wrench(force=Vector3(x=float(stiffness)))]
+        self._pulls.publish(pull)
 
     def _ask(self, client: Any, request: Any) -> None:
         if not client.service_is_ready():

@@ -13,7 +13,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 OK = 0
 WARN = 1
 ERROR = 2
-STALE = 3
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import GateCounts
-from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
+from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 from tree_sway_ros.timing.pacer import Pacer, Timing
 
@@ -21,7 +21,7 @@ _WIND = {
     'live': (OK, 'live'),
     'holding': (OK, 'a sample is overdue: the last wind is used'),
     'decaying': (WARN, 'no wind: its force decays'),
-    'stale': (STALE, 'no wind: its force has decayed'),
+    'stale': (ERROR, 'no wind: its force has decayed'),
 }
 
 _SHOWN = 5

@@ -10,7 +10,7 @@ import time
 
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.sensor_timing import SensorTiming
-from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
+from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
 from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 
@@ -36,8 +36,8 @@ _NEWEST = 0.02
 """Weight of the newest sample in the mean square of what the projection leaves out."""
 _LEAST_LEFT_OUT = 0.05
 """Component across the force plane that is worth a word [m/s]."""
-STALE_AFTER = 5.0
-"""Number of time-outs after which a lost wind is stale, and the trees are at rest."""
+LOST_AFTER = 5.0
+"""Number of time-outs after which a lost wind is an error, and the trees are at rest."""
 
 
 class WindReport:
@@ -129,8 +129,8 @@ class WindReport:
             text = 'no wind yet'
             if types_not_read:
                 text += f'; set input_type to read {", ".join(types_not_read)}'
-        elif age > STALE_AFTER * timeout:
-            level = STALE
+        elif age > LOST_AFTER * timeout:
+            level = ERROR
             text = f'no wind for {age:.0f} s'
         elif age > timeout:
             level = WARN

@@ -38,11 +38,11 @@ _SECOND = 1_000_000_000
 _LATEST = 0.5
 _POLL = 0.02
 
-_SETTLING = 0.5
-"""Time [s] from the last subscriber to the first sample."""
+_SETTLING = 1.0
+"""Time [s] from the last subscriber to the first sample, in which those of the poses are found."""
 
-_LONGEST_WAIT = 5.0
-"""Longest time [s] from the first subscriber to the last."""
+_LONGEST_WAIT = 120.0
+"""Longest time [s] from the first subscriber to all: a solver may have to compile."""
 
 
 def is_ros_time(epoch: float | None, time: Floats) -> bool:
@@ -66,8 +66,10 @@ class Playback(Worker):
         the record's own time with a clock, else the wall time at which the sample is due.
     may_start
         Function that returns whether there is a subscriber; called until true.
-    has_all
-        Function that returns whether all that is played has subscribers; waited for a while.
+    lacking
+        Function that returns who else has yet to subscribe, empty if nobody; waited for a while.
+    say
+        Function called with what is waited for, and with what is not waited for any longer.
     on_end, on_error
         Functions called at the end of the record, and with an exception of `publish`.
     rate
@@ -93,7 +95,8 @@ class Playback(Worker):
     may_start: Callable[[], bool]
     on_end: Callable[[], None]
     on_error: Callable[[Exception], None]
-    has_all: Callable[[], bool] = lambda: True
+    lacking: Callable[[], str] = lambda: ''
+    say: Callable[[str], None] = lambda _text: None
     rate: float = 1.0
     epoch: float | None = None
     start_at: float = 0.0
@@ -111,6 +114,8 @@ class Playback(Worker):
         self._first_row, self._since = first, self.times[first:] - self.times[first]
         steps = np.diff(self._since)
         self.round = float(self._since[-1] + (np.median(steps) if len(steps) else 1.0))
+        self.waits_for = ''
+        """What the record waits for before it begins; empty once it plays."""
         self._position = 0.0
         self._samples = self._stalls = 0
 
@@ -156,17 +161,29 @@ class Playback(Worker):
 
     def _await_subscribers(self) -> bool:
         """Wait for subscribers, with a clock that stands; False if the thread is stopped."""
-        latest = settled = math.inf
+        waited = settled = math.inf
         while (now := time.monotonic()) < settled:
             if self.has_clock:
                 self.publish(-1, self.begin)
-            if latest == math.inf and self.may_start():
-                latest = now + _LONGEST_WAIT
-            if settled == math.inf and (now > latest or (latest < math.inf and self.has_all())):
+            if waited == math.inf and self.may_start():
+                waited = now + _LONGEST_WAIT
+            lacking = 'a subscriber' if waited == math.inf else self.lacking()
+            if lacking and now < waited:
+                self._wait_for(lacking)
+                settled = math.inf
+            elif settled == math.inf:
                 settled = now + _SETTLING
             if self._stopping.wait(_POLL):
                 return False
+        self.waits_for = ''
+        if lacking:
+            self.say(f'playing without {lacking}, after {_LONGEST_WAIT:g} s')
         return True
+
+    def _wait_for(self, lacking: str) -> None:
+        if lacking != self.waits_for:
+            self.say(f'waiting for {lacking}')
+        self.waits_for = lacking
 
     def _play(self) -> None:
         begin = time.monotonic()

@@ -7,7 +7,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tree_sway_lab.pages.command import (
+
+pytest.importorskip('matplotlib', reason='matplotlib is not installed')
+
+from tree_sway_lab.pages.command import (  # noqa: E402
     DRAWINGS,
     markdown_tables,
     PAGES,
@@ -16,11 +19,11 @@ from tree_sway_lab.pages.command import (
     with_tables,
 )
 
-from tree_sway.commands import cli
-from tree_sway.core.tree.species import species_keys
-from tree_sway.errors import FormatError
-from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.process.topics import TOPICS
+from tree_sway.commands import cli  # noqa: E402
+from tree_sway.core.tree.species import species_keys  # noqa: E402
+from tree_sway.errors import FormatError  # noqa: E402
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS  # noqa: E402
+from tree_sway_ros.process.topics import TOPICS  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 MARK = 'before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n'

@@ -10,8 +10,11 @@ import re
 from typing import Any
 
 import pytest
-from tree_sway_lab.pages.command import EXAMPLES
-from tree_sway_lab.pages.notebooks import notebook, with_outputs
+
+pytest.importorskip('matplotlib', reason='matplotlib is not installed')
+
+from tree_sway_lab.pages.command import EXAMPLES  # noqa: E402
+from tree_sway_lab.pages.notebooks import notebook, with_outputs  # noqa: E402
 
 FOLDER = Path(__file__).resolve().parents[3] / 'examples'
 NUMBER = r'[-+]?\d+(?:\.\d+)?'

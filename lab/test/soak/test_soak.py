@@ -11,7 +11,10 @@ import subprocess
 import sys
 
 import pytest
-from tree_sway_lab.soak.command import growth, Health, health
+
+pytest.importorskip('geometry_msgs', reason='ROS 2 is not installed')
+
+from tree_sway_lab.soak.command import growth, Health, health  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -24,6 +24,7 @@ from tree_sway.core.model.sway_model import MEANINGS, TYPES
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.tree_file import TREE_FORMATS
+from tree_sway.files.trees.tree_options import FITTED
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.parameters.parameter import Table, Value
 from tree_sway_lab.chart.fidelity import MODELS
@@ -200,11 +201,11 @@ def _text(value: Value) -> str:
 
 
 def formats_table() -> str:
-    """Lay out the formats of tree files, with the options that are not as in other formats."""
-    lines = ['| format | files | defaults of its own |', '|---|---|---|']
+    """Lay out the formats of tree files, and whether they are fits of scans."""
+    lines = ['| format | files | what it is |', '|---|---|---|']
     for each in TREE_FORMATS:
-        own = ', '.join(f'`{name}={value}`'.lower() for name, value in each.defaults.items())
-        lines.append(f'| {each.name} | {", ".join(each.suffixes)} | {own} |')
+        kind = 'a fit to a scan' if each.defaults == FITTED else 'a description'
+        lines.append(f'| {each.name} | {", ".join(each.suffixes)} | {kind} |')
     return '\n'.join(lines) + '\n'
 
 

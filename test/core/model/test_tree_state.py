@@ -11,6 +11,7 @@ import pytest
 
 from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
@@ -24,9 +25,11 @@ def winds(n, seed=4):
     return np.array([5.0, 1.0, 0.2]) + np.cumsum(rng.normal(0.0, 0.5, (n, 3)), axis=0)
 
 
-@pytest.fixture(scope='module', params=[0, 6, 60, *MODELS])
+@pytest.fixture(scope='module', params=[0, 6, 60, *MODELS, 'observed'])
 def tree_on(request, fork):
     tree = fork()
+    if request.param == 'observed':
+        return lambda: ObservedTree(tree, at={'phone': 'stem:0.5'})
     return lambda: make_simulator(tree, species_named(tree.species), model=request.param)
 
 

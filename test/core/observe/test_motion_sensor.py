@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,3 +129,81 @@ def test_orientations_are_rotations_from_the_first_one() -> None:
     found = phone.at(0.02, 1e-3)
     assert found is not None
     np.testing.assert_allclose(found[6:], [0.0, 0.0, turn], atol=1e-12)
+
+
+RATE = (0.01, 0.0, 0.02)
+
+
+def swaying(k: int) -> dict[str, tuple[float, float, float]]:
+    """Return the sample of a sensor on a tree, one of 100 a second."""
+    phase = 0.01 * k
+    turned = (0.02 * math.sin(phase), 0.01, 0.0)
+    return {'acceleration': (0.5 * math.sin(phase), 0.1, 9.81), 'rate': turned}
+
+
+@pytest.mark.parametrize(
+    'first',
+    [
+        {'acceleration': UP},
+        {'rate': RATE},
+        {'acceleration': (math.nan, 0.0, 0.0), 'rate': RATE},
+        {'acceleration': UP, 'rate': RATE, 'orientation': (0.0, 0.0, 0.0, 1.0)},
+    ],
+)
+def test_a_majority_decides_what_a_sensor_measures(first: dict[str, Any]) -> None:
+    phone = sensor()
+    phone.offer(0.0, **first)
+    refused = sum(not phone.offer(0.01 * k, **swaying(k)) for k in range(1, 1141))
+    assert phone.quantities == ('acceleration', 'rate')
+    assert refused <= 1
+    found = phone.at(11.0, 0.01)
+    assert found is not None and np.isfinite(found[:6]).all()
+
+
+def test_a_part_that_stops_does_not_make_the_rest_useless() -> None:
+    phone = sensor()
+    for k in range(500):
+        assert phone.offer(0.01 * k, **swaying(k))
+    refused = 0
+    for k in range(500, 1000):
+        refused += not phone.offer(0.01 * k, acceleration=swaying(k)['acceleration'])
+        if k == 550:
+            assert 'a quantity is missing' in phone.trouble
+    assert phone.quantities == ('acceleration',) and phone.lost == ('rate',)
+    assert refused <= 101 and not phone.trouble
+
+
+def test_a_dead_sensor_is_told_within_two_seconds() -> None:
+    phone = sensor()
+    for k in range(500):
+        phone.offer(0.01 * k, **swaying(k))
+    taken = sum(phone.offer(0.01 * k, **swaying(500)) for k in range(500, 800))
+    assert taken <= 101 and phone.counts.stuck >= 199
+    assert 'repeats the same numbers' in phone.trouble
+    assert phone.offer(8.0, **swaying(801)) and not phone.trouble
+
+
+def test_spikes_are_left_out_and_counted() -> None:
+    rng = np.random.default_rng(3)
+    phone = sensor()
+    n_spikes = 0
+    for k in range(5000):
+        sample = {key: np.array(each) for key, each in swaying(k).items()}
+        sample['acceleration'] += rng.normal(size=3) * 0.05
+        is_spike = k > 30 and rng.random() < 0.01
+        if is_spike:
+            sample['acceleration'] += 78.0 * rng.choice([-1.0, 1.0], 3)
+        n_spikes += is_spike
+        assert phone.offer(0.01 * k, **sample) != is_spike
+    assert phone.counts.spikes == phone.counts.refused == n_spikes > 30
+
+
+def test_a_knock_of_some_length_is_no_spike() -> None:
+    phone = sensor()
+    for k in range(500):
+        phone.offer(0.01 * k, **swaying(k))
+    knocked = [(80.0 + 0.1 * k, 0.0, 0.0) for k in range(9)]
+    taken = [
+        phone.offer(5.0 + 0.01 * k, acceleration=each, rate=RATE) for k, each in enumerate(knocked)
+    ]
+    assert taken == [False] * 3 + [True] * 6

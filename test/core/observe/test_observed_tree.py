@@ -24,6 +24,8 @@ from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.smoothed_motion import LATE_STEPS
+from tree_sway.core.observe.tree_fit import TreeFit
+from tree_sway.core.run.tuning import Tuning
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import species_named
@@ -386,3 +388,104 @@ def print_memory_of_steps() -> None:
     now, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     print(peak - before, now - before)
+
+
+FIT = TreeFit(0.8, 1.5, 0.02, 0.1, 1.0, 0.1, 0.1)
+
+
+def told(fit: TreeFit = FIT, steps: int = 0, **changes: Any) -> ObservedTree:
+    """Return a tree whose sensors have told a fit, after a number of steps."""
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, **changes)
+    twin.observer._fit.found = fit
+    for _ in range(steps):
+        twin.step((5.0, 1.0, 0.0), DT)
+    return twin
+
+
+def goal(twin: ObservedTree) -> Tuning:
+    """Return stiffness and damping as they are."""
+    return twin.check_tuning()
+
+
+@pytest.mark.parametrize('bad', [0.0, -1.0, np.nan, np.inf, None, 'x'])
+def test_a_step_that_is_refused_changes_nothing(bad: Any) -> None:
+    twin = told()
+    for each in truth().wind[:30]:
+        twin.step(each, DT)
+    twin._added[:] = 1e-3
+    before = twin.state().values
+    for _ in range(3):
+        with pytest.raises(ParameterError):
+            twin.step((5.0, 0.0, 0.0), bad)
+    np.testing.assert_array_equal(twin.state().values, before)
+
+
+def test_what_a_person_tuned_stays_and_learning_goes_on_from_it() -> None:
+    twin = told(steps=600)
+    twin.tune(stiffness_factor=0.5)
+    factors = []
+    for _ in range(4):
+        for _ in range(300):
+            twin.step((5.0, 1.0, 0.0), DT)
+        factors.append(goal(twin).stiffness_factor)
+    assert 0.5 <= factors[0] < 0.54
+    assert np.all(np.diff(np.log(factors)) < 0.051) and factors[-1] > factors[0]
+
+
+def test_a_state_carries_what_was_learned() -> None:
+    twin = told(steps=700)
+    state, then = twin.state(), goal(twin)
+    assert then.stiffness_factor == pytest.approx(np.exp(-0.1))
+    for _ in range(700):
+        twin.step((5.0, 1.0, 0.0), DT)
+    after = twin.rotations().copy()
+    assert goal(twin) != then
+    twin.set_state(state)
+    assert goal(twin) == then
+    twin.now = 700 * DT
+    twin.step((5.0, 1.0, 0.0), DT)
+    other = told(steps=701)
+    np.testing.assert_allclose(twin.rotations(), other.rotations(), rtol=1e-9, atol=1e-12)
+    assert not np.allclose(twin.rotations(), after)
+
+
+def test_another_rate_does_not_change_what_fits_are_relative_to() -> None:
+    twin = told(steps=700)
+    made = twin.observer._fit._stiffness.copy()
+    twin.set_rate(50.0)
+    np.testing.assert_array_equal(twin.observer._fit._stiffness, made)
+    assert (twin.observer.stiffness < 0.95 * made).all()
+    assert twin.observer.fit == FIT
+
+
+def test_learned_damping_is_that_of_the_real_tree_where_a_ratio_is_given() -> None:
+    ratio = 0.25 * SPECIES.damping(False)
+    twin = told(FIT._replace(damping=1.0), damping_ratio=ratio)
+    learned = twin.learned
+    assert learned is not None
+    assert learned.of(SPECIES, in_leaf=False).damping(False) == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(
+    ('fault', 'cause'),
+    [
+        ('dead', 'repeats the same numbers'),
+        ('silent', 'silent for'),
+        ('ahead', 'its times are +60.0 s from the steps'),
+        ('nan', 'some values are no numbers'),
+    ],
+)
+def test_the_true_cause_is_told_within_five_seconds(fault: str, cause: str) -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    motion = measured()
+    for k, each in enumerate(truth().wind[: 25 * 60]):
+        time, row, is_wrong = (k + 1) * DT, motion.acceleration[k], k >= 20 * 60
+        if is_wrong and fault == 'dead':
+            row = motion.acceleration[20 * 60]
+        if is_wrong and fault == 'nan':
+            row = row * np.nan
+        if not (is_wrong and fault == 'silent'):
+            twin.offer('phone', time + 60.0 * (is_wrong and fault == 'ahead'), acceleration=row)
+        twin.step(each, DT)
+    assert len(twin.problems) == 1
+    assert cause in twin.problems[0]

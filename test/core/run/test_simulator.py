@@ -12,11 +12,12 @@ import pytest
 from scipy.integrate import quad
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError, SpeciesError
 
-MOVING = [4, 'branch', 'full']
+MOVING = [4, 'branch', 'full', 'observed']
 FEW = pytest.mark.xfail(
     strict=True, reason='few coordinates are chosen by winds that are not mirrored in this plane'
 )
@@ -43,6 +44,8 @@ def model(request):
 
 
 def swaying(tree, model, **changes):
+    if model == 'observed':
+        return ObservedTree(tree, at={'phone': 'stem:0.5'}, model=4, **changes)
     return make_simulator(tree, model=model, **changes)
 
 
@@ -79,7 +82,7 @@ def test_a_westerly_bends_every_tree_on_every_model_to_the_east(name, model):
 
 
 def bends_east(tree, model, **changes):
-    sim = make_simulator(tree, model=model, damping_ratio=0.5, **changes)
+    sim = swaying(tree, model, damping_ratio=0.5, **changes)
     rest = sim.place()[:, :3].copy()
     for _ in range(240):
         sim.step([6.0, 0.0, 0.0], DT)
@@ -171,6 +174,7 @@ def test_static_deflection_is_the_beams(stem, model, taper):
     assert abs(sim.tip_displacement[1]) < 1e-9
 
 
+@pytest.mark.parametrize('model', [4, 'branch', 'full'])  # gusts cross a crown by whole steps
 def test_the_step_is_of_second_order(fork, model):
     def tip_after(n):
         sim = swaying(fork(), model, gravity=0.0, enrich='stem')

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import LOAD_CLAMPED, OK, WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.errors import ParameterError
@@ -30,12 +31,14 @@ def run(sim, winds):
     return np.array(frames)
 
 
-@pytest.fixture(params=[4, 'branch', 'full'])
+@pytest.fixture(params=[4, 'branch', 'full', 'observed'])
 def model(request):
     return request.param
 
 
 def swaying(tree, model, **changes):
+    if model == 'observed':
+        return ObservedTree(tree, at={'phone': 'stem:0.5'}, model=4, **changes)
     return make_simulator(tree, model=model, **changes)
 
 
@@ -47,7 +50,7 @@ def swaying(tree, model, **changes):
 @pytest.mark.parametrize('axis', [0, 1, 2])
 def test_a_wind_that_cannot_be_is_refused_and_the_last_one_held(fork, bad, axis):
     winds = gusts(40)
-    for model in ('branch', 4):
+    for model in ('branch', 4, 'observed'):
         undisturbed, struck = swaying(fork(), model), swaying(fork(), model)
         for k, wind in enumerate(winds):
             blow = np.array(wind)

@@ -12,6 +12,7 @@ import pytest
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.identification.calibration import calibrate
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import RESTARTED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
@@ -26,13 +27,15 @@ from tree_sway.files.models.model_writer import write_model
 from tree_sway.stream.client import StreamClient
 
 DT = 1.0 / 60.0
-KINDS = (0, 4, 'branch', 'full', 'auto', 'forest')
+KINDS = (0, 4, 'branch', 'full', 'auto', 'forest', 'observed')
 
 
 def simulator(tree, kind, **changes):
     wood = species_named('broadleaf')
     if kind == 'auto':
         return make_simulator(tree, wood, Settings(**(changes | {'model': 'auto'})))
+    if kind == 'observed':
+        return ObservedTree(tree, wood, at={'phone': 'stem:0.5'}, **changes)
     if kind == 'forest':
         return Scene([PlacedTree('one', tree), PlacedTree('two', tree, 3.0)]).simulator()
     return make_simulator(tree, wood, Settings(model=kind, **changes))

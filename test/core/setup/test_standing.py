@@ -41,7 +41,7 @@ def critical_length():
 @pytest.mark.parametrize('times', [1.01, 1.3, 2.0])
 def test_a_pole_beyond_greenhills_length_stands_with_less_wood_than_a_uniform_one(times):
     tree = pole(times * critical_length())
-    found, change = standing_tree(tree, WOOD, cache=None)
+    found, change = standing_tree(tree, WOOD, in_leaf=True, cache=None)
     assert change.carried == pytest.approx(times**-3, rel=0.02)
     assert MARGIN <= carried(found) < 1.1 * MARGIN
     # A uniform pole that carries the margin has this much more section: length^3 ~ d^2.
@@ -51,7 +51,7 @@ def test_a_pole_beyond_greenhills_length_stands_with_less_wood_than_a_uniform_on
 
 def test_a_tree_that_stands_is_left():
     tree = pole(0.99 * critical_length())
-    found, change = standing_tree(tree, WOOD, cache=None)
+    found, change = standing_tree(tree, WOOD, in_leaf=True, cache=None)
     assert found is tree
     assert change is None
 
@@ -70,12 +70,13 @@ def with_a_whip(thick):
 
 def test_only_the_limb_that_buckles_is_thickened_and_named():
     tree = with_a_whip(0.004)
-    found, change = standing_tree(tree, WOOD, cache=None)
+    found, change = standing_tree(tree, WOOD, in_leaf=True, cache=None)
     (branch,) = change.branch
     thin = tree.branch_of_segment == branch
     assert tree.base_diameter[thin] == pytest.approx(0.004)
     assert (found.base_diameter[~thin] == tree.base_diameter[~thin]).all()
     assert carried(found) > 1.0
+    assert (found.base_diameter > tree.base_diameter).sum() <= change.segments <= thin.sum()
     assert f"1 limb thickened, most '{tree.branch_names[branch]}', from 4 to" in change.sentence(
         tree
     )
@@ -89,27 +90,27 @@ def test_it_is_found_to_stand_with_all_shapes_of_its_limbs(monkeypatch):
         return buckling_modes(reduction, *limits)
 
     monkeypatch.setattr(standing, 'buckling_modes', noted)
-    found, _ = standing_tree(with_a_whip(0.004), WOOD, cache=None)
+    found, _ = standing_tree(with_a_whip(0.004), WOOD, in_leaf=True, cache=None)
     settings = Settings(in_leaf=True, enrich='all')
     reduction = TreeReductions(found, WOOD, settings).with_subtrees.reduction
     assert sizes[0] < sizes[-1] == reduction.n_coordinates
     assert buckling_factor(reduction)[0] >= MARGIN
 
 
-def test_it_stands_with_its_leaves_and_without():
+def test_it_stands_in_the_season_that_is_asked_for():
     tree = pole(0.9 * critical_length())
     leafy = replace(WOOD, leaves=LeafTraits(size=0.5, area_per_section=3000.0, fresh_mass=1.0))
     assert carried(tree, leafy, in_leaf=False) > 1.0 > carried(tree, leafy)
-    found, _ = standing_tree(tree, leafy, cache=None)
+    found, _ = standing_tree(tree, leafy, in_leaf=True, cache=None)
     assert carried(found, leafy) > 1.0
-    assert carried(found, leafy, in_leaf=False) > 1.0
+    assert standing_tree(tree, leafy, in_leaf=False, cache=None) == (tree, None)
 
 
 def test_the_changes_are_found_again(tmp_path):
     from tree_sway.cache.model_cache import ModelFiles
 
     tree, files = pole(1.2 * critical_length()), ModelFiles(tmp_path)
-    first, second = (standing_tree(tree, WOOD, files) for _ in range(2))
+    first, second = (standing_tree(tree, WOOD, in_leaf=True, cache=files) for _ in range(2))
     assert len(list(tmp_path.iterdir())) == 1
     assert (first[0].base_diameter == second[0].base_diameter).all()
     assert first[1].sentence(tree) == second[1].sentence(tree)

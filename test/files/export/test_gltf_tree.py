@@ -8,7 +8,6 @@ import struct
 import subprocess
 
 import numpy as np
-from PIL import Image
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -24,6 +23,7 @@ from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
 
+Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 KINDS = {
     5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32,

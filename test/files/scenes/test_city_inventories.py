@@ -293,6 +293,15 @@ def test_one_feature_of_geojson(tmp_path: Path) -> None:
     check(read(path), [('hornbeam', 12.5, None)])
 
 
+def test_neighbours_on_both_sides_of_the_date_line_stand_side_by_side(tmp_path: Path) -> None:
+    path = tmp_path / 'taveuni.csv'
+    rows = ('oak,12,-16.8,179.9999', 'oak,12,-16.8,-179.9999', 'oak,12,-16.8,180.0002')
+    path.write_text('species,height,latitude,longitude\n' + '\n'.join(rows) + '\n')
+    x = [each.x for each in open_scene(str(path)).trees]
+    degree = 6.371e6 * math.cos(math.radians(16.8)) * math.pi / 180.0
+    assert x == pytest.approx([0.0, 2e-4 * degree, 3e-4 * degree], abs=1e-3)
+
+
 def test_openstreetmap_without_a_longitude(tmp_path: Path) -> None:
     tags = {'natural': 'tree', 'species': 'Aesculus hippocastanum', 'height': '14'}
     elements = [{'lat': 52.5, 'tags': tags}, {'lat': 52.5, 'lon': 13.4, 'tags': tags}]

@@ -13,15 +13,15 @@ from builtin_interfaces.msg import Time  # noqa: E402, I100
 from tree_sway.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
 from tree_sway_ros.reports import wind_report  # noqa: E402
 from tree_sway_ros.reports.diagnostics import (  # noqa: E402
+    ERROR,
     OK,
-    STALE,
     Status,
     status_array,
     WARN,
 )
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps  # noqa: E402
 from tree_sway_ros.reports.sway_report import _wind, SwayReport  # noqa: E402
-from tree_sway_ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
+from tree_sway_ros.reports.wind_report import LOST_AFTER, WindReport  # noqa: E402
 from tree_sway_ros.timing.pacer import Timing  # noqa: E402
 
 TIMEOUT = 2.0
@@ -71,8 +71,8 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     clock.now += 1.1 * TIMEOUT
     assert report.status(TIMEOUT, gate).level == WARN
     assert report.rate == 0.0
-    clock.now += STALE_AFTER * TIMEOUT
-    assert report.status(TIMEOUT, gate).level == STALE
+    clock.now += LOST_AFTER * TIMEOUT
+    assert report.status(TIMEOUT, gate).level == ERROR
     report.add()
     assert report.status(TIMEOUT, gate).level == OK
 
@@ -99,8 +99,8 @@ def test_a_slow_sensor_is_late_by_its_own_periods(clock):
     assert report.status(timeout, gate).level == OK
     clock.now += 2.1
     assert report.status(timeout, gate).level == WARN
-    clock.now += 3.0 * STALE_AFTER
-    assert report.status(timeout, gate).level == STALE
+    clock.now += 3.0 * LOST_AFTER
+    assert report.status(timeout, gate).level == ERROR
 
 
 def test_dropouts_make_no_slow_sensor(clock):
@@ -270,7 +270,7 @@ def test_a_stream_that_stops_is_a_warning_unless_simulated_time_does():
 
 @pytest.mark.parametrize(
     ('state', 'level'),
-    [('none', WARN), ('live', OK), ('holding', OK), ('decaying', WARN), ('stale', STALE)],
+    [('none', WARN), ('live', OK), ('holding', OK), ('decaying', WARN), ('stale', ERROR)],
 )
 def test_every_state_of_the_wind_has_a_level(state, level):
     status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))

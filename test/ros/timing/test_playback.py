@@ -112,27 +112,35 @@ def test_it_waits_until_it_may_start():
     assert not made._thread.is_alive()
 
 
-def test_it_waits_for_the_subscribers_of_all_that_it_plays():
-    asked, begun = [], threading.Event()
+def test_it_waits_for_the_subscribers_of_all_that_it_plays_and_says_so(monkeypatch):
+    monkeypatch.setattr(playing, '_SETTLING', 0.1)
+    states = iter(['a solver'] * 5 + [''] + ['a solver'] * 5)  # one that came and went
+    asked, said, begun = [], [], threading.Event()
 
-    def has_all():
+    def lacking():
         asked.append(begun.is_set())
-        return len(asked) > 5
+        return next(states, '')
 
-    made = playback(publish=lambda row, stamp: begun.set(), has_all=has_all)
+    made = playback(publish=lambda row, stamp: begun.set(), lacking=lacking, say=said.append)
     made.start()
     assert begun.wait(10.0)
     made.stop()
-    assert asked == [False] * 6
+    assert len(asked) > 11
+    assert not any(asked)
+    assert said == ['waiting for a solver']
+    assert made.waits_for == ''
 
 
-def test_it_does_not_wait_for_ever_for_the_last_subscriber(monkeypatch):
+def test_it_does_not_wait_for_ever_for_the_last_subscriber_and_says_so(monkeypatch):
     monkeypatch.setattr(playing, '_LONGEST_WAIT', 0.1)
-    begun = threading.Event()
-    made = playback(publish=lambda row, stamp: begun.set(), has_all=lambda: False)
+    begun, said = threading.Event(), []
+    made = playback(
+        publish=lambda row, stamp: begun.set(), lacking=lambda: 'a solver', say=said.append
+    )
     made.start()
     assert begun.wait(10.0)
     made.stop()
+    assert said == ['waiting for a solver', 'playing without a solver, after 0.1 s']
 
 
 def test_an_error_is_handed_on():

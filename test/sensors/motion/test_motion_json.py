@@ -151,7 +151,8 @@ def test_quantities_in_messages_of_their_own_are_told(sense: Any) -> None:
     assert list(sensed.live.refused) == ['angular rate alone: send all of a sample in one message']
 
 
-def test_samples_come_over_udp_and_only_of_one_sender(sense: Any) -> None:
+@pytest.mark.parametrize('host', ['127.0.0.1', '127.0.0.2'])
+def test_samples_come_over_udp_and_only_of_one_sender(sense: Any, host: str) -> None:
     with socket.create_server(('127.0.0.1', 0)) as probe:
         port = probe.getsockname()[1]
     sensed = sense(f'udp:{port}')
@@ -159,7 +160,8 @@ def test_samples_come_over_udp_and_only_of_one_sender(sense: Any) -> None:
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ours,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other,
     ):
-        other.bind(('127.0.0.2', 0))
+        other.bind((host, 0))
+        name = f'another sender, {host}:{other.getsockname()[1]}'
 
         def send() -> None:
             millis = round(1e3 * time.monotonic())
@@ -168,11 +170,63 @@ def test_samples_come_over_udp_and_only_of_one_sender(sense: Any) -> None:
             if sensed.samples:
                 other.sendto(json.dumps(sample | {'az': 99.0}).encode(), ('127.0.0.1', port))
 
-        sensed.until(lambda: sensed.live.refused.get('another sender', 0) > 20, send)
+        sensed.until(lambda: sensed.live.refused.get(name, 0) > 20, send)
     assert {each.acceleration[2] for each in sensed.samples} == {9.8}
     at = time.monotonic() - sensed.samples[-1].time
     assert -0.1 < at < 5.0
     assert sensed.live.state == 'live'
+    assert name.rpartition(' ')[2] in sensed.live.note
+    assert [each for each in sensed.said if name in each] and len(sensed.said) < 6
+
+
+def feed(live: LiveMotion, *documents: Any, origin: str = 'phone') -> None:
+    for each in documents:
+        live._take(Message(json.dumps(each).encode(), origin))
+
+
+def test_a_stranger_that_came_first_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
+    live = LiveMotion(open_motion('udp:5006'), print)
+    feed(live, {'acc': [0, 0, 1.0]}, origin='stranger')
+    feed(live, {'acc': [0, 0, 1.0]}, origin='stranger')
+    for k in range(400):
+        now = 0.01 * (k + 1)
+        feed(live, {'acc': [0, 0, 9.8]})
+    came = [each.acceleration for each in live.drain()]
+    assert came[:2] == [(0.0, 0.0, 1.0)] * 2 and set(came[2:]) == {(0.0, 0.0, 9.8)}
+    assert 190 < len(came) < 210
+    assert live.refused == {'another sender, phone': 402 - len(came)}
+
+
+def test_a_phone_whose_gyroscope_stops_is_told_and_then_done_without(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = 0.0
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
+    said: list[str] = []
+    live = LiveMotion(open_motion('udp:5006'), said.append)
+    for k in range(3200):
+        now = 0.01 * k
+        document = {'acc': [0, 0, 9.8]} | ({'gyro': [0, 0, 0.1]} if k < 200 else {})
+        feed(live, document)
+        if k == 290:
+            assert sum(live.refused.values()) == 91
+            assert 'acceleration alone' in said[-1]
+    assert live.accepted > 3050 and live.quantities == ('acceleration',)
+    assert said[-1].endswith(': acceleration come')
+
+
+def test_a_sensor_of_which_all_is_refused_is_not_live(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
+    live = LiveMotion(open_motion('udp:5006'), print)
+    for k in range(1000):
+        now = 0.01 * k
+        feed(live, {'acc': [0, 0, 9.8]} if k < 100 else {'accx': 1.0})
+    assert live.state == 'stale'
+    live.link.is_up = True
+    assert 'all was refused for 9 s' in live.problem
 
 
 def test_messages_that_are_not_understood_are_told(sense: Any) -> None:

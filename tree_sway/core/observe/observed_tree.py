@@ -14,16 +14,16 @@ each limb are for the sensors to tell.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import chain
 import math
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import array_to_read, three_numbers, within
+from tree_sway.core.checks import array_to_read, refuse_time_step, three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
@@ -48,6 +48,10 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.crown_wind import CrownWind, delays_of, N_DELAYS, USUAL_COHERENCE
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.core.model.tree_state import TreeState
+    from tree_sway.core.run.tuning import Tuning
 
 _STORM = 36.0
 """Wind in [m/s] whose static deflection bounds the energy of the corrected motion."""
@@ -148,6 +152,12 @@ class ObservedTree(SwaySimulator):
         """Place of each sensor as it was given."""
         self._explained, self._submit = ExplainedMotion(), submit
         self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
+        self._as_made = self.check_tuning()
+        self._tuned: tuple[Tuning, ...] = ()
+        tunable = self._bank.oscillators.tunable
+        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+        weight = float(tunable.weight[slowest])
+        self._slowest = float(tunable.stiffness[slowest]) - weight, weight
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
@@ -185,6 +195,7 @@ class ObservedTree(SwaySimulator):
         """
         if within('rate', rate, 1.0, 10_000.0, 'Hz') == self._rate:
             return
+        before = self.observer if self._rate else None
         self._rate = rate
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
@@ -193,6 +204,7 @@ class ObservedTree(SwaySimulator):
             self,
             tracks,
             1.0 / rate,
+            before=before,
             wind=self.late_wind,
             is_smoothed=self._is_smoothed,
             submit=self._submit,
@@ -279,6 +291,8 @@ class ObservedTree(SwaySimulator):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step as `SwaySimulator.step`, then correct the motion."""
         x, y, z = three_numbers('wind', wind_mean)
+        if dt != self._dt:
+            refuse_time_step(dt)
         swing, added = self._swing, self._added
         eta, rate, _ = swing
         eta -= added[0]
@@ -321,26 +335,51 @@ class ObservedTree(SwaySimulator):
 
     def _follow(self, fit: TreeFit) -> None:
         """Let the model come nearer to the stiffness and damping of the real tree."""
+        assert self._tuning is not None
+        if self._tuning.is_moving:
+            return
         wanted = np.log([fit.stiffness, fit.damping])
         most = _FOLLOWED_EVERY * _PACE
-        change = np.clip(wanted - self._learned, -most, most)
-        if not change.any():
+        followed = self._learned + np.clip(wanted - self._learned, -most, most)
+        if not self._go_to(followed):
             return
-        self._learned += change
+        self._learned[:] = followed
         if self.members is not None:
-            left = np.hypot(wanted - self._learned, [fit.stiffness_error, fit.damping_error])
+            left = np.hypot(wanted - followed, [fit.stiffness_error, fit.damping_error])
             known = self.members.spreads
             self.members.spreads = known._replace(
                 stiffness=min(float(left[0]), known.stiffness),
                 damping=min(float(left[1]), known.damping),
             )
-        stiffness, damping = np.exp(self._learned).tolist()
-        ratio = min(damping * self.models[0].damping_ratio, 1.0)
-        with suppress(ParameterError):  # a tree that would buckle stays as it is
+
+    def _go_to(self, factors: Floats) -> bool:
+        """Let the next step take logarithms of factors; tell whether the tree allows them."""
+        assert self._tuning is not None
+        stiffness, damping = np.exp(factors).tolist()
+        ratio = min(damping * self._as_made.damping_ratio, 1.0)
+        try:
             goal = self.check_tuning(stiffness_factor=stiffness, damping_ratio=ratio)
-            if self._tuning is not None:
-                # So small a change needs no transition, whose every step costs as much.
-                self._tuning.go_to(goal, self.period)
+        except ParameterError:  # a tree that would buckle stays as it is
+            return False
+        if goal != self._tuning.goal:
+            # So small a change needs no transition, whose every step costs as much.
+            self._tuning.go_to(goal, self.period)
+        return True
+
+    def tune(self, **changes: float) -> None:
+        """Change the tree as `SwaySimulator.tune`; what is learned goes on from there."""
+        super().tune(**changes)
+        assert self._tuning is not None
+        self._tuned = self._tuning.changes
+        goal, made = self._tuning.goal, self._as_made
+        self._learned[0] = math.log(goal.stiffness_factor)
+        if min(goal.damping_ratio, made.damping_ratio) > 0.0:
+            self._learned[1] = math.log(goal.damping_ratio / made.damping_ratio)
+
+    @property
+    def _tuning_of_state(self) -> tuple[Tuning, ...]:
+        """Return what a person has tuned; what was learned is in the state itself."""
+        return self._tuned
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""
@@ -353,7 +392,13 @@ class ObservedTree(SwaySimulator):
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
-        return (*super()._memory(), *self.late_wind.memory(), *self._crown.memory(), self._added)
+        own = self.late_wind.memory(), self._crown.memory(), (self._added, self._learned)
+        return tuple(chain(super()._memory(), *own))
+
+    def set_state(self, state: TreeState) -> None:
+        """Continue from a state as `SwaySimulator.set_state`, with what was learned then."""
+        super().set_state(state)
+        self._go_to(self._learned)
 
     def reset(self) -> None:
         """Return to rest, with no wind; what is known about the sensors stays."""
@@ -481,17 +526,17 @@ class ObservedTree(SwaySimulator):
         fit = self.observer.fit
         if fit is None:
             return self.learned_before
-        tunable = self._bank.oscillators.tunable
-        slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
-        weight = float(tunable.weight[slowest])
-        wood = (float(tunable.stiffness[slowest]) - weight) / math.exp(self._learned[0])
+        wood, weight = self._slowest
         # The slowest coordinate is nearly the first mode: Rayleigh's quotient, as in `LiveTuning`.
         ratio = (fit.stiffness * wood + weight) / (wood + weight)
+        # A damping ratio may be given in place of that of the species.
+        of_season = self.models[0].species.damping(bool(self.settings.in_leaf))
+        given = self.models[0].damping_ratio / of_season if of_season else 1.0
         found = LearnedTree(
             float(self.frequencies(1)[0]) * math.sqrt(ratio),
             fit.stiffness,
             fit.stiffness_error,
-            fit.damping,
+            fit.damping * given,
             fit.damping_error,
             fit.drag,
             fit.drag_error,

@@ -65,6 +65,8 @@ class Observer:
         Sensors on the tree.
     dt
         Time step in [s].
+    before
+        The observer before, whose fit goes on; None for a model that is as it was made.
     wind
         Wind of the tree, which is made as late as the sensors tell.
     is_smoothed
@@ -80,6 +82,7 @@ class Observer:
         tracks: Sequence[SensorTrack],
         dt: float,
         *,
+        before: Observer | None = None,
         wind: LateWind | None = None,
         is_smoothed: bool = False,
         submit: Submit | None = None,
@@ -96,6 +99,8 @@ class Observer:
                 self._unknown, self.tracks, places, dt, wind or LateWind(), submit
             )
         self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
+        if before is not None:
+            self._fit.follow(before._fit)
         lag = SMOOTHED_LAG if is_smoothed else 0
         self._design = GainDesign(self._unknown, self.tracks, places, lag, submit)
         self._smoothed = SmoothedMotion(m, n) if is_smoothed else None

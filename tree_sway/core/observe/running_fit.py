@@ -59,9 +59,11 @@ class RunningFit:
         self._unknown, self._tracks, self._submit = unknown, tracks, submit
         n = unknown.count
         self._places = [each.first(n) for each in places]
+        self._frequency, self._dt = frequency, dt
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
         self.watches = [SwayWatch(each, frequency, submit) for each in self._spectra]
         """Whether the tree still sways as it did, by each sensor."""
+        self._uses: list[tuple[int, ...]] = [()] * len(tracks)
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
         self._east = self._north = 0.0
         self._n_winds = 0
@@ -70,14 +72,20 @@ class RunningFit:
         self.found: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
 
+    def follow(self, before: RunningFit) -> None:
+        """Go on from a fit before, whose model is as it was made."""
+        self._stiffness, self._damping = before._stiffness, before._damping
+        self.found = before.found
+
     def add(self, is_known: NDArray[np.bool_], forces: Floats, east: float, north: float) -> None:
         """Add the motion that sensors have just read, forces of the wind, (n,), and the wind."""
         self._east += east
         self._north += north
         self._n_winds += 1
-        for known, track, spectrum, watch in zip(
-            is_known.tolist(), self._tracks, self._spectra, self.watches, strict=True
-        ):
+        for k, (known, track) in enumerate(zip(is_known.tolist(), self._tracks, strict=True)):
+            if known and track.uses != self._uses[k]:
+                self._begin(k)
+            spectrum, watch = self._spectra[k], self.watches[k]
             if known:
                 spectrum.add(track.fitted_motion, forces, track.watched_motion)
                 if watch.is_due:
@@ -85,6 +93,13 @@ class RunningFit:
                     watch.advance(winds, track.fitted_noise, track.watched_noise)
             elif track.is_silent:
                 spectrum.skip()
+
+    def _begin(self, which: int) -> None:
+        """Begin the spectrum of a sensor whose quantities have changed anew."""
+        self._uses[which] = self._tracks[which].uses
+        spectrum = SensorSpectrum(self._frequency, self._dt, len(self._stiffness))
+        self._spectra[which] = spectrum
+        self.watches[which] = SwayWatch(spectrum, self._frequency, self._submit)
 
     def advance(self, used: Sequence[int]) -> None:
         """Go on with a fit, or begin one by the sensors in use once there is enough motion."""

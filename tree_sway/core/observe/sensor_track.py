@@ -267,8 +267,10 @@ class SensorTrack:
         self._count = 0
         self._window = max(round(_COMPARED / (frequency * dt)), 1)
         self._next_fit = round(LEARNING / dt)
-        self._absent = self._agreed = 0.0
+        self._absent = self._agreed = self._unheard = self._apart = 0.0
+        self._newest = sensor.newest
         self._is_refused = False
+        self._quantities = sensor.quantities
         self._values, self._moved = np.zeros((2, 9))
         self.fitted_motion = self.watched_motion = self._moved[:3]
         """
@@ -326,6 +328,12 @@ class SensorTrack:
             return f'{name}: all of {counts.refused} samples were refused: {counts.why_refused}'
         if counts.accepted == 0:
             return f'{name}: no sample yet'
+        if self.is_silent and self.sensor.trouble:
+            return f'{name}: refused for {self._absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent and self._unheard <= _ABSENT_AFTER:
+            return f'{name}: its times are {self._apart:+.1f} s from the steps: check its clock'
+        if self.is_silent:
+            return f'{name}: silent for {self._absent:.0f} s: check its battery and connection'
         if self.alignment is None:
             left = (self._next_fit - self._count) * self._dt
             return f'{name}: its mounting is found within {left:.0f} s of sway'
@@ -333,7 +341,7 @@ class SensorTrack:
             return f'{name}: {self.alignment.problem}'
         if self._is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
-        return f'{name}: silent: check its battery and connection'
+        return f'{name}: it is followed from the next sample on'
 
     @property
     def is_silent(self) -> bool:
@@ -359,20 +367,32 @@ class SensorTrack:
             Whether there is a sample, and its mounting is known.
 
         """
+        if self.sensor.quantities != self._quantities:
+            self._begin()
         row = self._count % len(self._sensed)
         memory = self._sensed, self._computed
         if not self._read(
             self.sensor.ring, time, self._dt, computed, self._mounting, row, *memory,
             self._values, self._moved, beyond,
         ):  # fmt: skip
-            self._miss()
+            self._miss(time)
             return False
         self._absent = 0.0
         self._count += 1
         return self.alignment is not None and not self.alignment.problem
 
-    def _miss(self) -> None:
+    def _begin(self) -> None:
+        """Find the mounting of a sensor that measures other quantities."""
+        self._quantities = self.sensor.quantities
+        self.alignment, self.in_use, self._is_refused = None, False, False
+        self._count, self._next_fit = 0, round(LEARNING / self._dt)
+        self.excess = 1.0
+
+    def _miss(self, time: float) -> None:
         self._absent += self._dt
+        newest = self.sensor.newest
+        self._unheard = 0.0 if newest != self._newest else self._unheard + self._dt
+        self._newest, self._apart = newest, newest - time
         if self.is_silent:
             if self.in_use:
                 self.sensor.counts.silent += 1

@@ -201,8 +201,13 @@ class SwaySimulator:
         """Digest of tree, species, settings and tuning."""
         from tree_sway.core.model.tree_state import digest_of
 
-        tuned = () if self._tuning is None else self._tuning.changes
+        tuned = self._tuning_of_state
         return digest_of(self.tree, self.models[0].species, self.settings, *tuned)
+
+    @property
+    def _tuning_of_state(self) -> tuple[Tuning, ...]:
+        """What was tuned and is not in the state."""
+        return () if self._tuning is None else self._tuning.changes
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, the wind of the last step first."""

@@ -250,7 +250,8 @@ def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
             where=_branch_name(tree, reduction, coordinate),
             cure=f'give a modulus {1.05 / factor:.2f} times as high or diameters '
             f'{factor**-0.5 * 1.03:.2f} '
-            'times as thick, or leave its weight out: gravity 0, --gravity off',
+            'times as thick, let its file be changed: --option thicken=yes, or leave its weight '
+            'out: gravity 0, --gravity off',
         )
 
 

@@ -11,7 +11,7 @@ wood has the same stress everywhere (Metzger's rule for stems, 1893). The consta
 smallest by which the tree carries its weight and a margin; repetition takes the weight of the
 added wood into account.
 
-The tree has its leaves, if its species has any, so that it stands in both seasons.
+A tree is judged in one season: one that stands bare is not made thicker for its leaves.
 """
 
 from __future__ import annotations
@@ -62,6 +62,8 @@ class Thickening:
 
     Parameters
     ----------
+    segments
+        Number of segments that grew.
     branch
         Branches, the one that grew most first, (k,).
     before, after
@@ -70,31 +72,37 @@ class Thickening:
         Share of its own weight that the tree carried before [-].
     added
         Volume of the added wood over that of the tree before [-].
+    in_leaf
+        Whether it bore its leaves.
 
     """
 
+    segments: int
     branch: Ints
     before: Floats
     after: Floats
     carried: float
     added: float
+    in_leaf: bool
 
     def sentence(self, tree: Tree) -> str:
         """Say what was changed, in one sentence."""
         count = len(self.branch)
         worst = tree.branch_names[int(self.branch[0])]
         limbs = '1 limb' if count == 1 else f'{count} limbs'
+        season = 'in leaf' if self.in_leaf else 'bare'
         from_mm = 1e3 * self.before[0]
         to_mm = 1e3 * self.after[0]
         return (
-            f'the scan could carry {100.0 * self.carried:.0f} % of its weight: {limbs} thickened, '
+            f'changed, as {season} it could carry {100.0 * self.carried:.0f} % of its weight: '
+            f'{self.segments} of {tree.n_segments} segments of {limbs} thickened, '
             f"most '{worst}', from {from_mm:.3g} to {to_mm:.3g} mm; "
-            f'{100.0 * self.added:.2g} % of wood added (thicken=false leaves it)'
+            f'{100.0 * self.added:.3g} % of wood added (thicken=no leaves it)'
         )
 
 
 def standing_tree(
-    tree: Tree, species: Species, cache: ModelCache | None = PREPARED
+    tree: Tree, species: Species, *, in_leaf: bool, cache: ModelCache | None = PREPARED
 ) -> tuple[Tree, Thickening | None]:
     """
     Thicken the limbs of a tree that cannot carry themselves.
@@ -105,6 +113,8 @@ def standing_tree(
         Tree as scanned.
     species
         Its wood and its leaves.
+    in_leaf
+        Whether it bears its leaves.
     cache
         Where the result is written and found again; nowhere if None.
 
@@ -119,10 +129,10 @@ def standing_tree(
         A tree with numbers that linear algebra cannot solve.
 
     """
-    digest = f'{digest_of(tree, species)}-standing'
+    digest = f'{digest_of(tree, species)}-standing{"-in-leaf" if in_leaf else ""}'
     known = cache.read(digest) if cache else None
     if known is None:
-        least, carried = _thickest(tree, species)
+        least, carried = _thickest(tree, species, in_leaf=in_leaf)
         known = {'least': least, 'carried': np.array(carried)}
         if cache:
             cache.write(digest, known)
@@ -130,16 +140,16 @@ def standing_tree(
     if not least.any():
         return tree, None
     found = _filled(tree, least)
-    return found, _changes(tree, found, float(known['carried']))
+    return found, _changes(tree, found, float(known['carried']), in_leaf=in_leaf)
 
 
 @one_thread()
-def _thickest(tree: Tree, species: Species) -> tuple[Floats, float]:
+def _thickest(tree: Tree, species: Species, *, in_leaf: bool) -> tuple[Floats, float]:
     """Find least diameters of all segments [m], (n,), and the share of its weight it carries."""
     least = np.zeros(tree.n_segments)
     carried = 1.0
     for shapes, below in _SHAPES.items():
-        settings = Settings(in_leaf=True, enrich=shapes)
+        settings = Settings(in_leaf=in_leaf, enrich=shapes)
         for number in range(_ROUNDS):
             found = _filled(tree, least)
             with solvable(found):
@@ -195,12 +205,16 @@ def _least_diameters(reduced: ReducedTree, vector: Floats, growth: float) -> Flo
     return least
 
 
-def _changes(tree: Tree, found: Tree, carried: float) -> Thickening:
+def _changes(tree: Tree, found: Tree, carried: float, *, in_leaf: bool) -> Thickening:
     before = np.minimum(tree.base_diameter, tree.tip_diameter)
     after = np.minimum(found.base_diameter, found.tip_diameter)
     growth = after / np.maximum(before, 1e-9)
+    grew = (found.base_diameter > tree.base_diameter) | (found.tip_diameter > tree.tip_diameter)
     most = np.lexsort((-growth, tree.branch_of_segment))[tree.branch_first[:-1]]
     most = most[growth[most] > 1.0]
     most = most[np.argsort(-growth[most], kind='stable')]
     added = float(found.volume.sum() / tree.volume.sum()) - 1.0
-    return Thickening(tree.branch_of_segment[most], before[most], after[most], carried, added)
+    return Thickening(
+        int(grew.sum()), tree.branch_of_segment[most], before[most], after[most], carried, added,
+        in_leaf,
+    )  # fmt: skip

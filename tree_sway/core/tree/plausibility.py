@@ -27,6 +27,8 @@ _HEIGHT_LIMIT = 250.0
 _DIAMETER_LIMIT = 20.0
 _SLENDERNESS_LIMIT = (2.0, 2000.0)
 _LEAN = 60.0
+_FARTHEST = 1e4
+"""Distance [m] at which single precision has steps of a millimetre."""
 _SWAY_FACTOR = 5.0
 
 
@@ -68,6 +70,8 @@ def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
          'if diameters are in cm, add --option diameter_unit=0.01'),
         ('height over diameter', slenderness, '', 'stems have', (8.0, 200.0),
          'its diameters may be too thick or too thin; --option diameter_unit sets their unit'),
+        ('distance from the origin', float(np.linalg.norm(tree.start[0])), ' m', 'pictures have',
+         (0.0, _FARTHEST), 'as they round places there, add --option to_origin=yes'),
         ('lean', _lean(tree), ' degrees', 'trees have', (0.0, _LEAN),
          'if the y axis of its file points up, add --option up=y'),
     )  # fmt: skip

@@ -96,13 +96,13 @@ def _trees(
     )
 
     @cache
-    def opened(tree: str, seed: int, species: str | None) -> TreeFile:
+    def opened(tree: str, seed: int, species: str | None, leaf_on: bool | None) -> TreeFile:
         """Open a tree once for all of its kind."""
-        where = _beside(folder, tree)
-        if species is None:
-            return open_tree(where, seed)
-        named = species_named(species)
-        return open_tree(where, seed, wood=lambda _: named)
+        asked: dict[str, Any] = {} if leaf_on is None else {'in_leaf': leaf_on}
+        if species is not None:
+            named = species_named(species)
+            asked['wood'] = lambda _: named
+        return open_tree(_beside(folder, tree), seed, **asked)
 
     trees = []
     notes = list[str]()
@@ -111,14 +111,14 @@ def _trees(
         name = entry['name']
         where = document.where('trees', number)
         try:
-            file = opened(entry['tree'], entry.get('seed', 0), entry.get('species'))
+            file = opened(
+                entry['tree'], entry.get('seed', 0), entry.get('species'), entry.get('leaf_on')
+            )
         except TreeSwayError as error:
             inner = f'{error.where}: {error.what}' if error.where else error.what
             raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
         place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
-        placed = PlacedTree(
-            name, file.tree, species=file.species, learned=file.learned, **place
-        )
+        placed = PlacedTree(name, file.tree, species=file.species, learned=file.learned, **place)
         trees.append(placed)
         notes += [f'{name}: {note}' for note in file.notes]
         faults += [f'{name}: {fault}' for fault in file.faults]

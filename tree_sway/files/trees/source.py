@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
+import warnings
 
 import numpy as np
 
@@ -37,10 +38,14 @@ def open_tree(
     seed: int = 0,
     *,
     wood: Callable[[Species], Species] = same,
+    in_leaf: bool | None = None,
+    warn: bool = True,
     **options: Any,
 ) -> TreeFile:
     """
     Open a built-in tree or a tree file.
+
+    A description is opened as its file states it. A scan may have faults, which are mended.
 
     Parameters
     ----------
@@ -52,6 +57,11 @@ def open_tree(
     wood
         Function that returns the species to use in place of that of the file: faults of a scan are
         mended by it.
+    in_leaf
+        Season in which its limbs have to carry themselves; None is by the species: evergreens are
+        in leaf, others bare.
+    warn
+        Whether each fault that was mended is a Python warning too (`TreeFile.warnings` has all).
     **options
         Options of the file's reader; see `read_tree`.
 
@@ -77,7 +87,16 @@ def open_tree(
     head = read_head(path) if path.is_file() else None
     if head is not None:
         _refuse_several_trees(path, head)
-    return read_tree(path, head=head, wood=wood, **options).checked()
+    found = read_tree(path, head=head, wood=wood, in_leaf=in_leaf, **options).checked()
+    if warn:
+        _warn(found.faults)
+    return found
+
+
+def _warn(faults: Sequence[str]) -> None:
+    """Make Python warnings of faults, at the line that opens the tree."""
+    for fault in faults:
+        warnings.warn(fault, UserWarning, stacklevel=3)
 
 
 def unknown_tree(name: str) -> FormatError:
@@ -113,6 +132,8 @@ def open_scene(
     *,
     exact: bool = False,
     wood: Callable[[Species], Species] = same,
+    in_leaf: bool | None = None,
+    warn: bool = True,
     **options: Any,
 ) -> Scene:
     """
@@ -125,7 +146,7 @@ def open_scene(
         trees, or a stand: a table with x, y, species and height, or a YAML file that names one.
     exact
         Whether each tree of a stand is grown by itself, as in `read_stand_table`.
-    wood
+    wood, in_leaf, warn
         The same as in `open_tree`, for all trees.
     seed, **options
         Arguments of `open_tree`; not for a forest.
@@ -138,18 +159,34 @@ def open_scene(
         Errors of `open_tree` and `read_scene_yaml`.
 
     """
+    scene = _scene(name_or_path, seed, exact, {'wood': wood, 'in_leaf': in_leaf}, options)
+    if warn:
+        _warn(scene.faults)
+    return scene
+
+
+def _scene(
+    name_or_path: str | Path,
+    seed: int,
+    exact: bool,
+    asked: dict[str, Any],
+    options: dict[str, Any],
+) -> Scene:
+    """Open a scene without Python warnings; ``asked`` are wood and season."""
     path = path_of(name_or_path)
     if str(name_or_path) in BUILTIN_TREES or not path.is_file():
-        return scene_of_files([open_tree(name_or_path, seed, wood=wood, **options)])
+        return scene_of_files([open_tree(name_or_path, seed, warn=False, **asked, **options)])
+    wood: Callable[[Species], Species] = asked['wood']
+    opened = partial(open_tree, in_leaf=asked['in_leaf'], warn=False)
     head = read_head(path)
     read = None
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
-        read = partial(read_scene_yaml, path, open_tree, exact=exact)
+        read = partial(read_scene_yaml, path, opened, exact=exact)
     elif is_stand_table(head, path):
         read = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
     if read is None:
         try:
-            files = [each.checked() for each in read_trees(path, head=head, wood=wood, **options)]
+            files = [each.checked() for each in read_trees(path, head=head, **asked, **options)]
         except UnknownFormatError as error:
             if lacks_species_alone(head):
                 return read_stand_table(path, seed=seed, exact=exact, head=head)

@@ -42,13 +42,15 @@ def read_trees(
     *,
     head: str | None = None,
     wood: Callable[[Species], Species] = same,
+    in_leaf: bool | None = None,
     **options: Any,
 ) -> tuple[TreeFile, ...]:
     """
     Read every tree of a file, of a given format or found from content and suffix.
 
     Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known;
-    ``wood`` returns the species to use in place of that of the file.
+    ``wood`` returns the species to use in place of that of the file; ``in_leaf`` is the season, by
+    the species if None, in which a limb that cannot carry itself is thickened, where that is so.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def read_trees(
         raise ParameterError(what, where=str(path), cure=cure)
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
-    read = [wanted.applied(each, wood) for each in files]
+    read = [wanted.applied(each, wood, in_leaf) for each in files]
     if same_place := _in_the_stem_of_the_first(read):
         fault = (
             f'{same_place} more of the {len(read)} trees stand in the stem of this one: they may '

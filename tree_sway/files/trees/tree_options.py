@@ -14,6 +14,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 from tree_sway.core.growth.beyond_scan import grown_beyond, is_cut
+from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.setup.standing import standing_tree
 from tree_sway.core.tree.plausibility import refuse_implausible
 from tree_sway.core.tree.species import Species, species_named
@@ -32,14 +33,11 @@ _RANGES = {
 }  # fmt: skip
 
 
-MEASURED = {'twig_diameter': 0.0}
-"""Defaults of forms whose twigs have their true diameter."""
-
-AS_IT_IS = {'to_origin': False, **MEASURED}
-"""Defaults of our own table, whose trees also have their true place."""
-
-DESCRIBED = {**AS_IT_IS, 'thicken': False}
-"""Defaults of a description that someone wrote or this program made."""
+FITTED = {'twig_diameter': None, 'thicken': True, 'to_origin': True}
+"""
+Defaults of formats that a program writes which fits cylinders to a scan, with the faults of one.
+All others describe a tree, which is as its file states it unless a change is asked for.
+"""
 
 
 def same(species: Species) -> Species:
@@ -61,15 +59,16 @@ class TreeOptions:
     up
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
-        Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
-        that of the species if None, unless the scan ends at a thickness (`is_cut`), and 0 to leave
-        all twigs as they are.
+        Diameter in [m] of the last twigs, which are too thick in a scan (`corrected_twigs`); that
+        of the species if None, unless the scan ends at a thickness (`is_cut`), and 0 to leave all
+        twigs as they are.
     trusted_diameter
         Diameter above which a scan is trusted in [m].
     beyond_scan
         ``grow`` what the scan could not see (`grown_beyond`), or ``none``.
     thicken
-        Whether to thicken the limbs that cannot carry themselves (`standing_tree`).
+        Whether to thicken the limbs that cannot carry themselves in the season that the tree is
+        opened for (`standing_tree`).
     to_origin
         Whether to move the base of the stem to the origin.
     tree
@@ -81,11 +80,11 @@ class TreeOptions:
     length_unit: float = 1.0
     diameter_unit: float = 1.0
     up: str = 'z'
-    twig_diameter: float | None = None
+    twig_diameter: float | None = 0.0
     trusted_diameter: float = 0.05
     beyond_scan: str = 'none'
-    thicken: bool = True
-    to_origin: bool = True
+    thicken: bool = False
+    to_origin: bool = False
     tree: int = 0
 
     def __post_init__(self) -> None:
@@ -110,12 +109,17 @@ class TreeOptions:
         turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes
         return np.ascontiguousarray(self.length_unit * turned)
 
-    def applied(self, content: TreeFile, wood: Callable[[Species], Species] = same) -> TreeFile:
+    def applied(
+        self,
+        content: TreeFile,
+        wood: Callable[[Species], Species] = same,
+        in_leaf: bool | None = None,
+    ) -> TreeFile:
         """
         Return a tree in metres with these options applied, and notes of the changes.
 
-        ``wood`` returns the species to use in place of that of the file or of the option: what a
-        limb can carry depends on it.
+        ``wood`` returns the species to use in place of that of the file or of the option, and
+        ``in_leaf`` is the season, by the species if None: what a limb can carry depends on both.
         """
         tree = content.tree
         notes = list(content.notes)
@@ -146,7 +150,9 @@ class TreeOptions:
             # Numbers that are no tree's are refused where the tree is checked or simulated.
             with suppress(TreeSwayError):
                 refuse_implausible(tree, species)
-                tree, thickening = standing_tree(tree, species)
+                tree, thickening = standing_tree(
+                    tree, species, in_leaf=is_in_leaf(species, in_leaf)
+                )
                 faults += [] if thickening is None else [thickening.sentence(tree)]
         x, y, z = origin.tolist()
         done = replace(

@@ -208,6 +208,7 @@ function showFacts() {
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
     sensors: motionSensors(status.motion),
+    warnings: (status.warnings ?? []).join("; "),
     "band-of": status.motion?.band && shown.value === "motion" && scene.picked < 0 ? word("band") : "",
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),

@@ -3,9 +3,8 @@
 """
 Samples of a live motion sensor, with times of this machine, and news for the terminal.
 
-The first address or topic that sends is the sensor; what others send is refused and counted, until
-it has been silent for some seconds. Samples whose clock jumps are refused until the clock has been
-compared again (`SenderClock`).
+What a second sender sends is refused, counted and named (`OneSender`). Samples whose clock jumps
+are refused until the clock has been compared again (`SenderClock`).
 """
 
 from __future__ import annotations
@@ -16,10 +15,12 @@ import math
 import time
 from typing import NamedTuple
 
+from tree_sway.errors import shown
 from tree_sway.sensors.live_source import LiveSource
 from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
 from tree_sway.sensors.motion.motion_registry import OpenedMotion
 from tree_sway.sensors.motion.sender_clock import SenderClock
+from tree_sway.sensors.one_sender import OneSender
 from tree_sway.sensors.reading import Refusal
 from tree_sway.sensors.transports.transport import Message
 
@@ -27,7 +28,10 @@ SLOWEST = 5.0
 """Least number of samples per second [Hz] that follows a tree."""
 _QUEUE = 8192
 _SILENT = 5.0
-"""Time [s] without a sample after which a sensor is stale, and another may take its place."""
+"""Time [s] without a good sample after which a sensor is stale."""
+_INCOMPLETE = 1.0
+"""Time [s] without a sample of all quantities after which those that come are taken as all."""
+_SHOWN_LETTERS = 60
 _PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
 """Time [s] after which silence, or messages that are not understood, are told."""
 _COUNTED = 40
@@ -78,14 +82,15 @@ class LiveMotion(LiveSource):
         self.name = opened.name
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()
-        """What its first sample has."""
+        """What its samples have."""
         self._source = source
         self._heard = heard
         self._clock = SenderClock(source.ticks)
         self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
         self._arrivals: deque[float] = deque(maxlen=_COUNTED)
-        self._sender = ''
-        self._sent = -math.inf
+        self._senders = OneSender()
+        self._sent = self._refused_at = -math.inf
+        self._cause = ''
 
     def _is_live(self) -> bool:
         return time.monotonic() - self._sent < _SILENT
@@ -109,11 +114,19 @@ class LiveMotion(LiveSource):
             return slow if is_slow else ''
         if self._link.is_up:
             if state == 'stale':
-                silence = time.monotonic() - self._sent
-                return f'silent for {silence:.0f} s: check battery and network'
+                now = time.monotonic()
+                silence = f'{now - self._sent:.0f} s'
+                if now - self._refused_at < _SILENT:
+                    return f'all was refused for {silence}: {self._cause}'
+                return f'silent for {silence}: check battery and network'
             if state == 'unknown' and not self.refused and not self.other:
                 return 'its clock is being compared'
         return self._why_nothing()
+
+    @property
+    def note(self) -> str:
+        """Who else sends; empty if nobody does."""
+        return self._senders.problem
 
     def drain(self) -> list[MotionSample]:
         """Return the samples since the last call."""
@@ -136,18 +149,21 @@ class LiveMotion(LiveSource):
                 self._refuse(each.reason)
         if not good:
             return
-        if message.origin != self._sender:
-            if now - self._sent < _SILENT:
-                self._refuse('another sender', len(good))
-                return
-            self._sender = message.origin
+        origin = message.origin
+        before = self._senders.current
+        if not self._senders.admit(origin, now):
+            cause = f'another sender, {shown(origin, _SHOWN_LETTERS)}'
+            if self._senders.refused.get(origin) == 1:
+                self._log(f'{self.name}: refused {cause}, until {before} is silent')
+            self._refuse(cause, len(good))
+            return
+        if origin != before:
             self._clock = SenderClock(self._source.ticks)
         self._use(good, now)
 
     def _use(self, readings: list[MotionReading], now: float) -> None:
         """Bring samples to the clock of this machine, and pass them on."""
         stamps = [each.time for each in readings if each.time is not None]
-        self._sent = now
         if stamps and not self._clock.note(max(stamps), now, min(stamps)):
             if self._clock.ticks is not None:
                 self._refuse('its clock jumped', len(readings))
@@ -155,14 +171,16 @@ class LiveMotion(LiveSource):
                 self._refuse('its clock is of an unknown unit', len(readings))
             return
         for each in readings:
-            if not set(self.quantities) <= set(each.quantities):
+            is_whole = set(self.quantities) <= set(each.quantities)
+            if not is_whole and now - self._sent <= _INCOMPLETE:
                 self._leave_out(each.quantities)
                 continue
+            self._sent = now
             at = now if each.time is None else self._clock.local(each.time)
             sample = MotionSample(at, each.acceleration, each.rate, each.orientation)
             self.accepted += 1
             self._arrivals.append(at)
-            if not self.quantities:
+            if not self.quantities or not is_whole:
                 self.quantities = each.quantities
                 measured = ' and '.join(_WORDS[name] for name in self.quantities)
                 self._log(f'{self.name}: {measured} come')
@@ -170,8 +188,12 @@ class LiveMotion(LiveSource):
             if self._heard is not None:
                 self._heard(sample)
 
+    def _refuse(self, cause: str, count: int = 1) -> None:
+        self._cause, self._refused_at = cause, time.monotonic()
+        super()._refuse(cause, count)
+
     def _leave_out(self, quantities: Sequence[str]) -> None:
-        """Refuse a sample without a quantity that the first one had."""
+        """Refuse a sample without a quantity that others have."""
         measured = ' and '.join(_WORDS[name] for name in quantities)
         cause = f'{measured} alone: send all of a sample in one message'
         if cause not in self.refused:

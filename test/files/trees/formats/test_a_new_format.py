@@ -28,7 +28,7 @@ def read_poles(path: Path) -> tuple[Cylinders, ...]:
     """Read poles whose feet are 2 m up."""
     table = parse_columns(read_lines(path)[1:], str(path), ["height", "diameter"])
     return tuple(
-        Cylinders(np.array([[0, 0, 2.0]]), np.array([[0, 0, 2.0 + height]]),
+        Cylinders(np.array([[5.0 * row, 0, 2.0]]), np.array([[5.0 * row, 0, 2.0 + height]]),
                   np.array([[diameter, diameter]]), np.array([-1]), None, [table.where(row)])
         for row, (height, diameter) in enumerate(table.strict(["height", "diameter"]))
     )
@@ -39,7 +39,7 @@ FORMAT = FileFormat("poles", (".poles",), lambda head: head.startswith("POLES"),
 USE = """
 import sys
 from tree_sway.files.trees.source import open_tree, open_scene
-one = open_tree(sys.argv[1], species="oak", to_origin=False)
+one = open_tree(sys.argv[1], species="oak")
 print(one.tree.height, one.tree.start[0][2], one.species.key, len(open_scene(sys.argv[1]).trees))
 """
 

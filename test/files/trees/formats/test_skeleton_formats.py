@@ -18,8 +18,8 @@ def test_swc_of_two_trees():
     assert (fork.tree.n_segments, fork.tree.n_branches) == (4, 2)
     np.testing.assert_allclose(fork.tree.base_diameter, [0.24, 0.2, 0.2, 0.06])
     np.testing.assert_allclose(fork.tree.tip_diameter, [0.2, 0.16, 0.06, 0.04])
-    np.testing.assert_allclose(fork.tree.end[3], [1.2, 0, 2.3], atol=1e-9)
-    assert pole.origin == (110.0, 200.0, 50.0)
+    np.testing.assert_allclose(fork.tree.end[3], [101.2, 200, 52.3], atol=1e-9)
+    np.testing.assert_allclose(pole.tree.start[0], [110.0, 200.0, 50.0])
     assert pole.tree.height == 3.0
 
 
@@ -43,7 +43,7 @@ def test_treefile_of_two_trees():
 
 
 def test_mtg():
-    tree_file = read_tree(DATA / 'fork.mtg')
+    tree_file = read_tree(DATA / 'fork.mtg', to_origin=True)
     tree = tree_file.tree
     assert (tree.n_segments, tree.n_branches) == (5, 3)
     assert tree_file.notes[0] == '10 vertices with a position, 2 without; 7 of them segments'

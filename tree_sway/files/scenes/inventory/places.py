@@ -136,7 +136,9 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     columns.note('east and north are counted from the first tree')
     first = int(np.argmax(is_known))
     parallel_radius = _EARTH_RADIUS * math.cos(math.radians(latitude[first]))
-    x = parallel_radius * np.radians(longitude - longitude[first])
+    east = longitude - longitude[first]
+    east -= 360.0 * np.round(east / 360.0)  # the short way round
+    x = parallel_radius * np.radians(east)
     y = _EARTH_RADIUS * np.radians(latitude - latitude[first])
     is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
     return Places(np.where(is_known, x, np.nan), np.where(is_known, y, np.nan), is_in_states)

@@ -22,6 +22,7 @@ from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import cylinder_axes, Cylinders
+from tree_sway.files.trees.tree_options import FITTED
 
 
 def _read_archi(path: Path) -> tuple[Cylinders, ...]:
@@ -45,7 +46,7 @@ def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
     return (Cylinders(*cylinder_axes(table, 'radius'), parent, continues, labels),)
 
 
-ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi)
+ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi, FITTED)
 SIMPLEFOREST = FileFormat(
-    'simpleforest', (), has_columns('ID', 'parentID', 'growthLength'), _read_simpleforest
+    'simpleforest', (), has_columns('ID', 'parentID', 'growthLength'), _read_simpleforest, FITTED
 )

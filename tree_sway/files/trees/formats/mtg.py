@@ -28,7 +28,6 @@ from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.tree_options import MEASURED
 
 _POSITION = ('XX', 'YY', 'ZZ')
 _DIAMETER = 'TopDia'
@@ -239,5 +238,5 @@ def _vertex(label: str, scale: int, edge: str, reference: _Vertex | None) -> _Ve
     return _Vertex(label, scale, edge, before.whole, reference)
 
 
-_UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001, **MEASURED}
+_UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001}
 FORMAT = FileFormat('mtg', ('.mtg',), _is_mtg, _read, _UNITS)

@@ -11,7 +11,6 @@ from tree_sway.core.setup.prepare import digest_of_source
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.models.model_file import read_model, SUFFIX
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.tree_options import AS_IT_IS
 
 
 def read_prepared(path: Path) -> TreeFile:
@@ -40,4 +39,4 @@ def _is_zip_of_arrays(head: str) -> bool:
     return head.startswith('PK\x03\x04') and '.npy' in head[:_FIRST_NAMES]
 
 
-FORMAT = FileFormat('npz', (SUFFIX,), _is_zip_of_arrays, read_prepared, AS_IT_IS)
+FORMAT = FileFormat('npz', (SUFFIX,), _is_zip_of_arrays, read_prepared)

@@ -20,7 +20,6 @@ from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.tree_options import AS_IT_IS
 
 
 def _read(path: Path) -> TreeFile:
@@ -41,4 +40,4 @@ def _read(path: Path) -> TreeFile:
     return TreeFile(tree, wood, str(path))
 
 
-FORMAT = FileFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read, AS_IT_IS)
+FORMAT = FileFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)

@@ -22,7 +22,6 @@ from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
-from tree_sway.files.trees.tree_options import MEASURED
 
 _COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
 
@@ -72,4 +71,4 @@ def _rows_of_trees(parent: Ints, labels: Sequence[str]) -> list[list[int]]:
     return trees
 
 
-FORMAT = FileFormat('swc', ('.swc',), _is_swc, _read, MEASURED)
+FORMAT = FileFormat('swc', ('.swc',), _is_swc, _read)

@@ -22,6 +22,7 @@ from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
+from tree_sway.files.trees.tree_options import FITTED
 
 _FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
 
@@ -83,4 +84,4 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     return cylinders_of_nodes(points, diameter, parent, labels, where, cones=False)
 
 
-FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)
+FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read, FITTED)
