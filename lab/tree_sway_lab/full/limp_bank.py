@@ -13,7 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.limp_tree import LimpStep
+from tree_sway.core.run.limp_tree import LimpStep, SHORTEST_PART
 from tree_sway.core.setup.numpy_branch_loads import of_slots
 from tree_sway_lab.full.bank import FullBank
 from tree_sway_lab.full.numpy_bank import NumpyFullBank
@@ -23,7 +23,7 @@ class LimpFullBank(LimpStep, FullBank):
     """A limp tree on all its coordinates."""
 
     is_plain = False
-    longest_part = 1.0 / 240.0
+    longest_part = SHORTEST_PART
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""

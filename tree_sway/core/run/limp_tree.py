@@ -57,10 +57,16 @@ from tree_sway.core.run.segment_drag import (
     segment_drag,
     SegmentDrag,
 )
-from tree_sway.core.run.table_model import middle_of_step, propagators_of, WindBasisBank
+from tree_sway.core.run.table_model import Propagators, WindBasisBank
 
-LONGEST_PART, MOST_PARTS = 0.04, 1000
-"""Longest part of a step [s], and the largest number of parts of a step."""
+LONGEST_PART, SHORTEST_PART, PART_IN_STORM = 0.04, 1.0 / 240.0, 7.0
+"""
+Longest part of a step [s]; in strong wind it is the last [m^2/s] over the square of the speed, but
+no shorter than the second. Twigs rattle in longer ones: a step finds their drag before they turn.
+"""
+
+MOST_PARTS = 1000
+"""Largest number of parts of a step."""
 
 MOST_TURN = 1.0
 """Largest rotation of a branch in a part of a step [rad]."""
@@ -133,7 +139,7 @@ class LimpStep:
     leading = LEADING
     """Largest number of coordinates whose inertia is that of the pose."""
     longest_part = LONGEST_PART
-    """Longest part of a step that is taken at once [s]."""
+    """Longest part of a step [s]."""
 
     def begin(self, model: SwayModel, bank: Bank) -> None:
         """Prepare the law of a model, by a bank that places it."""
@@ -146,8 +152,8 @@ class LimpStep:
         self.segments = segment_drag(model, self.branches, self.middles.tangent)
         self._drag = damping_at_rest(self.segments, self.pose.columns_at_rest)
         """Damping of each coordinate by still air, per drag and speed, (m,)."""
-        self._law: CoupledStep | None = None
-        self._n_parts = 1
+        self._laws: dict[int, CoupledStep] = {}
+        """Coefficients by the number of parts of a step."""
         self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
         self.begin_anew()
 
@@ -165,12 +171,12 @@ class LimpStep:
 
     def take_step(self, modal: ModalCoordinates, swing: tuple[Floats, ...], dt: float) -> None:
         """
-        Take the coefficients of a time step [s].
+        Take a time step.
 
         Parameters
         ----------
         modal
-            Coordinates; their propagators become those of a part of the step.
+            Coordinates.
         swing
             Memory of coordinates, rates and forces, (m,).
         dt
@@ -180,13 +186,28 @@ class LimpStep:
         if not np.array_equal(modal.stiffness, self.limp_motion.stiffness):
             self.limp_motion.stiffness[:] = modal.stiffness
             self._forget()
-        self._n_parts = math.ceil(min(max(dt / self.longest_part - 1e-9, 1.0), MOST_PARTS))
-        part = dt / self._n_parts
-        modal.set_time_step(part)
-        half = middle_of_step(propagators_of(modal), part)
-        self._law = coupled_step(modal, half, self._drag, len(self.pose.change), part)
+        self._modal = modal
+        self._dt = dt
+        self._laws.clear()
         eta, rate, force = swing
         self.limp_motion = self.limp_motion._replace(eta=eta, rate=rate, force=force)
+
+    def n_parts(self, speed: float) -> int:
+        """Return in how many parts a step is taken in a wind [m/s]."""
+        in_storm = PART_IN_STORM / max(speed * speed, 1.0)
+        longest = min(self.longest_part, max(in_storm, SHORTEST_PART))
+        return math.ceil(min(max(self._dt / longest - 1e-9, 1.0), MOST_PARTS))
+
+    def _law_of(self, n_parts: int) -> CoupledStep:
+        """Return the coefficients of a part of a step."""
+        law = self._laws.get(n_parts)
+        if law is None:
+            part = self._dt / n_parts
+            modal = self._modal
+            over = Propagators(modal.damping, modal.stiffness, *modal.propagators(part))
+            law = coupled_step(over, self._drag, len(self.pose.change), part)
+            self._laws[n_parts] = law
+        return law
 
     def step_at_pose(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -194,13 +215,14 @@ class LimpStep:
 
         Returns how many of its parts were bounded, or `NOT_FINITE`.
         """
-        law = self._law
-        assert law is not None
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        n_parts = self.n_parts(speed)
+        law = self._law_of(n_parts)
         pose = self.pose
         motion = self.limp_motion
-        air = wx, wy, wz, per_speed_squared, math.sqrt(wx * wx + wy * wy + wz * wz)
+        air = wx, wy, wz, per_speed_squared, speed
         n_bounded = 0
-        for _ in range(self._n_parts):
+        for _ in range(n_parts):
             first = self._next_column
             count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
             if is_disturbed:
