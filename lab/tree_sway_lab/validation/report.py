@@ -28,7 +28,7 @@ from tree_sway.files.whole_file import write_text_whole
 from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
-    'kinds', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
+    'kinds', 'storms', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
     'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'held_out', 'forestgales',
     'broadleaves', 'battery', 'paper',
 )  # fmt: skip
