@@ -10,6 +10,7 @@ import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.kinds.shoots import Drawing, towards
 from tree_sway_lab.tip_error import record_tips, roughness, tip_error
+from tree_sway_lab.validation.trial import tried
 from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, true_tips, WOOD
 from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
@@ -17,7 +18,7 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.limp_tree import LimpStep, LONGEST_PART, SLACK
+from tree_sway.core.run.limp_tree import FASTEST_TURN, LimpStep, LONGEST_PART, SLACK
 from tree_sway.core.run.pose_inertia import (
     centrifugal_force,
     COLUMNS,
@@ -252,6 +253,44 @@ def test_each_segment_has_the_gust_that_reaches_its_limb():
         for model in (60, 'full')
     ]  # fmt: skip
     assert tip_error(tree, *tips) < 0.03
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize('kind', ['reeds 201', 'shoots 202', 'whips 203', 'bamboo 204'])
+@pytest.mark.parametrize('speed', ['25', '40'])
+def test_it_moves_in_storms_as_the_truth_does(kind, speed):
+    one = tried(kind, speed, 'default', QUICK if speed == '25' else FINE)
+    print(one)
+    assert one.error < 0.2
+    assert 0.7 < one.roughness < 1.5
+    assert one.lowest > one.true_lowest - 0.1
+    assert one.stride < 2.0 * one.true_stride
+    assert one.clamped < 5
+
+
+def test_a_long_step_is_taken_in_parts():
+    at_once, apart = limp_tree(), limp_tree()
+    for _ in range(5):
+        at_once.step((6.0, 2.0, 0.0), 4.0 * LONGEST_PART)
+        for _ in range(4):
+            apart.step((6.0, 2.0, 0.0), LONGEST_PART)
+    np.testing.assert_allclose(at_once.place(), apart.place(), atol=1e-9)
+    at_once.step((6.0, 2.0, 0.0), 1e6)
+    assert np.isfinite(at_once.place()).all()
+
+
+def test_a_branch_that_would_turn_too_fast_is_bounded_and_counted():
+    sim = limp_tree()
+    for blowing in turbulent(25.0, 1.0, 5):
+        sim.step(blowing, FRAME)
+    assert sim.counts.clamped == 0
+    step = step_of(sim)
+    by_key = step.limp_motion.by_key
+    _, rates, _ = step.swing
+    rates *= 3.0 * FASTEST_TURN / np.abs(by_key @ rates).max()
+    sim.step((25.0, 0.0, 0.0), FRAME)
+    assert sim.counts.clamped == 1
+    assert np.abs(by_key @ rates).max() <= (1.0 + 1e-9) * FASTEST_TURN
 
 
 @pytest.mark.compiled
