@@ -59,7 +59,7 @@ from tree_sway.core.run.segment_drag import (
 )
 from tree_sway.core.run.table_model import Propagators, WindBasisBank
 
-LONGEST_PART, SHORTEST_PART, PART_IN_STORM = 0.04, 1.0 / 240.0, 7.0
+LONGEST_PART, SHORTEST_PART, PART_IN_STORM = 0.04, 1.0 / 240.0, 5.0
 """
 Longest part of a step [s]; in strong wind it is the last [m^2/s] over the square of the speed, but
 no shorter than the second. In longer ones whips rattle, for the drag of a step is found at the
