@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from tree_sway_lab.kinds.kinds import FLEXIBLE, SLENDER
 from tree_sway_lab.validation.section import Check, Effort, Section
 from tree_sway_lab.validation.sections.kinds import trial_table
@@ -26,19 +24,20 @@ def measure(effort: Effort) -> Section:
     """Try the default model on limp kinds in turbulence of storms."""
     seeds = (*SEEDS, 102, 103) if effort.is_full else SEEDS
     kinds = [f'{kind} {seed}' for kind in (*FLEXIBLE, *SLENDER) for seed in seeds]
-    found = [one for part in effort.each(partial(tried_in_storms, 'default'), kinds) for one in part]
+    parts = effort.each(tried_in_storms, kinds)
+    found = [one for part in parts for one in part]
     text = (
         f'The default model against every segment solved ({FINE}) in {SECONDS:g} s of turbulence '
-        f'with a mean of {", ".join(WINDS)} m/s, or as long as the truth follows the tips. Willow, '
-        'birch and whips; bamboo, shoots of one year and reeds, each of two seeds. Columns are '
+        f'with a mean of {", ".join(WINDS)} m/s, or as long as the truth follows the tips. '
+        'Willow, birch and whips; bamboo, shoots of one year and reeds, each of two seeds. Columns are '
         'those of the section before.'
     )
     return Section('Limp trees in storms', text, checks(found), trial_table(found))
 
 
-def tried_in_storms(model: str, kind: str) -> list[Trial]:
-    """Try a model on a kind in every wind."""
-    return [tried(kind, wind, model) for wind in WINDS]
+def tried_in_storms(kind: str) -> list[Trial]:
+    """Try the default model on a kind in every wind."""
+    return [tried(kind, wind, 'default') for wind in WINDS]
 
 
 def checks(found: list[Trial]) -> list[Check]:
