@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
+from importlib.util import find_spec
 import os
 from pathlib import Path
 import platform
 import re
 import shutil
 import sys
-from importlib.util import find_spec
 
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
@@ -93,9 +93,8 @@ class BuildNative(build_ext):
         options = [*OPTIONS.split(), *([] if sys.platform == 'win32' else ['-fPIC'])]
         folder = Path(self.build_temp, 'native')
         try:
-            objects = compiler.compile(
-                [str(ROOT / 'native' / f'{name}.cpp') for name in SOURCES], str(folder), extra_postargs=options
-            )
+            sources = [str(ROOT / 'native' / f'{name}.cpp') for name in SOURCES]
+            objects = compiler.compile(sources, str(folder), extra_postargs=options)
             for name, own in targets().items():
                 objects += compiler.compile(
                     [str(ROOT / 'native' / 'frame.cpp')],
@@ -126,7 +125,7 @@ def choose_compiler(compiler):
     elif not named and find_spec('ziglang'):
         named = [sys.executable, '-m', 'ziglang', 'c++']
         linker = [*named[:-1], 'cc']
-    if not named or sys.platform == 'win32' and not linker:
+    if not named or (sys.platform == 'win32' and not linker):
         return
     options = ['-dynamiclib'] if sys.platform == 'darwin' else ['-shared']
     if sys.platform == 'linux':

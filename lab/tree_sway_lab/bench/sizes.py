@@ -88,7 +88,8 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
         rows.append(Measured(f'set-up, CPU, {tree.n_branches} branches', spent_once, 's'))
     rows += errors(simulators)
     kernels = least[:, 0]
-    rows.append(Measured('native step, most over least', float(kernels.max() / kernels.min()), '-'))
+    ratio = float(kernels.max() / kernels.min())
+    rows.append(Measured('native step, most over least', ratio, '-'))
     return rows
 
 

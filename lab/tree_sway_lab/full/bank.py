@@ -36,8 +36,7 @@ from tree_sway.core.model.records import Branches, WIDTH
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise
-from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
-from tree_sway.core.run.table_model import middle_of_step
+from tree_sway.core.run.modal_coordinates import FARTHEST, middle_of_step, ModalCoordinates
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
 
@@ -143,7 +142,7 @@ class FullBank(Branchwise, ModalCoordinates):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
-        middle = middle_of_step(self, dt)
+        middle = middle_of_step(self.law, dt)
         self.half[:] = 0.0
         self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt

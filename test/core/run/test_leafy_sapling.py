@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import leafy_sapling
 
-from tree_sway.core.run.table_model import middle_of_step
+from tree_sway.core.run.modal_coordinates import middle_of_step
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.tree.wood import Species
@@ -73,12 +73,12 @@ def test_all_coordinates_sway_alike_at_shorter_steps(sapling, speed, n_substeps,
 def test_the_rate_at_the_middle_of_a_step_follows_the_force(sapling, dt):
     bank = simulator(sapling, 60).banks[0].oscillators
     bank.set_step(dt)
-    assert (middle_of_step(bank.modal, dt)[5] > 0.0).all()
+    assert (middle_of_step(bank.modal.law, dt)[5] > 0.0).all()
 
 
 def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
     bank = simulator(sapling, 12).banks[0].oscillators
     bank.modal.set_time_step(1e-3)
-    exact, half = bank.modal.half.T, middle_of_step(bank.modal, 1e-3)
+    exact, half = bank.modal.half.T, middle_of_step(bank.modal.law, 1e-3)
     assert (half[[0, 1, 3, 4]] == exact[[0, 1, 4, 5]]).all()
     assert (half[[2, 5]] == exact[[2, 6]] + exact[[3, 7]]).all()

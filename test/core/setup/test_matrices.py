@@ -14,11 +14,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tree_sway.core.model.fill_records import block_records, segment_records
+from tree_sway.core.run.placing import GIVEN, place, room_for
 from tree_sway_lab.example_trees import forked_tree
 
 from tree_sway.core.beams.branch_model import TreeBeams
-from tree_sway.core.model.fill_records import block_records, segment_records
-from tree_sway.core.run.placing import GIVEN, place, room_for
 from tree_sway.core.setup.branch_places import places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup import static_responses

@@ -5,8 +5,8 @@ Export of the table of a tree, for receivers that solve the tree themselves.
 
 Over azimuths and levels the slopes of the load have a low rank: they are exported as factors,
 ``slopes = sqrt(k_i k_j) rows @ shapes``, weighted with the stiffness k of the coordinates, so that
-the error is that of the bending of the tree. Shapes are integers of one step. `arrays_of_table` makes the
-exported arrays a table again, which every receiver solves.
+the error is that of the bending of the tree. Shapes are integers of one step. `arrays_of_table`
+makes the exported arrays a table again, which every receiver solves.
 
 What factors leave out of a damping may feed a motion. Damping in proportion to the stiffness, as
 much as the largest gain, is added before, so that the exported damping takes energy from every

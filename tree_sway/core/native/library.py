@@ -48,7 +48,10 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     ),
     'sway_past_winds': (
         None,
-        (_pointer, _size, _number, _pointer, _pointer, _size, _number, _pointer, _number, _pointer),
+        (
+            _pointer, _size, _number, _pointer, _pointer, _size, _number, _pointer, _number,
+            _pointer,
+        ),  # fmt: skip
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
 }

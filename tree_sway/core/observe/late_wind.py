@@ -10,15 +10,12 @@ the time follows the mean speed of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property, partial
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats
 from tree_sway.core.wind.wind_history import follow_mean, WindHistory
 
 LONGEST_WAY = 15.0

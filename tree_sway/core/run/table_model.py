@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.native.stand import NativeStand, States
-from tree_sway.core.run.modal_coordinates import ModalCoordinates
+from tree_sway.core.run.modal_coordinates import middle_of_step, ModalCoordinates
 
 if TYPE_CHECKING:
     from tree_sway.core.setup.static_responses import WindMoments
@@ -137,7 +137,7 @@ class TableOscillators:
         """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
         count = self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
-        per_force = middle_of_step(self.modal, self.modal.dt)[5]
+        per_force = middle_of_step(self.modal.law, self.modal.dt)[5]
         implicit = 1.0 - self._state.diagonal[self.number, :count] * per_force
         return np.asarray(self.modal.whole / implicit[:, None])
 
@@ -200,27 +200,3 @@ def come_to_rest(states: States, number: int) -> None:
     """Bring a tree to rest: the motion and the force of a tree that is stuck are no state."""
     for rows in (states.eta, states.rate, states.force):
         rows[number] = 0.0
-
-
-def middle_of_step(modal: ModalCoordinates, dt: float) -> Floats:
-    """
-    Return displacement and rate at the middle of a step by displacement, rate and force, (6, m).
-
-    The load is taken from there, where the rate of a coordinate that swings nearly once a step or
-    more may be opposite to its force. Strong drag, whose implicit part needs a rate that follows
-    the force, would then feed the motion. The middle state of such coordinates is that of an
-    implicit Euler step, whose rate always follows the force.
-    """
-    half = modal.half.T[[0, 1, 2, 4, 5, 6]]
-    half[[2, 5]] += modal.half.T[[3, 7]]
-    euler = _implicit_euler(modal.damping, modal.stiffness, 0.5 * dt)
-    return np.where(half[5] < euler[5], euler, half)
-
-
-def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
-    """Return displacement, then rate, after h [s] by displacement, rate and force, (6, m)."""
-    share = 1.0 / (1.0 + h * damping + h * h * stiffness)
-    rate = np.stack([-h * stiffness * share, share, h * share])
-    displacement = h * rate
-    displacement[0] += 1.0
-    return np.concatenate([displacement, rate])

@@ -50,5 +50,5 @@ def _wind_ratios(scene: PlacedTrees, profile: WindProfile) -> Floats:
 
 
 def own_step(scale: float, dt: float) -> float:
-    """Return the time step [s] of a tree of a scale, rounded to a hundredth, as the native core."""
+    """Return the time step [s] of a tree of a scale, rounded as in the native core."""
     return dt / math.exp(round(math.log(scale) / _FINEST_SCALE) * _FINEST_SCALE)

@@ -83,8 +83,9 @@ class ReceivedScene:
         self.stand = NativeStand(models, self._kind_of, places, speeds)
         self.stand.set_step(dt)
         self._most_pressure = np.array([kind.numbers['most_pressure'] for kind in kinds])
-        found = [own_step(scale, dt) for scale in places[:, 4].tolist()]
-        self._way = [_way(kinds[kind], own) for kind, own in zip(kind_of.tolist(), found, strict=True)]
+        own = [own_step(scale, dt) for scale in places[:, 4].tolist()]
+        pairs = zip(self._kind_of.tolist(), own, strict=True)
+        self._way = [_way(kinds[kind], step) for kind, step in pairs]
         self._steps = 0
         self._watches = dict[int, ClampWatch]()
         self.reduced = 0

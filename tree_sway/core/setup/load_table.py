@@ -137,8 +137,7 @@ class WindTable:
         self._damping = bank.damping
         self._pressures = np.array([drag_law.dynamic_pressure(speed) for speed in SPEEDS])
         self._search = EquilibriumSearch(wind_moments, self._slopes, bank.shapes, bank.stiffness)
-        n, m = bank.shapes.shape
-        self._still = np.zeros(n)
+        self._still = np.zeros(len(bank.shapes))
         self.arrays = table = dict[str, Any]()
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
