@@ -246,6 +246,7 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
                static_cast<double>(table.damping[(corners.number[corner] * m + i) * M + i]);
     state.diagonal[i] = drag * slope;
   }
+  for (int64_t i = m; i < M; i++) state.diagonal[i] = 0.0;
   if (steepness > 0.0)
     add_steep_slopes(model, wind.z > 0.0, steepness, drag, state, room, n_coupled);
   // Slopes hold near an equilibrium; the load far from it is bounded by that of any wind.

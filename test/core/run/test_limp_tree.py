@@ -180,7 +180,7 @@ def test_without_wind_and_damping_the_energy_never_grows():
     energies = []
     # For a minute. Without a compiler the law is the same, and a step takes 100 times as long.
     for _ in range(600 if WHY_PLAIN else 3600):
-        step.step_once(0.0, 0.0, 0.0, 0.0)  # no air either
+        step.step_at_pose(0.0, 0.0, 0.0, 0.0)  # no air either
         eta, rate, _ = step.swing
         energies.append(kinetic_energy(step, rate) + potential(sim, eta))
     assert sim.counts.clamped == 0

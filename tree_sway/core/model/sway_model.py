@@ -383,7 +383,7 @@ class SwayModel:
         tree = self.tree
         settings = self.settings
         return {
-            **self.arrays(),
+            **{name: each for name, each in self.arrays().items() if each.size},
             'gravity': np.array([settings.gravity]),
             'crown_coherence': np.array([settings.crown_coherence]),
             'tree_start': tree.start,

@@ -51,7 +51,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
         (
             _pointer, _size, _number, _pointer, _pointer, _size, _number, _pointer, _number,
             _pointer,
-        ),  # fmt: skip
+        ),
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
 }
@@ -79,3 +79,18 @@ LIBRARY = _opened()
 def address(array: NDArray[Any]) -> int:
     """Return where the numbers of an array begin."""
     return int(array.ctypes.data)
+
+
+class LastAddress:
+    """Where the last array begins, kept: to find it takes longer than many calls."""
+
+    def __init__(self) -> None:
+        self._array: NDArray[Any] | None = None
+        self._at = 0
+
+    def of(self, array: NDArray[Any]) -> int:
+        """Return where the numbers of an array begin."""
+        if array is not self._array:
+            self._array = array
+            self._at = address(array)
+        return self._at

@@ -12,7 +12,7 @@ import weakref
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.library import address, LastAddress, LIBRARY
 from tree_sway.core.native.model import NativeModel
 from tree_sway.errors import ParameterError
 
@@ -96,6 +96,9 @@ class NativeStand:
         self._counts = np.zeros(2, dtype=np.int64)
         self._wind = (ctypes.c_double * 3)()
         self._first_row = np.zeros((1, 2), dtype=np.int64)
+        self._first_row_at = address(self._first_row)
+        self._keys_at = LastAddress()
+        self._poses_at = LastAddress()
 
     def _views(self, count: int) -> States:
         """Return views of the states; they keep the stand alive."""
@@ -155,7 +158,7 @@ class NativeStand:
 
     def place_first(self, out: Floats) -> None:
         """Place the first tree, (n, 7); ``out`` is contiguous."""
-        LIBRARY.sway_place(self._handle, 0, address(self._first_row), 1, address(out))
+        LIBRARY.sway_place(self._handle, 0, self._first_row_at, 1, self._poses_at.of(out))
 
     def place(self, rows: Ints, out: Floats) -> None:
         """Place trees: their numbers and first rows in a pose block, (w, 2)."""
@@ -163,7 +166,7 @@ class NativeStand:
 
     def keys(self, tree: int, out: Floats) -> None:
         """Write the key rotations of a tree [rad], (N,)."""
-        LIBRARY.sway_keys(self._handle, 0, tree, address(out))
+        LIBRARY.sway_keys(self._handle, 0, tree, self._keys_at.of(out))
 
     def middles(
         self, keys: Floats, count: int, root_mass: Floats, half_length: Floats, out: Floats,
@@ -191,4 +194,5 @@ class NativeStand:
 
     def place_keys(self, tree: int, keys: Floats, out: Floats) -> None:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
-        LIBRARY.sway_place_keys(self._handle, 0, tree, address(keys), address(out))
+        keys_at = self._keys_at.of(keys)
+        LIBRARY.sway_place_keys(self._handle, 0, tree, keys_at, self._poses_at.of(out))
