@@ -14,10 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway.core.model import fill_records
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError
-from tree_sway.stream import placing as placer
 from tree_sway.stream.placing import Placer
 from tree_sway.stream.protocol import decode_description, encode_description
 
@@ -276,25 +274,6 @@ def test_a_bomb_is_refused_within_time_and_memory(bomb: str, tmp_path: Path) -> 
 
 def test_a_described_tree_still_places_after_all_checks() -> None:
     assert np.isfinite(Placer(WHOLE).place(WHOLE.scale)).all()
-
-
-def test_memory_is_bounded_for_the_records_that_are_filled(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Slots are assigned once for the bound, once for the records: by the same numbers."""
-    assigned: list[list[Any]] = []
-    for module in (placer, fill_records):
-
-        def noted(*given: Any, assign: Any = module.assign_slots) -> Any:
-            assigned.append([each.tolist() for each in given])
-            return assign(*given)
-
-        monkeypatch.setattr(module, 'assign_slots', noted)
-    Placer(WHOLE)
-    kinds = [assigned[:3], assigned[3:]]
-    for bound, *filled in kinds:
-        assert len(bound) == 3
-        assert filled == [bound, bound]
 
 
 if __name__ == '__main__':

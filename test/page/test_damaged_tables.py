@@ -246,7 +246,7 @@ def test_random_numbers_are_refused_or_solved_in_both(
     refused = []
     for data in fuzzed:
         try:
-            assert np.isfinite(solved(data).instances['eta']).all()
+            assert np.isfinite(solved(data).stand.states.eta).all()
             refused.append(False)
         except FormatError:
             refused.append(True)

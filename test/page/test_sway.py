@@ -21,14 +21,14 @@ from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 from tree_sway_lab.example_trees import leafy_sapling  # noqa: E402
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
-from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
-from tree_sway.core.model.records import time_step_layout  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.oscillators.propagator import propagator  # noqa: E402
-from tree_sway.core.run.table_model import fill_time_step, Propagators  # noqa: E402
+from tree_sway.core.run.modal_coordinates import middle_of_step, Propagators  # noqa: E402
+from tree_sway.core.scene import shared_tables  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
+from tree_sway.core.setup.prepare import prepare  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
@@ -37,8 +37,8 @@ from tree_sway.stream.scene_state import SceneState  # noqa: E402
 from tree_sway.stream.tables import tables_of  # noqa: E402
 
 HERE = Path(__file__).parent
-ROUNDING = 1e-8 if WHY_PLAIN else 1e-12
-"""JavaScript adds products of single precision up in the order of the kernels, numpy does not."""
+ROUNDING = 1e-6
+"""The native core adds products of single precision up in that precision, JavaScript does not."""
 SCAN = HERE.parent / 'files' / 'data'
 DT, STEPS, EVERY = 1.0 / 60.0, 1200, 50
 
@@ -51,15 +51,6 @@ def gusty(steps: int = STEPS) -> Any:
     turn = 0.35 * time + 0.3 * np.sin(3.0 * time)
     up = 0.3 * np.sin(2.2 * time) + 0.7 * (np.abs(time - 5.0) < 0.5)
     return speed[:, None] * np.stack([np.cos(turn), np.sin(turn), up], axis=1)
-
-
-def doubled(records: Any) -> Any:
-    """Return records whose numbers of single precision are in double precision."""
-    fields = []
-    for name in records.dtype.names:
-        kind, shape = records.dtype[name].base, records.dtype[name].shape
-        fields.append((name, 'f8' if kind == 'f4' else kind, shape))
-    return records.astype(np.dtype(fields))
 
 
 def exported(simulator: Simulator, folder: Path) -> Any:
@@ -78,12 +69,11 @@ def compared(simulator: Simulator, folder: Path) -> dict[str, float]:
     if node is None:
         pytest.skip('node is not installed here')
     received, winds, clamped = exported(simulator, folder), gusty(), 0
-    received.tables, received.instances = doubled(received.tables), doubled(received.instances)
     expected = []
     for step, wind in enumerate(winds):
         clamped += received.step(wind)
         if (step + 1) % EVERY == 0:
-            trees = range(len(received.instances))
+            trees = range(len(received.stand.states.eta))
             expected += [received.coordinates(tree).copy() for tree in trees]
     (folder / 'winds.bin').write_bytes(winds.tobytes())
     (folder / 'expected.bin').write_bytes(np.concatenate(expected).tobytes())
@@ -125,16 +115,18 @@ def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def clamped() -> Simulator:
+def clamped(monkeypatch: pytest.MonkeyPatch) -> Simulator:
     """Return a stand of which one tree is clamped in an ordinary wind."""
+
+    def prepared(tree: Any, *arguments: Any, **changes: Any) -> Any:
+        made = prepare(tree, *arguments, **changes)
+        is_first = tree.n_segments == kinds[0].n_segments
+        return replace(made, most_energy=1e-4 * made.most_energy) if is_first else made
+
+    monkeypatch.setattr(shared_tables, 'prepare', prepared)
     kinds = bench_tree(), open_scene(str(SCAN / 'fork.treeqsm24.txt')).trees[0].tree
     trees = [PlacedTree(f'tree {i}', kinds[i % 2], x=9.0 * i) for i in range(3)]
-    simulator = Scene(trees, 'row').simulator(Settings(), model=20)
-    model = simulator.groups[0].simulator
-    (prepared,) = model.models
-    model.models = (replace(prepared, most_energy=1e-4 * prepared.most_energy),)
-    simulator._shared._tables['most_energy'][0] *= 1e-4
-    return simulator
+    return Scene(trees, 'row').simulator(Settings(), model=20)
 
 
 def test_trees_that_stay_clamped_go_on_with_fewer_coordinates_as_in_python(
@@ -142,7 +134,8 @@ def test_trees_that_stay_clamped_go_on_with_fewer_coordinates_as_in_python(
 ) -> None:
     found = compared(clamped, tmp_path)
     assert found['reduced'] >= 2
-    assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
+    # Each clamp scales a motion that grows, and its rounding with it.
+    assert found['wrong'] <= 10.0 * ROUNDING * max(1.0, found['greatest'])
 
 
 def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
@@ -153,15 +146,15 @@ def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
         clamped.step(wind, DT)
         received.step(wind)
         reduced.append((clamped.counts.reduced, received.reduced))
-        left_out = received.instances['left_out']
+        left_out = received.stand.states.left_out
         assert np.array_equal(left_out, clamped._shared.stand.states.left_out)
     assert max(reduced)[0] > 0
     received.correct(received.state() + 0.01)
-    for instance in received.instances:
-        count = 20 - int(instance['left_out'])
-        assert (instance['eta'][count:] == 0.0).all()
+    states = received.stand.states
+    for eta, left_out in zip(states.eta, states.left_out, strict=True):
+        assert (eta[20 - int(left_out) :] == 0.0).all()
     received.reset()
-    assert (received.instances['left_out'] == 0).all()
+    assert (received.stand.states.left_out == 0.0).all()
 
 
 def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
@@ -170,8 +163,6 @@ def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
     circular = 2.0 * np.pi * np.geomspace(0.2, 2000.0, 60)
     stiffness, damping = circular**2, 0.2 * circular
     whole, half = (propagator(1.0, damping, stiffness, span) for span in (DT, 0.5 * DT))
-    expected = np.zeros(1, dtype=time_step_layout(len(stiffness)))[0]
-    fill_time_step(expected, Propagators(damping, stiffness, whole, half), DT)
     sway = (HERE.parents[1] / 'tree_sway' / 'page' / 'static' / 'sway.js').as_uri()
     program = f"""
       import {{ toMiddle }} from "{sway}";
@@ -180,7 +171,7 @@ def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
       console.log(JSON.stringify([...found]));
     """
     found = np.array(javascript(program)).reshape(-1, 6).T
-    middle = expected['half'][:, : len(stiffness)]
+    middle = middle_of_step(Propagators(damping, stiffness, whole, half), DT)
     assert (middle[5] > 0.0).all()
     size = np.abs(middle).max(axis=1, keepdims=True)
     assert np.abs(found - middle).max() <= 1e-11 * size.max()

@@ -14,19 +14,38 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tree_sway.core.model.fill_records import block_records, segment_records
-from tree_sway.core.run.placing import GIVEN, place, room_for
 from tree_sway_lab.example_trees import forked_tree
 
 from tree_sway.core.beams.branch_model import TreeBeams
+from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.setup.branch_places import places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree
 
-pytestmark = pytest.mark.compiled
-
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(5)
+
+
+def stand_of(tree, places, twist):
+    """Return a native stand of a tree that can be placed alone."""
+    room = twist.shape[1]
+    turn = np.zeros((tree.n_segments, room, 3))
+    turn[:, : places.segment_turn.shape[1]] = places.segment_turn
+    arrays = {
+        'tree_start': tree.start, 'tree_end': tree.end,
+        'tree_base_diameter': tree.base_diameter, 'tree_tip_diameter': tree.tip_diameter,
+        'branch_first': places.first, 'branch_parent': places.parent,
+        'branch_base_segment': places.base_segment, 'branch_coordinate': places.coordinate,
+        'branch_keys': places.n_coordinates, 'branch_frame': places.frame,
+        'branch_skew': np.stack([places.skew, places.tip_skew], axis=1),
+        'branch_offset': places.offset, 'branch_twist': twist,
+        'segment_slope': places.slope, 'segment_tip_slope': places.tip_slope,
+        'segment_chord': places.chord, 'segment_rest': places.rest, 'segment_turn': turn,
+    }  # fmt: skip
+    place = np.array([[*tree.start[0], 0.0, 1.0]])
+    model = NativeModel(bytes_of(arrays))
+    return NativeStand([model], np.zeros(1, dtype=np.int64), place, np.ones(1))
 
 
 class Reduced:
@@ -40,14 +59,11 @@ class Reduced:
         even = np.ones(tree.n_segments)
         places = places_of(tree, self.models, self.reduction)
         self.branches = branch_records(tree, self.models, self.reduction, places, even)
-        self.segments = segment_records(places)
-        self.blocks = block_records(self.branches, self.segments)
+        self.stand = stand_of(tree, places, self.branches['twist'])
 
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
-        bases = np.zeros((self.tree.n_branches, 8))
-        records, room = (self.segments, self.blocks, bases), room_for(len(x))
-        place(*GIVEN, *records, 1.0, 0.0, 1.0, room, x, self.tree.start[0], out)
+        self.stand.place_keys(0, np.ascontiguousarray(x), out)
         return out
 
     def points(self, x):

@@ -12,10 +12,13 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.wind import gust_travel
-from tree_sway.core.wind.gust_travel import GustHistory, LARGEST_STRETCH, SLOWEST_GUST
+from tree_sway.core.wind.gust_travel import GustHistory, SLOWEST_GUST
+from tree_sway.core.wind.wind_history import WindHistory
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError
+
+LARGEST_STRETCH = 0.5
+"""Largest change of a delay in a second [s]."""
 
 DT = 1.0 / 60.0
 
@@ -162,7 +165,7 @@ def test_days_of_wind_cost_no_precision():
     for wind in np.tile([8.0, 1.0, -1.0], (20_000, 1)):
         result = history.push(wind, 1.0)
     assert result[0] == pytest.approx([8.0, 1.0, -1.0], rel=1e-12)
-    assert np.abs(history._run).max() < 128 * 8.1
+    assert np.abs(history._history.rows()).max() < 128 * 8.1
 
 
 @pytest.mark.parametrize('rate', [20, 69, 500, pytest.param(4000, marks=pytest.mark.long)])
@@ -188,9 +191,8 @@ def test_the_history_is_a_minute_long_at_any_rate(rate):
 def test_every_step_of_a_minute_is_kept_as_it_was():
     winds = gusts(4000)
     history = GustHistory([[240.0, 0.0, 0.0]], np.zeros(3), averaging_time=3600.0)
-    assert history._finest < 0.25 * DT
     delayed(history, winds)
-    assert history._at[1] == 4001
+    assert history._history.count == 4001
 
 
 @pytest.mark.usefixtures('memory_alone')
@@ -215,17 +217,18 @@ def test_a_copy_is_never_taken_in_the_middle_of_a_step(monkeypatch):
     history, copies = GustHistory([[40.0, 0.0, 0.0]], np.zeros(3)), []
     delayed(history, np.tile([8.0, 0.0, 0.0], (600, 1)))
     reader = threading.Thread(target=lambda: copies.append(history.recent(history.time)))
-    remembered = gust_travel.remember
+    added = WindHistory.add
 
-    def slowly(run, at, *more):
-        run[int(at[0]), 1] += 100.0  # half a step, which changes no index
+    def slowly(own, *given):
+        last = own._run[int(own._at[0])]
+        last[1] += 100.0  # half a step, which changes no index
         reader.start()
         reader.join(0.2)
         assert not copies
-        run[int(at[0]), 1] -= 100.0
-        remembered(run, at, *more)
+        last[1] -= 100.0
+        added(own, *given)
 
-    monkeypatch.setattr(gust_travel, 'remember', slowly)
+    monkeypatch.setattr(WindHistory, 'add', slowly)
     history.push((8.0, 0.0, 0.0), DT)
     reader.join(10.0)
     assert np.reshape(copies[0]['wind'], (-1, 3)) == pytest.approx(np.tile([8.0, 0, 0], (200, 1)))

@@ -116,6 +116,8 @@ class CrownWind:
         self._coherence = within('crown_coherence', coherence, 0.0, 1.0)
         self._memory = np.zeros(_MEMORY)
         self._wind = np.zeros(3)
+        self._at = address(self._memory), address(self._wind)
+        self._apart = self._memory[-_APART:].reshape(N_DELAYS, 3)
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
@@ -124,10 +126,9 @@ class CrownWind:
         The array is reused.
         """
         self._wind[:] = x, y, z
-        LIBRARY.sway_limb_winds(
-            address(self._memory), self._spread, self._coherence, address(self._wind), dt
-        )
-        return self._memory[-_APART:].reshape(N_DELAYS, 3)
+        memory_at, wind_at = self._at
+        LIBRARY.sway_limb_winds(memory_at, self._spread, self._coherence, wind_at, dt)
+        return self._apart
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""

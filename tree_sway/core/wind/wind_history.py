@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.library import address, LastAddress, LIBRARY
 
 
 class WindHistory:
@@ -37,6 +37,8 @@ class WindHistory:
         # Two consecutive steps are together longer than this, so that all are longer than the
         # longest delay and the steps at its ends.
         self._finest = 2.0 * longest / (capacity - 4)
+        self._memory_at = address(self._memory)
+        self._given_at = tuple(LastAddress() for _ in range(4))
 
     def add(self, wind: Floats, dt: float, wanted: Floats, delay: Floats, out: Floats) -> None:
         """
@@ -44,9 +46,10 @@ class WindHistory:
 
         Delays (t,) [s] move towards those wanted, (t,); the past wind of each is written, (t, 3).
         """
+        wanted_at, delay_at, wind_at, out_at = self._given_at
         LIBRARY.sway_past_winds(
-            address(self._memory), len(self._run), self._finest, address(wanted), address(delay),
-            len(delay), self._longest, address(wind), dt, address(out),
+            self._memory_at, len(self._run), self._finest, wanted_at.of(wanted),
+            delay_at.of(delay), len(delay), self._longest, wind_at.of(wind), dt, out_at.of(out),
         )  # fmt: skip
 
     @property
