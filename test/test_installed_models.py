@@ -30,7 +30,7 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> dict[str, EntryPoint]:
     return points
 
 
-def mine(model, branches, plain):
+def mine(model, branches):
     """Make a model of this file: a tree that does not move."""
     return RigidBank(branches, model)
 

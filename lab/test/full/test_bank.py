@@ -14,6 +14,7 @@ from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
+from tree_sway_lab.full.bank import Air
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
@@ -36,7 +37,7 @@ def test_each_mode_decays_as_an_oscillator_of_its_own(fork):
     bank = modal(fork(), damping_ratio=0.05)
     bank.modal[0] = 1e-7
     for _ in range(240):
-        bank.advance(0.0, 0.0, 0.0, DRAG)
+        bank.advance_in(Air(0.0, 0.0, 0.0, DRAG))
     w, t = np.sqrt(bank.stiffness), 240 * DT
     wd = w * np.sqrt(1 - 0.05**2)
     exact = np.exp(-0.05 * w * t) * (np.cos(wd * t) + 0.05 * w / wd * np.sin(wd * t))
@@ -47,7 +48,7 @@ def test_steady_wind_gives_the_static_answer(fork):
     tree = fork()
     bank = modal(tree, damping_ratio=0.7)
     for _ in range(3000):
-        bank.advance(1.0, 0.5, 0.2, DRAG)
+        bank.advance_in(Air(1.0, 0.5, 0.2, DRAG))
     x, moment = bank.rotations().copy(), bank.state[0].copy()
     truth = spsolve(stiffness_of(tree), moment)
     assert np.abs(x - truth).max() < 1e-6 * np.abs(truth).max()
@@ -56,14 +57,14 @@ def test_steady_wind_gives_the_static_answer(fork):
 def test_no_motion_without_load(fork):
     bank = modal(fork())
     for _ in range(20):
-        assert bank.advance(0.0, 0.0, 0.0, DRAG) == 0
+        assert bank.advance_in(Air(0.0, 0.0, 0.0, DRAG)) == 0
     assert not bank.rotations().any()
 
 
 def test_moments_beyond_the_limit_are_held_and_counted(fork):
     bank = modal(fork(), model='full')
-    assert bank.advance(5.0, 2.0, 0.0, DRAG) == 0
-    assert sum(bank.advance(5.0, 2.0, 0.0, 1e12) for _ in range(300)) > 0
+    assert bank.advance_in(Air(5.0, 2.0, 0.0, DRAG)) == 0
+    assert sum(bank.advance_in(Air(5.0, 2.0, 0.0, 1e12)) for _ in range(300)) > 0
     assert np.isfinite(bank.rotations()).all()
 
 
@@ -95,9 +96,9 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
 def test_reset_forgets_everything(fork):
     bank, fresh = modal(fork()), modal(fork())
     for k in range(20):
-        bank.advance(9.0, 1.0 * k, 0.0, DRAG)
+        bank.advance_in(Air(9.0, 1.0 * k, 0.0, DRAG))
     bank.reset()
     for _ in range(5):
         for one in (bank, fresh):
-            one.advance(3.0, 1.0, 0.0, DRAG)
+            one.advance_in(Air(3.0, 1.0, 0.0, DRAG))
     assert bank.rotations().tobytes() == fresh.rotations().tobytes()
