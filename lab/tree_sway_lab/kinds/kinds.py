@@ -86,6 +86,50 @@ def _birch(seed: int) -> Tree:
     return to.tree(f'birch {seed}')
 
 
+def _bamboo(seed: int) -> Tree:
+    """Draw six culms of 3.5 to 5.5 m from one foot, a 200th as thick, with twigs of 4 mm."""
+    to = Drawing(np.random.default_rng(seed))
+    foot = to.shoot(_UP, 0.2, (0.3, 0.28), 1)
+    for k in range(6):
+        length = to.rng.uniform(3.5, 5.5)
+        culm = to.shoot(
+            towards(60.0 * k + to.rng.uniform(-15.0, 15.0), to.rng.uniform(74.0, 86.0)), length,
+            (length / 200.0, length / 600.0), 12, on=foot, wander=1.5,
+        )  # fmt: skip
+        for node in (5, 7, 9, 11):
+            to.shoot(
+                towards(to.rng.uniform(0.0, 360.0), 35.0), to.rng.uniform(0.4, 0.7),
+                (0.004, 0.0018), 4, on=culm, node=node, wander=4.0,
+            )  # fmt: skip
+    return to.tree(f'bamboo {seed}')
+
+
+def _shoots(seed: int) -> Tree:
+    """Draw a stump with sixteen shoots of one year, 1.2 to 2 m long and 4 to 7 mm thick."""
+    to = Drawing(np.random.default_rng(seed))
+    stem = to.shoot(_UP, 1.6, (0.16, 0.14), 3)
+    for k in range(16):
+        length = to.rng.uniform(1.2, 2.0)
+        to.shoot(
+            towards(k * _GOLDEN, to.rng.uniform(40.0, 80.0)), length,
+            (0.0035 * length, 0.0014 * length), 8, on=stem, rise=2.0, wander=2.0,
+        )  # fmt: skip
+    return to.tree(f'shoots {seed}')
+
+
+def _reeds(seed: int) -> Tree:
+    """Draw ten stalks of 1.5 to 2.5 m from one foot, a 260th as thick, that carry nothing."""
+    to = Drawing(np.random.default_rng(seed))
+    foot = to.shoot(_UP, 0.1, (0.2, 0.2), 1)
+    for k in range(10):
+        length = to.rng.uniform(1.5, 2.5)
+        to.shoot(
+            towards(k * _GOLDEN, to.rng.uniform(70.0, 87.0)), length,
+            (length / 260.0, length / 500.0), 10, on=foot, wander=2.0,
+        )  # fmt: skip
+    return to.tree(f'reeds {seed}')
+
+
 def _limbs(count: int, seed: int) -> Tree:
     """Draw a stem with limbs that carry nothing, no two alike."""
     to = Drawing(np.random.default_rng(seed))
@@ -227,6 +271,9 @@ def _aside(rng: np.random.Generator, along: np.ndarray) -> np.ndarray:
 KINDS: dict[str, Callable[[int], Tree]] = {
     'willow': _willow,
     'birch': _birch,
+    'bamboo': _bamboo,
+    'shoots': _shoots,
+    'reeds': _reeds,
     'limbs2': partial(_limbs, 2),
     'limbs4': partial(_limbs, 4),
     'limbs8': partial(_limbs, 8),
@@ -249,3 +296,6 @@ HANGING = ('willow', 'birch')
 
 FLEXIBLE = (*HANGING, 'whips')
 """Kinds of twigs that turn by a right angle in fresh wind."""
+
+SLENDER = ('bamboo', 'shoots', 'reeds')
+"""Kinds that bend to the ground in a storm."""

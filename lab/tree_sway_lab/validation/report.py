@@ -28,9 +28,9 @@ from tree_sway.files.whole_file import write_text_whole
 from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
-    'kinds', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
-    'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'held_out', 'forestgales',
-    'broadleaves', 'battery', 'paper',
+    'kinds', 'storms', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans',
+    'still_air', 'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'held_out',
+    'forestgales', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 

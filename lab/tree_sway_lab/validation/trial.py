@@ -59,6 +59,10 @@ class Trial(NamedTuple):
         in other winds.
     stride, true_stride
         Largest move of a tip in any frame in [m].
+    lowest, true_lowest
+        Height of the lowest tip in any frame over the root in [m].
+    clamped
+        How many loads or steps the model clamped.
     cost
         CPU time to step and to place a frame in [us], which one frame in ten stays below; of
         MuJoCo without the wind's force, which is no part of it.
@@ -74,6 +78,9 @@ class Trial(NamedTuple):
     true_jump: float
     stride: float
     true_stride: float
+    lowest: float
+    true_lowest: float
+    clamped: int
     cost: float
 
 
@@ -96,7 +103,7 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
     tree, blowing = kind_called(kind), wind_called(wind, SECONDS)
     truth = true_tips(tree, blowing, fineness)
     run = _run_of_mujoco if model == MUJOCO else _run_of_ours
-    tips, cost = run(kind, model, blowing)
+    tips, cost, clamped = run(kind, model, blowing)
     tips = tips[: len(truth)]
     strides, true_strides = _strides(tips), _strides(truth)
     jumps = math.nan, math.nan
@@ -111,6 +118,9 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
         *jumps,
         float(strides.max()),
         float(true_strides.max()),
+        float(tips[:, :, 2].min() - tree.start[0, 2]),
+        float(truth[:, :, 2].min() - tree.start[0, 2]),
+        clamped,
         cost,
     )
 
@@ -120,20 +130,23 @@ def has_mujoco() -> bool:
     return importlib.util.find_spec(MODULES[MUJOCO]) is not None
 
 
-def _run_of_ours(kind: str, model: str, wind: Floats) -> tuple[Floats, float]:
-    """Tips (t, b, 3) in [m] and cost [us] of a model in a wind."""
+def _run_of_ours(kind: str, model: str, wind: Floats) -> tuple[Floats, float, int]:
+    """Tips (t, b, 3) in [m], cost [us] and clamped loads of a model in a wind."""
     tree, simulator = kind_called(kind), _simulator(kind, model)
     simulator.reset()
-    return record_tips(simulator, tree, wind, FRAME), frame_cost(simulator, tree, wind)
+    before = simulator.counts.clamped
+    tips = record_tips(simulator, tree, wind, FRAME)
+    clamped = simulator.counts.clamped - before
+    return tips, frame_cost(simulator, tree, wind), clamped
 
 
-def _run_of_mujoco(kind: str, _: str, wind: Floats) -> tuple[Floats, float]:
+def _run_of_mujoco(kind: str, _: str, wind: Floats) -> tuple[Floats, float, int]:
     """Tips (t, b, 3) in [m] and cost [us] of MuJoCo with a joint a segment and a step a frame."""
     runs = run_engines(
         kind_called(kind), WOOD, DAMPING_RATIO, wind, gravity=GRAVITY, match_beam=False,
         names=(MUJOCO,),
     )  # fmt: skip
-    return runs[MUJOCO].tips, 1e6 * runs[MUJOCO].cost
+    return runs[MUJOCO].tips, 1e6 * runs[MUJOCO].cost, 0
 
 
 @lru_cache(maxsize=4)

@@ -10,6 +10,7 @@ import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.kinds.shoots import Drawing, towards
 from tree_sway_lab.tip_error import record_tips, roughness, tip_error
+from tree_sway_lab.validation.trial import tried
 from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, true_tips, WOOD
 from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
@@ -17,7 +18,7 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.limp_tree import LimpStep, LONGEST_STEP, SLACK
+from tree_sway.core.run.limp_tree import FASTEST_TURN, LimpStep, LONGEST_PART, SLACK
 from tree_sway.core.run.pose_inertia import (
     centrifugal_force,
     COLUMNS,
@@ -78,11 +79,9 @@ def step_of(sim) -> LimpStep:
     return oscillators
 
 
-def by_table(sim):
-    """Make a tree take the step of the table, as it does in a storm."""
-    step = step_of(sim)
-    step.share_of_other = lambda speed: 1.0
-    return sim
+def by_table():
+    """Make the tree take the step of the table."""
+    return SwaySimulator(replace(limp_model(), segment_mass=np.zeros(0)))
 
 
 def test_only_trees_whose_twigs_hang_or_whip_are_limp():
@@ -116,7 +115,7 @@ def test_it_is_nearer_to_the_truth_than_the_table(speed):
     tree = weeping()
     truth = record_tips(true_model(tree, QUICK), tree, wind, FRAME, substeps=QUICK.substeps)
     error = tip_error(tree, record_tips(limp_tree(), tree, wind, FRAME), truth)
-    table = tip_error(tree, record_tips(by_table(limp_tree()), tree, wind, FRAME), truth)
+    table = tip_error(tree, record_tips(by_table(), tree, wind, FRAME), truth)
     print(f'{speed:g} m/s: error {error:.3f}, by the table {table:.3f}')
     assert error < 0.75 * table
 
@@ -184,7 +183,7 @@ def test_without_wind_and_damping_the_energy_never_grows():
         step.advance(0.0, 0.0, 0.0, 0.0)  # no air either
         eta, rate = instance['eta'][:m], instance['rate'][:m]
         energies.append(kinetic_energy(step, rate) + potential(sim, eta))
-    assert step._pause == 0.0
+    assert sim.counts.clamped == 0
     assert max(energies) <= (1.0 + 2.0 * SLACK) * energies[0]
     assert energies[60] > 0.3 * energies[0]  # and does not stop
 
@@ -199,9 +198,9 @@ def test_nothing_makes_it_run_away(case):
     elif case == 'gusts':
         wind = rng.normal(0.0, 20.0, wind.shape)
     elif case == 'uneven steps':
-        steps = rng.uniform(1e-3, 2.0 * LONGEST_STEP, len(wind))
+        steps = rng.uniform(1e-3, 2.0 * LONGEST_PART, len(wind))
     elif case == 'long steps':
-        steps[:] = LONGEST_STEP
+        steps[:] = LONGEST_PART
     for frame, (blowing, dt) in enumerate(zip(wind, steps, strict=True)):
         if case == 'tuned' and frame % 60 == 0:
             sim.tune(stiffness_factor=rng.uniform(0.8, 3.0), gravity=rng.uniform(5.0, 12.0))
@@ -257,9 +256,47 @@ def test_each_segment_has_the_gust_that_reaches_its_limb():
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize('kind', ['reeds 201', 'shoots 202', 'whips 203', 'bamboo 204'])
+@pytest.mark.parametrize('speed', ['25', '40'])
+def test_it_moves_in_storms_as_the_truth_does(kind, speed):
+    one = tried(kind, speed, 'default', QUICK if speed == '25' else FINE)
+    print(one)
+    assert one.error < 0.2
+    assert 0.7 < one.roughness < 1.5
+    # A gale of 40 m/s that comes at once throws reeds to the ground in 8 frames.
+    assert one.lowest > one.true_lowest - (0.05 if speed == '25' else 0.2)
+    assert one.stride < 2.0 * one.true_stride
+    assert one.clamped < 5
+
+
+def test_a_long_step_is_taken_in_parts():
+    at_once, apart = limp_tree(), limp_tree()
+    for _ in range(5):
+        at_once.step((6.0, 2.0, 0.0), 4.0 * LONGEST_PART)
+        for _ in range(4):
+            apart.step((6.0, 2.0, 0.0), LONGEST_PART)
+    np.testing.assert_allclose(at_once.place(), apart.place(), atol=1e-9)
+    at_once.step((6.0, 2.0, 0.0), 1e6)
+    assert np.isfinite(at_once.place()).all()
+
+
+def test_a_branch_that_would_turn_too_fast_is_bounded_and_counted():
+    sim = limp_tree()
+    for blowing in turbulent(25.0, 1.0, 5):
+        sim.step(blowing, FRAME)
+    assert sim.counts.clamped == 0
+    step = step_of(sim)
+    by_key = step.limp_motion.by_key
+    _, rates, _ = step.swing
+    rates *= 3.0 * FASTEST_TURN / np.abs(by_key @ rates).max()
+    sim.step((25.0, 0.0, 0.0), FRAME)
+    assert sim.counts.clamped == 1
+    assert np.abs(by_key @ rates).max() <= (1.0 + 1e-9) * FASTEST_TURN
+
+
+@pytest.mark.compiled
 @pytest.mark.parametrize('kind', ['birch', 'whips'])
 def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
-    """The table steps it there, from rest in the linear load of light shapes."""
     tree, wind = kind_called(kind), wind_called('80', 0.5)
     truth = record_tips(true_model(tree, QUICK), tree, wind[:3], FRAME, substeps=QUICK.substeps)
     tips = record_tips(make_simulator(tree, WOOD, SETTINGS), tree, wind, FRAME)
@@ -334,7 +371,7 @@ def test_a_renewal_keeps_the_kinetic_energy(swaying):
     assert kinetic_energy(step, rate) != pytest.approx(before, rel=1e-3)
     step.middles.fill(step.pose.turned, step.pose.placed, COLUMNS + 14)
     before = kinetic_energy(step, rate)
-    assert renew_columns(step.pose, 14, 14, eta, rate) == pytest.approx(2.0 * before)
+    renew_columns(step.pose, 14, 14, eta, rate)
     assert kinetic_energy(step, rate) == pytest.approx(before, rel=1e-12)
 
 

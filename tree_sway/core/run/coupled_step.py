@@ -36,7 +36,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.kernel import part
 from tree_sway.core.run.dense import dot, multiply, solve_positive, take_block
-from tree_sway.core.run.modal_coordinates import ModalCoordinates
+from tree_sway.core.run.table_model import middle_of_step, Propagators
 
 FASTEST = 2.5
 """
@@ -80,17 +80,15 @@ class CoupledStep(NamedTuple):
 
 
 def coupled_step(
-    modal: ModalCoordinates, half: Floats, damping: Floats, leading: int, length: float
+    over: Propagators, damping: Floats, leading: int, length: float
 ) -> CoupledStep:
     """
     Find the coefficients of a step.
 
     Parameters
     ----------
-    modal
+    over
         Coordinates, with the propagators of this step.
-    half
-        Coefficients of half a step, as in `table_model.fill_time_step`, (6, m).
     damping
         Damping of each coordinate by the air at rest for a drag of 1, (m,).
     leading
@@ -99,9 +97,9 @@ def coupled_step(
         Length of the step, h, in [s].
 
     """
-    whole = modal.whole.T[[0, 1, 2, 4, 5, 6]]
-    whole[[2, 5]] += modal.whole.T[[3, 7]]
-    angle = np.sqrt(modal.stiffness[:leading]) * length
+    whole = over.whole.T[[0, 1, 2, 4, 5, 6]]
+    whole[[2, 5]] += over.whole.T[[3, 7]]
+    angle = np.sqrt(over.stiffness[:leading]) * length
     coupled = np.flatnonzero(angle < FASTEST)
     half_angle = np.maximum(0.5 * angle[coupled], 1e-12)
     stretch = np.tan(half_angle) / half_angle
@@ -109,7 +107,7 @@ def coupled_step(
     count = len(coupled)
     return CoupledStep(
         length,
-        half=np.ascontiguousarray(half),
+        half=np.ascontiguousarray(middle_of_step(over, length)),
         whole=np.ascontiguousarray(whole),
         coupled=coupled,
         stretch=stretch,

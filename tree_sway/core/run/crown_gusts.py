@@ -65,10 +65,8 @@ class CrownGusts:
         if oscillators.loads is not None:
             into_slots(apart[self._delay], oscillators.loads['gust'])
             return int(oscillators.advance(x, y, z, per_speed_squared))
-        if isinstance(oscillators, LimpBank):
-            speed = math.sqrt(x * x + y * y + z * z)
-            if oscillators.takes_gusts(apart[self._delay], speed):
-                return int(oscillators.advance(x, y, z, per_speed_squared))
+        if isinstance(oscillators, LimpBank) and oscillators.takes_gusts(apart[self._delay]):
+            return int(oscillators.advance(x, y, z, per_speed_squared))
         mean = (self._share @ apart).tolist()
         in_mean = x + mean[0], y + mean[1], z + mean[2]
         outcome = int(oscillators.advance(*in_mean, per_speed_squared))

@@ -8,10 +8,10 @@ Its coordinates are those of the model with a table. Their load is that of every
 
     M(q) q'' + C q' + K q = F(wind, q, q') - centrifugal force + weight beyond the linear.
 
-`coupled_step` solves it. **The table takes over** in storms, in long steps, of trees of which
-coordinates are hidden, and for a second after a step that would have turned a branch too far: its
-step is stable in any wind. Trees of a stand are stepped by the table too. The laboratory's model
-`full` takes this step on all coordinates, and in place of a table the load on every branch.
+`coupled_step` solves it, in any wind. A longer step is taken in parts. A part that would turn a
+branch too fast is bounded and counted as clamped. Trees of which coordinates are hidden, and those
+of a stand, are stepped by their table. The laboratory's model `full` takes this step on all
+coordinates.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
 from tree_sway.core.run.dense import copy, largest, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
-from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
+from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import (
     AHEAD,
@@ -57,27 +57,26 @@ from tree_sway.core.run.segment_drag import (
     segment_drag,
     SegmentDrag,
 )
-from tree_sway.core.run.table_model import WindBasisBank
-from tree_sway.core.vector import Vector
+from tree_sway.core.run.table_model import Propagators, WindBasisBank
 
-STRONG = 20.0, 25.0
+LONGEST_PART, SHORTEST_PART, PART_IN_STORM = 0.04, 1.0 / 240.0, 5.0
 """
-Winds [m/s] between which the step goes over to that of the table: in storms twigs stream along the
-wind, and this step was not tried there.
-"""
-
-LONGEST_STEP, MOST_TURN = 0.04, 1.0
-"""Longest step [s] at the pose, and the largest rotation of a branch in it [rad]."""
-
-MOST_TURN_BY_TABLE = 0.5
-"""
-The same of a step of the table, to which it is bounded: in a storm that comes at once light shapes
-of twigs would outrun the wind. In 80 m/s whips are then 0.50 from the truth in 6 s, formerly 0.56,
-and birch 0.52 in the 3 frames that have a truth, formerly 0.36.
+Longest part of a step [s]; in strong wind it is the last [m^2/s] over the square of the speed, but
+no shorter than the second. In longer ones whips rattle, for the drag of a step is found at the
+motion that the last step's force predicts.
 """
 
-PAUSE = 1.0
-"""Time [s] that the table steps after a step that would have turned a branch too far."""
+MOST_PARTS = 1000
+"""Largest number of parts of a step."""
+
+FASTEST_TURN = 40.0
+"""
+Largest rate of the rotation of a branch [rad/s]: without it twigs outrun a storm of 80 m/s that
+comes at once. Turbulence up to 30 m/s does not reach it.
+"""
+
+NOT_FINITE = -1
+"""Result of a step after which the motion is not finite."""
 
 SLACK = 0.05
 """
@@ -137,25 +136,14 @@ def motion_of(model: SwayModel, leading: int) -> LimpMotion:
 
 
 class LimpStep:
-    """
-    What a limp tree does in place of another step; a base of a bank of that step.
-
-    The bank gives the step its coordinates (`take_step`), and makes the other one.
-    """
+    """The step of a limp tree, a base of the bank that has its coordinates."""
 
     is_plain: bool
     branches: Records
     leading = LEADING
     """Largest number of coordinates whose inertia is that of the pose."""
-    most_energy = math.inf
-    """Twice the energy [J] that no step gives; the work of the wind bounds it as well."""
-
-    def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Make the other step; returns a number above 0 where it was clamped to its limit."""
-        raise NotImplementedError
-
-    def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
-        """Note the wind of a step at the pose that is taken alone."""
+    longest_part = LONGEST_PART
+    """Longest part of a step [s]."""
 
     def begin(self, model: SwayModel, bank: Bank) -> None:
         """Prepare the law of a model, by a bank that places it."""
@@ -168,13 +156,13 @@ class LimpStep:
         self.segments = segment_drag(model, self.branches, self.middles.tangent)
         self._drag = damping_at_rest(self.segments, self.pose.columns_at_rest)
         """Damping of each coordinate by still air, per drag and speed, (m,)."""
-        self._law: CoupledStep | None = None
+        self._laws: dict[int, CoupledStep] = {}
+        """Coefficients by the number of parts of a step."""
         self._entries: dict[Callable[..., Any], Callable[..., Any]] = {}
         self.begin_anew()
 
     def begin_anew(self) -> None:
         """Return to rest; what the bank has of the state is its own."""
-        self._pause = 0.0
         self._next_column = 0
         self.limp_motion.last_eta[:] = 0.0
         self.limp_motion.last_rate[:] = 0.0
@@ -185,23 +173,16 @@ class LimpStep:
         """Bound the energy from the next step on: something else than the wind has changed it."""
         self._allowed = math.inf
 
-    def take_step(
-        self, modal: ModalCoordinates, half: Floats, swing: tuple[Floats, ...], wanted: Floats,
-        dt: float,
-    ) -> None:  # fmt: skip
+    def take_step(self, modal: ModalCoordinates, swing: tuple[Floats, ...], dt: float) -> None:
         """
-        Take the coefficients of a time step [s].
+        Take a time step.
 
         Parameters
         ----------
         modal
-            Coordinates, with the propagators of this step.
-        half
-            Coefficients of half a step, (6, m).
+            Coordinates.
         swing
             Memory of coordinates, rates and forces, (m,).
-        wanted
-            Memory for the force of wind and weight, (m,).
         dt
             Length of the step [s].
 
@@ -209,76 +190,57 @@ class LimpStep:
         if not np.array_equal(modal.stiffness, self.limp_motion.stiffness):
             self.limp_motion.stiffness[:] = modal.stiffness
             self._forget()
-        self._law = coupled_step(modal, half, self._drag, len(self.pose.change), dt)
+        self._modal = modal
+        self._dt = dt
+        self._laws.clear()
         eta, rate, force = swing
-        self.limp_motion = self.limp_motion._replace(
-            eta=eta, rate=rate, force=force, wanted=wanted
-        )
+        self.limp_motion = self.limp_motion._replace(eta=eta, rate=rate, force=force)
 
-    def step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Step in a wind [m/s]; returns what the other step does, 0 where it was not made."""
+    def n_parts(self, speed: float) -> int:
+        """Return in how many parts a step is taken in a wind [m/s]."""
+        in_storm = PART_IN_STORM / max(speed * speed, 1.0)
+        longest = min(self.longest_part, max(in_storm, SHORTEST_PART))
+        return math.ceil(min(max(self._dt / longest - 1e-9, 1.0), MOST_PARTS))
+
+    def _law_of(self, n_parts: int) -> CoupledStep:
+        """Return the coefficients of a part of a step."""
+        law = self._laws.get(n_parts)
+        if law is None:
+            part = self._dt / n_parts
+            modal = self._modal
+            over = Propagators(modal.damping, modal.stiffness, *modal.propagators(part))
+            law = coupled_step(over, self._drag, len(self.pose.change), part)
+            self._laws[n_parts] = law
+        return law
+
+    def step_at_pose(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """
+        Step with the inertia and the loads of the pose in a wind [m/s].
+
+        Returns how many of its parts were bounded, or `NOT_FINITE`.
+        """
         speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        share = self.share_of_other(speed)
-        law = self._law
-        if share == 1.0 or law is None:
-            self._forget()
-            return self.step_otherwise(wx, wy, wz, per_speed_squared)
-        if not self._step_at_pose(law, (wx, wy, wz), speed, per_speed_squared):
-            self._pause = PAUSE
-            self._forget()
-            return self.step_otherwise(wx, wy, wz, per_speed_squared)
-        outside = 0
-        if share > 0.0:
-            self._forget()
-            outside = self.step_otherwise(wx, wy, wz, per_speed_squared)
-        else:
-            self.note_wind(wx, wy, wz, per_speed_squared)
-        self._take(share)
-        return outside
-
-    def _take(self, share: float) -> None:
-        """Take the step at the pose, but for the share of the other step."""
-        motion = self.limp_motion
-        state = (motion.eta, motion.rate, motion.force)
-        new = (*motion.new, motion.new_force)
-        for now, own in zip(state, new, strict=True):
-            now[:] = own if share == 0.0 else own + share * (now - own)
-        motion.last_eta[:], motion.last_rate[:] = motion.eta, motion.rate
-
-    def share_of_other(self, speed: float) -> float:
-        """Weight of the other step in a wind [m/s], 0 to 1."""
-        if self._law is None or self._law.length > LONGEST_STEP:
-            return 1.0
-        self._pause = max(0.0, self._pause - self._law.length)
-        by_wind = (speed - STRONG[0]) / (STRONG[1] - STRONG[0])
-        return min(max(by_wind, self._pause / PAUSE, 0.0), 1.0)
-
-    def _step_at_pose(
-        self, law: CoupledStep, wind: Vector, speed: float, per_speed_squared: float
-    ) -> bool:
-        """
-        Find coordinates, rates and force after a step with the inertia and the loads of the pose.
-
-        Returns False where the step gives more energy than any wind does, or turns a branch too
-        far.
-        """
+        n_parts = self.n_parts(speed)
+        law = self._law_of(n_parts)
         pose = self.pose
         motion = self.limp_motion
-        first = self._next_column
-        count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
-        if is_disturbed:
-            self._forget()
-        self._next_column = (first + count) % len(pose.columns)
-        self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
-        load = per_speed_squared, per_speed_squared * speed
-        is_possible: bool = self._run(
-            _step_from_middle, law, pose, motion, self.segments, first, count, ahead, *wind,
-            *load, self.most_energy,
-        )  # fmt: skip
-        if is_possible:
+        air = wx, wy, wz, per_speed_squared, speed
+        n_bounded = 0
+        for _ in range(n_parts):
+            first = self._next_column
+            count, ahead, is_disturbed = self._run(_turn_to_middle, law, pose, motion, first)
+            if is_disturbed:
+                self._forget()
+            self._next_column = (first + count) % len(pose.columns)
+            self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
+            n_bounded += self._run(
+                _step_from_middle, law, pose, motion, self.segments, first, count, ahead, *air
+            )
             self.middles.fill(pose.turned, pose.placed, 1)
-            self._allowed = self._run(_bound_energy, pose, motion, self._allowed)
-        return is_possible
+            self._allowed = self._run(_end_step, pose, motion, self._allowed)
+            if math.isnan(self._allowed):
+                return NOT_FINITE
+        return n_bounded
 
     def _run(self, kernel: Any, *arguments: Any) -> Any:
         """Run a kernel, as plain Python on a tree in numpy."""
@@ -290,24 +252,16 @@ class LimpStep:
 
 
 class LimpBank(LimpStep, WindBasisBank):
-    """A limp tree whose other step is that of a table."""
-
-    def begin(self, model: SwayModel, bank: Bank) -> None:
-        """Prepare the law of a model, by a bank that places it."""
-        super().begin(model, bank)
-        self.most_energy = model.most_energy
+    """A limp tree that has a table, by which it is stepped where coordinates are hidden."""
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
+        self.take_step(self.modal, self.swing, dt)
         super().set_step(dt)
-        m = len(self.modal.stiffness)
-        half = self.time_step[0]['half'][:, :m]
-        # Gusts that reach the limbs one after another are added by the force of the step.
-        self.take_step(self.modal, half, self.swing, self.instance['wanted'][0, :m], dt)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `WindBasisBank.advance`."""
-        return self.step_outside() if self.step_once(wx, wy, wz, per_speed_squared) else 0
+        return self.step_outside() if self._step_once(wx, wy, wz, per_speed_squared) else 0
 
     def stepping(
         self, wind: Floats, max_wind: float, law: DragLaw
@@ -329,57 +283,34 @@ class LimpBank(LimpStep, WindBasisBank):
             stored[:] = x, y, z
         wx, wy, wz = stored.tolist()
         load = drag_density(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
-        return int(is_refused) + 2 * self.step_once(wx, wy, wz, load)
+        return int(is_refused) + 2 * self._step_once(wx, wy, wz, load)
 
-    def share_of_other(self, speed: float) -> float:
-        """Weight of the table's step in a wind [m/s], 0 to 1."""
-        return 1.0 if self.instance['left_out'][0] else super().share_of_other(speed)
-
-    def takes_gusts(self, gusts: Floats, speed: float) -> bool:
-        """
-        Take the wind of each branch beside the mean wind [m/s], (b, 3), for the next step.
-
-        Returns False where a part of this step is by the table, which has uniform winds only.
-        """
-        is_by_table = self.instance['left_out'][0] or self._pause > 0.0 or speed > STRONG[0]
-        is_long = self._law is None or self._law.length > LONGEST_STEP
-        is_at_pose = not (is_by_table or is_long)
-        self.segments.gust[:] = gusts[self.segments.branch] if is_at_pose else 0.0
-        return is_at_pose
-
-    def step_otherwise(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Make the step of the table; returns 1 where it was clamped to its limit."""
-        eta, rate, _ = self.swing
-        before = eta.copy()
-        rotations = self.rotations().copy()
-        outside = int(self._step(wx, wy, wz, per_speed_squared))
-        turned = largest(self.rotations() - rotations)
-        if turned > MOST_TURN_BY_TABLE:
-            share = MOST_TURN_BY_TABLE / turned
-            eta[:] = before + share * (eta - before)
-            rate *= share
-        return outside
-
-    def note_wind(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
-        """Note the wind of a step at the pose that is taken alone."""
+    def _step_once(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> bool:
+        """Step in a wind [m/s]; returns whether the step was clamped, or is not finite."""
+        if self.instance['left_out'][0]:
+            return bool(self._step(wx, wy, wz, per_speed_squared))
+        is_clamped = self.step_at_pose(wx, wy, wz, per_speed_squared) != 0
         instance = self.instance[0]
         instance['wind'] = (wx, wy, wz)
         instance['drag_density'] = per_speed_squared
-        instance['outside'] = 0
+        instance['outside'] = is_clamped
         instance['diagonal'] = 0.0
+        return is_clamped
+
+    def takes_gusts(self, gusts: Floats) -> bool:
+        """
+        Take the wind of each branch beside the mean wind [m/s], (b, 3), for the next step.
+
+        Returns False where this step is by the table, which has uniform winds only.
+        """
+        if self.instance['left_out'][0]:
+            return False
+        self.segments.gust[:] = gusts[self.segments.branch]
+        return True
 
 
 class NumpyLimpBank(LimpBank, NumpyTableBank):
     """A limp tree in numpy."""
-
-
-@part
-def _strain_energy(motion: LimpMotion, eta: Floats) -> float:
-    """Return twice the energy of strain [J] at coordinates (m,)."""
-    energy = 0.0
-    for i in range(len(eta)):
-        energy += motion.stiffness[i] * eta[i] * eta[i]
-    return energy
 
 
 @fused
@@ -421,22 +352,20 @@ def _turn_to_middle(
 def _step_from_middle(
     law: CoupledStep, pose: PoseInertia, motion: LimpMotion, segments: SegmentDrag, first: int,
     count: int, ahead: float, wx: float, wy: float, wz: float, per_speed_squared: float,
-    drag: float, most_energy: float,
+    speed: float,
 ) -> bool:  # fmt: skip
     """
     Step under the load of the middle, where the tree is placed.
 
-    Returns whether the step gives no more energy than any wind [J], and turns no branch too far.
+    Returns whether it would turn a branch too fast: then it goes a share of the way.
     """
     eta = motion.eta
-    rate = motion.rate
     new_eta = motion.new[0]
     new_rate = motion.new[1]
-    strain = _strain_energy(motion, eta)
-    copy(rate, new_rate)
+    copy(motion.rate, new_rate)
     per_time = 0.5 / ahead if ahead > 0.0 else 0.0
     fill_drag(segments, pose.placed[AHEAD], pose.placed[BEHIND], per_time, wx, wy, wz)
-    kinetic = renew_columns(pose, first, count, motion.middle[0], new_rate)
+    renew_columns(pose, first, count, motion.middle[0], new_rate)
 
     wanted = motion.wanted
     by_wind = motion.by_wind
@@ -447,37 +376,50 @@ def _step_from_middle(
     leading += pose.weight
     centrifugal_force(pose, motion.middle[1], ahead, motion.across, motion.momentum)
     find_force(
-        law, wanted, eta, new_rate, motion.force, pose.change, drag, motion.across,
-        motion.momentum, motion.new_force,
+        law, wanted, eta, new_rate, motion.force, pose.change, per_speed_squared * speed,
+        motion.across, motion.momentum, motion.new_force,
     )  # fmt: skip
     move(law.whole, eta, new_rate, motion.new_force, new_eta, new_rate)
 
-    energy = _strain_energy(motion, new_eta) + twice_kinetic_energy(pose, new_rate, pose.momentum)
     multiply_rows(motion.new, motion.by_key, motion.rotations)
+    fastest = largest(motion.rotations[1])
+    is_bounded = fastest > FASTEST_TURN
+    if is_bounded:
+        share = FASTEST_TURN / fastest
+        for i in range(len(eta)):
+            new_eta[i] = eta[i] + share * (new_eta[i] - eta[i])
+        new_rate *= share
+        multiply_rows(motion.new, motion.by_key, motion.rotations)
     copy(motion.rotations[0], pose.turned[HERE])
-    has_turned = law.length * largest(motion.rotations[1])
-    is_bounded = energy <= max(strain + kinetic, most_energy)
-    return is_bounded and has_turned <= MOST_TURN and largest(motion.rotations[0]) <= FARTHEST
+    return is_bounded
 
 
 @fused
-def _bound_energy(pose: PoseInertia, motion: LimpMotion, allowed: float) -> float:
+def _end_step(pose: PoseInertia, motion: LimpMotion, allowed: float) -> float:
     """
-    Scale the rates after a step so that it gains no more energy than the work of the wind [J].
+    Take the state after a step, where the tree is placed.
 
-    The tree is placed where the step ends. Returns how much energy it may have before the work of
-    the next step: what it has, or has lost before, up to `SLACK`.
+    The rates are scaled so that the tree gains no more energy than the work of the wind [J].
+    Returns how much energy it may have before the work of the next step: what it has, or has lost
+    before, up to `SLACK`; nan where the motion is not finite.
     """
     eta = motion.new[0]
     rate = motion.new[1]
     kinetic = 0.5 * twice_kinetic_energy(pose, rate, pose.momentum)
-    moving = kinetic + 0.5 * _strain_energy(motion, eta)
-    energy = moving + weight_potential(pose, eta)
+    moving = kinetic
     for i in range(len(eta)):
+        moving += 0.5 * motion.stiffness[i] * eta[i] * eta[i]
         allowed += motion.by_wind[i] * (eta[i] - motion.eta[i])
+    energy = moving + weight_potential(pose, eta)
     if energy > allowed:
         left = max(kinetic - (energy - allowed), 0.0)
         if kinetic > 0.0:
             rate *= math.sqrt(left / kinetic)
         energy += left - kinetic
+    for i in range(len(eta)):
+        motion.eta[i] = motion.last_eta[i] = eta[i]
+        motion.rate[i] = motion.last_rate[i] = rate[i]
+        motion.force[i] = motion.new_force[i]
+    if not math.isfinite(energy):
+        return math.nan
     return min(allowed, energy + SLACK * moving)

@@ -74,11 +74,17 @@ class ModalCoordinates:
         others = (self.limit, 1.0), *((each, -1.0) for each in self.compliance)
         return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
 
+    def propagators(self, dt: float) -> tuple[Floats, Floats]:
+        """Return the propagators over a time step [s] and half of it, as `whole` and `half`."""
+        one = np.ones(len(self.stiffness))
+        whole, half = np.zeros((2, len(one), 8))
+        fill_propagator(one, self.damping, self.stiffness, dt, whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, half)
+        return whole, half
+
     def set_time_step(self, dt: float) -> None:
         """Refill the propagators for a time step [s]."""
-        one = np.ones(len(self.stiffness))
-        fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
-        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
+        self.whole[:], self.half[:] = self.propagators(dt)
 
     def projected(self, x: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Project key rotations and their rates, (N,), on the coordinates, (m,)."""

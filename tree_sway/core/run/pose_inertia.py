@@ -211,7 +211,7 @@ def twice_kinetic_energy(pose: PoseInertia, rate: Floats, momentum: Floats) -> f
 
 
 @part
-def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: Floats) -> float:
+def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: Floats) -> None:
     """
     Take the next columns, inertia and weight of a pose, where the tree is placed.
 
@@ -226,18 +226,12 @@ def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: 
     rate
         Rates of the coordinates, (m,), scaled to the kinetic energy that they had before.
 
-    Returns
-    -------
-    float
-        Twice this energy in [J].
-
     """
     before = twice_kinetic_energy(pose, rate, pose.momentum)
     _take_columns(pose, first, count, eta)
     after = twice_kinetic_energy(pose, rate, pose.momentum)
     if after > 0.0:
         rate *= math.sqrt(before / after)
-    return before
 
 
 @part

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from tree_sway_lab.kinds.kinds import FLEXIBLE, kind_called, KINDS
+from tree_sway_lab.kinds.kinds import FLEXIBLE, kind_called, KINDS, SLENDER
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.trial import judged_simulator, SECONDS, Trial, tried
 from tree_sway_lab.validation.truth import FINE, Fineness, QUICK, true_frequencies
@@ -26,7 +26,7 @@ FINELY = (*SPEEDS, 'step')
 MODELS = ('default', 'full')
 
 JUDGED = (
-    *(kind for kind in KINDS if kind not in ('crooked', 'straight')),
+    *(kind for kind in KINDS if kind not in ('crooked', 'straight', *SLENDER)),
     'crooked 8',
     'crooked 18',
     'crooked 32',
@@ -82,13 +82,15 @@ def trial_table(trials: Sequence[Trial]) -> str:
     """Return a table of trials in Markdown."""
     head = (
         'tree', 'wind', 'model', 'error', 'roughness',
-        'first frame, true [mm]', 'largest move, true [mm]', 'step and place [us]',
+        'first frame, true [mm]', 'largest move, true [mm]', 'lowest tip, true [mm]',
+        'clamped', 'step and place [us]',
     )  # fmt: skip
     rows = [
         (
             one.kind, one.wind, one.model, f'{one.error:.3f}',
             f'{one.roughness:.2f}', _both(one.jump, one.true_jump),
-            _both(one.stride, one.true_stride), f'{one.cost:.1f}',
+            _both(one.stride, one.true_stride), _both(one.lowest, one.true_lowest),
+            str(one.clamped), f'{one.cost:.1f}',
         )
         for one in sorted(trials, key=lambda one: (one.kind, one.model, one.wind.rjust(9)))
     ]  # fmt: skip
