@@ -125,8 +125,6 @@ def extras_for(command):
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
             needed.add(NEEDS_OF_FILES[path.suffix])
-        elif argument.rpartition('=')[2].startswith('serial:'):
-            needed.add('serial')
     if names[0] == 'pytest' and no_ros_wheels():
         needed.discard('ros')  # the tests that need it say that they are left out
     check_machine('ros' in needed)

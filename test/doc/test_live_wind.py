@@ -10,8 +10,6 @@ import re
 import pytest
 
 pytest.importorskip('aiohttp')
-pytest.importorskip('paho')
-pytest.importorskip('pymodbus')
 pytest.importorskip('serial')
 
 from tree_sway.sensors.registry import open_source, source_kinds  # noqa: E402
