@@ -45,7 +45,7 @@ def test_packets_are_cut_at_any_byte() -> None:
     rng = random.Random(3)
     bodies = [rng.randbytes(rng.choice([0, 3, 127, 128, 20_000])) for _ in range(50)]
     data = b''.join(_packet(0x30, body) for body in bodies)
-    packets, found, place = _Packets(), [], 0
+    packets, found, place = _Packets(int), [], 0
     while place < len(data):
         size = rng.choice([1, 2, 5, 1000, 65_536])
         found += [body for _, body in packets.feed(data[place : place + size])]
@@ -54,7 +54,7 @@ def test_packets_are_cut_at_any_byte() -> None:
 
 
 def test_a_message_of_256_mib_takes_no_memory() -> None:
-    packets = _Packets()
+    packets = _Packets(int)
     block = bytes(65_536)
     tracemalloc.start()
     found = list(packets.feed(b'\x30\xff\xff\xff\x7f'))  # 268,435,455 bytes follow
@@ -73,6 +73,7 @@ def test_a_large_message_is_passed_over_and_the_next_is_read(hear, server, answe
     heard = hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1]))
     heard.until(lambda: heard.data == [b'5.0'])
     assert heard.messages[0].origin == 'wind'
+    assert heard.link.refused == {'a message of more than 65536 bytes': 1}
 
 
 @pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_a_refusal_of_a_broker_is_told(
 @pytest.mark.parametrize('seed', range(30))
 def test_no_bytes_break_the_reader_of_packets(seed: int) -> None:
     rng = random.Random(seed)
-    packets = _Packets()
+    packets = _Packets(int)
     try:
         for _ in range(200):
             for _, body in packets.feed(rng.randbytes(rng.randrange(300))):

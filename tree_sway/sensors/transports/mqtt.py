@@ -9,7 +9,7 @@ read here, so that the size of a message is known before memory is taken for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 import math
@@ -60,7 +60,7 @@ class Mqtt:
         """Deliver each message of the topics."""
         with self._connected() as link:
             link.sendall(_packet(_CONNECT, self._greeting()))
-            packets = _Packets()
+            packets = _Packets(lambda: receiver.refuse(f'a message of more than {_LARGEST} bytes'))
             heard = asked = time.monotonic()
             is_accepted = False
             while not receiver.is_over:
@@ -110,9 +110,10 @@ class Mqtt:
 
 
 class _Packets:
-    """Buffer of packets; one that is too large is passed over as it comes."""
+    """Buffer of packets; one that is too large is told, and passed over as it comes."""
 
-    def __init__(self) -> None:
+    def __init__(self, told: Callable[[], object]) -> None:
+        self._told = told
         self._begun = b''
         self._to_skip = 0
 
@@ -126,6 +127,7 @@ class _Packets:
             place += skipped
             size, start = _length(data, place)
             if size > _LARGEST:
+                self._told()
                 self._to_skip = start - place + size
                 continue
             if not start or len(data) < start + size:

@@ -32,7 +32,10 @@ class Receiver(Protocol):
         """Note that the connection is made."""
 
     def deliver(self, message: Message) -> None:
-        """Deliver a message."""
+        """Deliver a message; rests where too many come."""
+
+    def refuse(self, cause: str, count: int = 1) -> None:
+        """Count messages that are not delivered, by their cause."""
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the end is requested."""
