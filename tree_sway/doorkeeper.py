@@ -42,7 +42,7 @@ class Doorkeeper:
 
     """
 
-    def __init__(self, most: int, complain: Callable[[str], None]) -> None:
+    def __init__(self, most: int, complain: Callable[[str], object]) -> None:
         self.most = most
         self._complain = complain
         self.n_closed = 0

@@ -15,6 +15,7 @@ import threading
 import time
 
 from tree_sway.errors import shown
+from tree_sway.sensors.one_sender import OneSender
 from tree_sway.sensors.transports.link import Link, LONGEST_PAUSE
 from tree_sway.sensors.transports.transport import Message, Transport
 
@@ -66,7 +67,15 @@ class LiveSource(ABC):
         self._patience = patience
         self._last = ''
         self._ended = threading.Event()
-        self._link = Link(transport, self._receive, log, silence, longest_pause=longest_pause)
+        self._senders = OneSender()
+        self._link = Link(
+            transport,
+            self._receive,
+            log,
+            silence,
+            longest_pause=longest_pause,
+            admits=lambda each: self._admits(self._senders, each.origin, each.port),
+        )
         self.refused = self._link.refused
         """Numbers of samples and messages that were refused, by cause."""
 
@@ -112,6 +121,16 @@ class LiveSource(ABC):
         self._last = shown(message.data[:_SHOWN_BYTES].decode('utf-8', 'replace'), _SHOWN_LETTERS)
         self._take(message)
 
+    def _admits(self, senders: OneSender, name: str, detail: str = '') -> bool:
+        """Whether a sender is the one that is used; count and name the others."""
+        if senders.admits(name, detail, is_live=self._is_live()):
+            return True
+        cause = f'another sender, {_whole_name(name, detail)}'
+        if self._link.refuse(cause):
+            used = _whole_name(senders.name, senders.detail)
+            self._log(f'refused: {cause}, until {used or "the first"} is silent')
+        return False
+
     def _refuse(self, cause: str, count: int = 1) -> None:
         self._link.refuse(cause, count)
 
@@ -147,3 +166,7 @@ class LiveSource(ABC):
     def _news(self) -> str:
         """Return the problem as a line for the terminal."""
         return self.problem
+
+
+def _whole_name(name: str, detail: str) -> str:
+    return shown(':'.join(filter(None, (name, detail))), _SHOWN_LETTERS)

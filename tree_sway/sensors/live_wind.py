@@ -24,6 +24,7 @@ from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.files.wind.units import Velocity
 from tree_sway.sensors.live_source import LiveSource
+from tree_sway.sensors.one_sender import OneSender
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
 from tree_sway.sensors.registry import OpenedSource
 from tree_sway.sensors.transports.transport import Message
@@ -99,6 +100,7 @@ class LiveWind(LiveSource):
         self._taken = taken
         self._heard = heard
         self._lock = threading.Lock()
+        self._stations = OneSender()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
         self._arrival = -math.inf
@@ -149,6 +151,7 @@ class LiveWind(LiveSource):
             'kind': 'live',
             'name': self.name,
             'state': self.state,
+            'refused': dict(self.refused),
         }
         if newest is not None:
             east, north, _ = newest.velocity(self.bearing)
@@ -199,10 +202,16 @@ class LiveWind(LiveSource):
         readings = self._opened.source.read(message)
         self.other += not readings
         for reading in readings:
-            if not self._is_good(reading):
+            sender = reading.sender if isinstance(reading, WindReading) else ''
+            if not self._admits(self._stations, '', sender) or not self._is_good(reading):
                 continue
             assert isinstance(reading, WindReading)
-            self._use(reading)
+            is_new = self._senders.note(message.origin, message.port)
+            is_new |= self._stations.note('', sender)
+            if is_new:
+                self._gaps.clear()
+                self._log(f'{self._opened.name}: another sender, as the one before is silent')
+            self._use(reading, is_new=is_new)
 
     def _is_good(self, reading: Reading) -> bool:
         """Count a reading; whether it is a wind."""
@@ -215,11 +224,11 @@ class LiveWind(LiveSource):
         self._refuse(cause)
         return False
 
-    def _use(self, reading: WindReading) -> None:
+    def _use(self, reading: WindReading, *, is_new: bool) -> None:
         now = time.monotonic()
         is_first = self.newest is None
         is_guess = self._is_guess
-        if not is_first:
+        if not is_first and not is_new:
             self._gaps.append(now - self._arrival)
         self._arrival = now
         period = self._period

@@ -30,7 +30,7 @@ from tree_sway.sensors.transports.transport import Message
 
 LINE_KINDS = ('auto', *SENTENCES, *KINDS)
 """Sentences that may be chosen where an instrument sends several."""
-_MOST_LINES = 256
+_MOST_LINES = 64
 """Number of lines of a datagram that are read."""
 EXPECTS = (
     'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill, Vaisala WXT, Young, SDI-12, JSON, '

@@ -11,6 +11,7 @@ A station sends every 8 to 60 s: a shorter interval than 20 s is the wind itself
 from __future__ import annotations
 
 from collections.abc import Sequence
+from hashlib import sha256
 from urllib.parse import parse_qsl
 
 from tree_sway.doorkeeper import is_loopback
@@ -33,7 +34,10 @@ def read_upload(message: Message) -> Sequence[Reading]:
         form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
     except ValueError:
         return [Refusal(_KIND, 'too many fields')]
-    return _NAMES.read(dict(form), _KIND)
+    named = dict(form)
+    if secret := named.pop('PASSKEY', ''):
+        named.setdefault('ID', f'station {sha256(secret.encode()).hexdigest()[:8]}')
+    return _NAMES.read(named, _KIND)
 
 
 def open_ecowitt(address: SourceAddress) -> Source:

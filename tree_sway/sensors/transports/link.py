@@ -36,6 +36,8 @@ class Link(Worker):
     silence: float | None = None
     first_pause: float = FIRST_PAUSE
     longest_pause: float = LONGEST_PAUSE
+    admits: Callable[[Message], bool] = lambda _message: True
+    """Whether to hand on a message; asked first, so that others do not use up the rate."""
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
@@ -67,17 +69,22 @@ class Link(Worker):
         """Count a message and hand it on, unless too many come."""
         self._latest = time.monotonic()
         self.messages += 1
-        if self._pace.admits(len(message.data)):
-            self.take(message)
-        else:
-            self.refuse(_TOO_MANY)
+        if self.admits(message):
+            if self._pace.admits(len(message.data)):
+                self.take(message)
+            else:
+                self.refuse(_TOO_MANY)
         if rest := self._pace.rest:
             self.pause(rest)
 
-    def refuse(self, cause: str, count: int = 1) -> None:
-        """Count what is refused, by the first causes that occur."""
-        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
-            self.refused[cause] = self.refused.get(cause, 0) + count
+    def refuse(self, cause: str, count: int = 1) -> bool:
+        """Count what is refused, by the first causes that occur; return whether one is new."""
+        is_new = cause not in self.refused
+        if is_new and len(self.refused) >= _MOST_CAUSES:
+            is_new = False
+            cause = 'other causes'
+        self.refused[cause] = self.refused.get(cause, 0) + count
+        return is_new
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the thread is stopped."""

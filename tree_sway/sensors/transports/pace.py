@@ -31,6 +31,7 @@ class Pace:
         self._left = _STORED
         self._at = time.monotonic()
         self._time_left = _BURST
+        self._rested = self._at
         self._spent = 0.0
 
     def begin(self) -> None:
@@ -43,7 +44,6 @@ class Pace:
         passed = now - self._at
         self._at = now
         self._left = min(self._left + MOST * passed, _STORED)
-        self._time_left = min(self._time_left + _SHARE * passed, _BURST)
         cost = 1.0 + size / _SIZE
         if cost > self._left:
             return False
@@ -53,7 +53,10 @@ class Pace:
     @property
     def rest(self) -> float:
         """Time for which the thread is to rest now [s]; 0 within its share."""
+        now = time.monotonic()
         spent = time.thread_time()
-        self._time_left -= spent - self._spent
+        gained = _SHARE * (now - self._rested) - (spent - self._spent)
+        self._time_left = min(self._time_left + gained, _BURST)
+        self._rested = now
         self._spent = spent
         return min(max(-self._time_left / _SHARE, 0.0), _LONGEST_REST)

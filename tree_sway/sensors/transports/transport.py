@@ -13,12 +13,13 @@ class Message:
     """
     One message of an instrument: a line without its end, a datagram, a body of HTTP.
 
-    ``origin`` is the topic of MQTT, the path of HTTP or the address that sent a datagram, empty
-    elsewhere.
+    ``origin`` tells its sender: the topic of MQTT, or the address that sent a request or a
+    datagram, this from a ``port``; it is empty where there is one sender only.
     """
 
     data: bytes
     origin: str = ''
+    port: str = ''
 
 
 class Receiver(Protocol):
@@ -34,7 +35,7 @@ class Receiver(Protocol):
     def deliver(self, message: Message) -> None:
         """Deliver a message; rests where too many come."""
 
-    def refuse(self, cause: str, count: int = 1) -> None:
+    def refuse(self, cause: str, count: int = 1) -> object:
         """Count messages that are not delivered, by their cause."""
 
     def pause(self, seconds: float) -> None:

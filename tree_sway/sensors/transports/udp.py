@@ -46,10 +46,10 @@ class Udp:
             link.settimeout(READ_FOR)
             while not receiver.is_over:
                 try:
-                    data, (sender, *_) = link.recvfrom(_LARGEST)
+                    data, (sender, port, *_) = link.recvfrom(_LARGEST)
                 except TimeoutError:
                     continue
-                receiver.deliver(Message(data, sender))
+                receiver.deliver(Message(data, sender, str(port)))
 
 
 def _is_group(host: str) -> bool:
