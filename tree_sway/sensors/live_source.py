@@ -68,13 +68,14 @@ class LiveSource(ABC):
         self._last = ''
         self._ended = threading.Event()
         self._senders = OneSender()
+        self._followed = -math.inf
         self._link = Link(
             transport,
             self._receive,
             log,
             silence,
             longest_pause=longest_pause,
-            admits=lambda each: self._admits(self._senders, each.origin, each.port),
+            admits=self._admits,
         )
         self.refused = self._link.refused
         """Numbers of samples and messages that were refused, by cause."""
@@ -121,15 +122,23 @@ class LiveSource(ABC):
         self._last = shown(message.data[:_SHOWN_BYTES].decode('utf-8', 'replace'), _SHOWN_LETTERS)
         self._take(message)
 
-    def _admits(self, senders: OneSender, name: str, detail: str = '') -> bool:
-        """Whether a sender is the one that is used; count and name the others."""
-        if senders.admits(name, detail, is_live=self._is_live()):
+    def _follows(self, sender: str) -> bool:
+        """Whether a good sample is of the sender that is followed; count and name the others."""
+        now = time.monotonic()
+        if self._senders.admit(sender, now):
+            self._followed = now
             return True
-        cause = f'another sender, {_whole_name(name, detail)}'
+        cause = f'another sender, {shown(sender, _SHOWN_LETTERS)}'
         if self._link.refuse(cause):
-            used = _whole_name(senders.name, senders.detail)
-            self._log(f'refused: {cause}, until {used or "the first"} is silent')
+            self._log(f'refused: {cause}, until {self._senders.current} is silent')
         return False
+
+    def _admits(self, message: Message) -> bool:
+        """Whether to read a message: not that of one who was refused, which may be a flood."""
+        senders = self._senders
+        is_live = time.monotonic() - self._followed <= senders.patience
+        is_other = message.origin in senders.refused and message.origin != senders.current
+        return not (is_live and is_other) or self._follows(message.origin)
 
     def _refuse(self, cause: str, count: int = 1) -> None:
         self._link.refuse(cause, count)
@@ -166,7 +175,3 @@ class LiveSource(ABC):
     def _news(self) -> str:
         """Return the problem as a line for the terminal."""
         return self.problem
-
-
-def _whole_name(name: str, detail: str) -> str:
-    return shown(':'.join(filter(None, (name, detail))), _SHOWN_LETTERS)

@@ -24,7 +24,6 @@ from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.files.wind.units import Velocity
 from tree_sway.sensors.live_source import LiveSource
-from tree_sway.sensors.one_sender import OneSender
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
 from tree_sway.sensors.registry import OpenedSource
 from tree_sway.sensors.transports.transport import Message
@@ -100,7 +99,6 @@ class LiveWind(LiveSource):
         self._taken = taken
         self._heard = heard
         self._lock = threading.Lock()
-        self._stations = OneSender()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
         self._arrival = -math.inf
@@ -202,33 +200,30 @@ class LiveWind(LiveSource):
         readings = self._opened.source.read(message)
         self.other += not readings
         for reading in readings:
-            sender = reading.sender if isinstance(reading, WindReading) else ''
-            if not self._admits(self._stations, '', sender) or not self._is_good(reading):
+            if not self._is_good(reading, message.origin):
                 continue
             assert isinstance(reading, WindReading)
-            is_new = self._senders.note(message.origin, message.port)
-            is_new |= self._stations.note('', sender)
-            if is_new:
-                self._gaps.clear()
-                self._log(f'{self._opened.name}: another sender, as the one before is silent')
-            self._use(reading, is_new=is_new)
+            self._use(reading)
 
-    def _is_good(self, reading: Reading) -> bool:
-        """Count a reading; whether it is a wind."""
+    def _is_good(self, reading: Reading, origin: str) -> bool:
+        """Count a reading; whether it is a wind of the sender that is followed."""
         cause = reading.reason if isinstance(reading, Refusal) else ''
         if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
             cause = 'speed is too fast or no number'
-        if not cause:
-            self.accepted += 1
-            return True
-        self._refuse(cause)
-        return False
+        if cause:
+            self._refuse(cause)
+            return False
+        sender = reading.sender if isinstance(reading, WindReading) else ''
+        if not self._follows(' '.join(filter(None, (origin, sender)))):
+            return False
+        self.accepted += 1
+        return True
 
-    def _use(self, reading: WindReading, *, is_new: bool) -> None:
+    def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
         is_first = self.newest is None
         is_guess = self._is_guess
-        if not is_first and not is_new:
+        if not is_first:
             self._gaps.append(now - self._arrival)
         self._arrival = now
         period = self._period

@@ -1,46 +1,96 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The one sender whose samples are used, of all that send to one address."""
+"""
+One sender for a source: the samples of two instruments are never mixed.
+
+The first that is heard twice is followed. Others are refused, counted and named, until it has been
+silent for some periods, its own and theirs. One that was heard once gives way: it may be a stray message, or a
+sender whose next message comes from another port.
+"""
 
 from __future__ import annotations
 
 from collections import deque
 
-_LATELY = 8
-"""Number of details of a sender that are kept in mind."""
+_PERIODS = 3.0
+_LEAST = 2.0
+"""Silence after which a sender gives way: a number of its periods, and no less in [s]."""
+_GAPS = 32
+"""Number of the last times between messages from which the period is found."""
+_MOST = 32
+"""Number of senders that are remembered, and of those whose refusals are counted apart."""
 
 
 class OneSender:
-    """
-    The first whose sample is good, until it has been silent for some periods.
-
-    A sender has a name, such as its address, and a detail: the port that a datagram comes from, or
-    a number in its messages. That tells two programs of one machine apart, but some open a new
-    port, or count on, with each message: so details count as soon as one of them returns.
-    """
+    """A source that follows one sender at a time."""
 
     def __init__(self) -> None:
-        self.name = self.detail = ''
-        """The sender; empty before a good sample."""
-        self.is_known = False
-        """Whether there was a good sample."""
-        self._counts = False
-        self._lately: deque[str] = deque(maxlen=_LATELY)
+        self.current = ''
+        """Origin of the messages that are followed."""
+        self.refused: dict[str, int] = {}
+        """Numbers of messages that were refused, by the first origins that occur."""
+        self.total_refused = 0
+        """Number of all messages that were refused."""
+        self._gaps = deque[float](maxlen=_GAPS)
+        self._newest = 0.0
+        self._heard: dict[str, float] = {}  # when each was last heard, the latest at the end
 
-    def admits(self, name: str, detail: str = '', *, is_live: bool) -> bool:
-        """Whether a message may be used; ``is_live`` says that the present sender is not silent."""
-        if not self.is_known or not is_live:
-            return True
-        return name == self.name and (not self._counts or detail == self.detail)
+    def admit(self, origin: str, now: float) -> bool:
+        """
+        Tell whether a message is of the sender that is followed; count it if it is not.
 
-    def note(self, name: str, detail: str = '') -> bool:
-        """Note a good sample of one that is admitted; return whether it is a new sender."""
-        is_other = name != self.name or (self._counts and detail != self.detail)
-        is_new = self.is_known and is_other
-        if is_new:
-            self._lately.clear()
-            self._counts = False
-        self._counts = self._counts or detail in self._lately
-        self._lately.append(detail)
-        self.name, self.detail, self.is_known = name, detail, True
-        return is_new
+        Parameters
+        ----------
+        origin
+            Who sent it.
+        now
+            Time of its arrival in [s], on a clock that does not jump.
+
+        """
+        before = self._heard.pop(origin, None)
+        self._heard[origin] = now
+        if len(self._heard) > _MOST:
+            del self._heard[next(iter(self._heard))]
+        if origin != self.current:
+            own = 0.0 if before is None else _PERIODS * (now - before)
+            if self._gaps and now - self._newest <= max(self.patience, own):
+                self._refuse(origin)
+                return False
+            self.current = origin
+            self._gaps.clear()
+        if before is not None:
+            self._gaps.append(now - before)
+        self._newest = now
+        return True
+
+    @property
+    def period(self) -> float:
+        """
+        Time between messages in [s], 0 before two.
+
+        It is the second longest of the last ones: a single outage is none, and messages may come
+        several at a time.
+        """
+        return sorted(self._gaps)[-2:][0] if self._gaps else 0.0
+
+    @property
+    def patience(self) -> float:
+        """Silence after which the sender gives way [s]."""
+        return max(_LEAST, _PERIODS * self.period)
+
+    @property
+    def problem(self) -> str:
+        """Who is refused beside whom; empty if there is one sender only."""
+        if not self.refused:
+            return ''
+        others = list(self.refused)
+        more = f' and {len(others) - 1} more' if len(others) > 1 else ''
+        return (
+            f'{self.total_refused} messages of another sender ({others[-1]}{more}) were refused, '
+            f'{self.current} is followed: give each an address of its own'
+        )
+
+    def _refuse(self, origin: str) -> None:
+        self.total_refused += 1
+        if origin in self.refused or len(self.refused) < _MOST:
+            self.refused[origin] = self.refused.get(origin, 0) + 1

@@ -13,13 +13,12 @@ class Message:
     """
     One message of an instrument: a line without its end, a datagram, a body of HTTP.
 
-    ``origin`` tells its sender: the topic of MQTT, or the address that sent a request or a
-    datagram, this from a ``port``; it is empty where there is one sender only.
+    ``origin`` tells its sender: the topic of MQTT, or the address that sent a request, with
+    the port of a datagram; it is empty where there is one sender only.
     """
 
     data: bytes
     origin: str = ''
-    port: str = ''
 
 
 class Receiver(Protocol):

@@ -49,7 +49,7 @@ class Udp:
                     data, (sender, port, *_) = link.recvfrom(_LARGEST)
                 except TimeoutError:
                     continue
-                receiver.deliver(Message(data, sender, str(port)))
+                receiver.deliver(Message(data, f'{sender}:{port}'))
 
 
 def _is_group(host: str) -> bool:
