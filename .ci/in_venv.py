@@ -121,6 +121,8 @@ def extras_for(command):
     needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(' '.join(names), ())}
     if '--sensor' in command and names[-1] == 'record':
         needed.discard('ros')  # the wind of a live source is recorded without it
+    if '--page' in command and names[-1] == 'relay':
+        needed.discard('ros')
     for argument in command[1:]:
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
