@@ -29,7 +29,7 @@ def test_an_address_of_the_page_opens(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path('token').write_text('secret')
+    Path('token').write_text('secret-word')
     assert open_source(address).name
 
 
