@@ -91,7 +91,7 @@ def _to_page(arguments: argparse.Namespace, url: str, seconds: float) -> int:
 
     server = PageServer(page_settings(arguments), status=status)
     client = StreamClient(url, rate=arguments.rate or _RATE_OF_PAGE, on_message=take)
-    with Ending() as ending, server, client:
+    with Ending(is_last=True) as ending, server, client:
         wait_for_frames(client)
         ending.look()
         print_address(server, f'relaying {client.url} to')
