@@ -112,7 +112,8 @@ with Ending(is_last=True) as ending:
 
 
 def test_python_is_not_waited_for_behind_the_last_one():
-    process = subprocess.Popen([sys.executable, '-c', WAITED_FOR], stdout=subprocess.PIPE, text=True)
+    command = [sys.executable, '-c', WAITED_FOR]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == 'ready\n'
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)

@@ -28,7 +28,7 @@ ANSWERS = {
     'headers without end': [OK, *[b'X: ' + b'y' * 8000 + b'\r\n'] * 400],
     'a redirect to a file': [b'HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\n\r\n'],
     'a redirect to itself': [b'HTTP/1.1 302 Found\r\nLocation: /\r\nContent-Length: 0\r\n\r\n'],
-    'packed zeros': [OK + b'Content-Encoding: gzip\r\nContent-Length: 9\r\n\r\n\x1f\x8b\x08zzzzzz'],
+    'no gzip': [OK + b'Content-Encoding: gzip\r\nContent-Length: 9\r\n\r\n\x1f\x8b\x08zzzzzz'],
     'noise': [random.Random(1).randbytes(5000)],
     'nothing': [b''],
 }

@@ -11,8 +11,8 @@ import time
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
-from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.reports.one_publisher import OnePublisher
+from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 
 _PERIODS = 3.0
@@ -158,8 +158,8 @@ class WindReport:
         if len(publishers) > 1:
             shown = ', '.join(sorted(publishers)[:_SHOWN])
             faults.append(
-                f'{len(publishers)} publishers: {shown}; one is used, {self.followed.refused} samples '
-                'of others were refused'
+                f'{len(publishers)} publishers: {shown}; one is used, '
+                f'{self.followed.refused} samples of others were refused'
             )
         level = max(level, WARN) if faults else level
         return Status('wind', level, '; '.join([text, *faults]), values)

@@ -111,5 +111,6 @@ class HttpServer:
             form = parse_qs(data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
         except ValueError:
             return False
-        given = [*request.path.split('/'), *(each for word in _WORDS for each in form.get(word, ()))]
+        fields = (each for word in _WORDS for each in form.get(word, ()))
+        given = [*request.path.split('/'), *fields]
         return any(hmac.compare_digest(each.encode(), self.passkey.encode()) for each in given)
