@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 import http.client
 import socket
 from typing import Any
@@ -131,8 +132,9 @@ def test_a_body_that_never_ends_is_refused(station, port) -> None:
         while True:
             yield b'x' * 10_000
 
-    with pytest.raises((OSError, http.client.HTTPException)):
+    status = 413  # or the connection is closed before that is read
+    with suppress(OSError, http.client.HTTPException):
         link.request('POST', '/', endless(), {'Transfer-Encoding': 'chunked'}, encode_chunked=True)
-        assert link.getresponse().status == 413
-        raise OSError
+        status = link.getresponse().status
+    assert status == 413
     heard.until(lambda: heard.wind.refused)

@@ -19,7 +19,7 @@ from tree_sway_ros.reports.diagnostics import (  # noqa: E402
     status_array,
     WARN,
 )
-from tree_sway_ros.reports.one_publisher import OnePublisher
+from tree_sway_ros.reports.one_publisher import OnePublisher  # noqa: E402
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps  # noqa: E402
 from tree_sway_ros.reports.sway_report import _wind, SwayReport  # noqa: E402
 from tree_sway_ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
