@@ -171,9 +171,8 @@ extras = {
         f'ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}',
         f'ros-jazzy-common-interfaces==5.3.6{LINUX}',
     ],
-    # Instruments on a serial port, with Modbus, and topics of MQTT.
-    'sensors': ['pyserial>=3.5', 'pymodbus>=3.10', 'paho-mqtt>=2.0'],
-    'serial': ['pyserial>=3.5'],
+    # Instruments on a serial port.
+    'sensors': ['pyserial>=3.5'],
     'bag': ['rosbags>=0.11'],
     'plot': ['matplotlib>=3.6'],
     'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],

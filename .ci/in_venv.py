@@ -121,12 +121,12 @@ def extras_for(command):
     needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(' '.join(names), ())}
     if '--sensor' in command and names[-1] == 'record':
         needed.discard('ros')  # the wind of a live source is recorded without it
+    if '--page' in command and names[-1] == 'relay':
+        needed.discard('ros')
     for argument in command[1:]:
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
             needed.add(NEEDS_OF_FILES[path.suffix])
-        elif argument.rpartition('=')[2].startswith('serial:'):
-            needed.add('serial')
     if names[0] == 'pytest' and no_ros_wheels():
         needed.discard('ros')  # the tests that need it say that they are left out
     check_machine('ros' in needed)

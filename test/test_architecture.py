@@ -25,9 +25,9 @@ PACKAGES = {
 
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
-    'errors': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'installed_models': 2,
-    'core': 3, 'files': 4, 'parameters': 5, 'sensors': 6, 'stream': 6, 'page': 7, 'pictures': 7,
-    'commands': 8, 'studies': 9,
+    'errors': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'doorkeeper': 1,
+    'installed_models': 2, 'core': 3, 'files': 4, 'parameters': 5, 'sensors': 6, 'stream': 6,
+    'page': 7, 'pictures': 7, 'commands': 8, 'studies': 9,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {

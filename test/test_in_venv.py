@@ -72,8 +72,7 @@ def test_a_python_without_wheels(
 @pytest.mark.parametrize(
     ('words', 'extra'),
     [
-        ('tree-sway demo --sensor serial:/dev/ttyUSB0:4800', 'serial'),
-        ('sensor --ros-args -p address:=serial:/dev/ttyUSB0', 'serial'),
+        ('tree-sway demo --sensor serial:/dev/ttyUSB0:4800', 'sensors'),
         ('tree-sway study oaks.yaml -o oaks.parquet', 'parquet'),
         ('tree-sway render oak.yaml -o oak.mp4', 'film'),
     ],

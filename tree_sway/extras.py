@@ -15,19 +15,37 @@ import json
 from pathlib import Path
 import re
 import sys
+from typing import NamedTuple
 from urllib.parse import unquote, urlparse
 
 from tree_sway.errors import MissingDependencyError
 
+
+class Extra(NamedTuple):
+    """Extra of the package with a module, the distribution with it, and its least version."""
+
+    name: str
+    distribution: str
+    least: str
+
+
 EXTRAS = {
-    **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
-    **dict.fromkeys(('cryptography', 'dask', 'distributed'), 'study'),
-    **{'numba': 'fast', 'rosbags': 'bag', 'tqdm': 'progress'},
-    **dict.fromkeys(('paho', 'pymodbus', 'serial'), 'sensors'),
-    **{'imageio_ffmpeg': 'film', 'pyarrow': 'parquet'},
-    **{'netCDF4': 'netcdf', 'openpyxl': 'inventory'},
+    'PIL': Extra('plot', 'pillow', '7'),
+    'matplotlib': Extra('plot', 'matplotlib', '3.6'),
+    'mpl_toolkits': Extra('plot', 'matplotlib', '3.6'),
+    'cryptography': Extra('study', 'cryptography', '41'),
+    'dask': Extra('study', 'dask', '2023.1'),
+    'distributed': Extra('study', 'distributed', '2023.1'),
+    'numba': Extra('fast', 'numba', '0.59'),
+    'rosbags': Extra('bag', 'rosbags', '0.11'),
+    'tqdm': Extra('progress', 'tqdm', '4.60'),
+    'serial': Extra('sensors', 'pyserial', '3.5'),
+    'imageio_ffmpeg': Extra('film', 'imageio-ffmpeg', '0.5'),
+    'pyarrow': Extra('parquet', 'pyarrow', '12'),
+    'netCDF4': Extra('netcdf', 'netCDF4', '1.6'),
+    'openpyxl': Extra('inventory', 'openpyxl', '3.1'),
 }
-"""Extra of the package with a module."""
+"""Modules that are installed on request; the versions are those of ``setup.py``."""
 
 PACKAGE = 'tree_sway_ros'
 """Name of the distribution."""
@@ -37,7 +55,7 @@ _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosi
 
 def refuse_missing(modules: Iterable[str], command: str) -> None:
     """
-    Raise a `MissingDependencyError` for the first module that is not installed.
+    Raise a `MissingDependencyError` for the first module that is not installed, or too old.
 
     ``command`` is the rest of the command line that needs them, for the cure.
     """
@@ -46,6 +64,27 @@ def refuse_missing(modules: Iterable[str], command: str) -> None:
             raise MissingDependencyError(
                 f"No module named '{module}'", cure=cure_of_missing(module, command)
             )
+        extra = EXTRAS.get(module)
+        found = '' if extra is None else _version(extra.distribution)
+        if extra is not None and found and _numbers(found) < _numbers(extra.least):
+            raise MissingDependencyError(
+                f'{extra.distribution} {found} is too old: {extra.least} or newer is needed',
+                cure=cure_of_missing(module, command),
+            )
+
+
+def _version(name: str) -> str:
+    """Version of a distribution; empty where none is recorded."""
+    try:
+        return distribution(name).version
+    except PackageNotFoundError:
+        return ''
+
+
+def _numbers(version: str) -> list[int]:
+    """Numbers of a version, without what follows a release."""
+    found = re.match(r'\d+(\.\d+)*', version)
+    return [int(each) for each in found[0].split('.')] if found else []
 
 
 def cure_of_missing(module: str, command: str = '...') -> str:
@@ -57,7 +96,7 @@ def cure_of_missing(module: str, command: str = '...') -> str:
     if line := line_in_venv(command):
         return f'install it and run this: {line}'
     folder = _folder()
-    extra = 'ros' if of_ros else EXTRAS[package]
+    extra = 'ros' if of_ros else EXTRAS[package].name
     install = f'pip install "{folder or PACKAGE}[{extra}]"'
     if of_ros:
         return f'it needs ROS: source a ROS 2 installation, or {install}'

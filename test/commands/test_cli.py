@@ -10,6 +10,7 @@ import importlib
 import importlib.util
 import os
 from pathlib import Path
+import re
 import subprocess
 import sys
 import warnings
@@ -18,6 +19,7 @@ import pytest
 
 from tree_sway import extras
 from tree_sway.commands import cli
+from tree_sway.errors import MissingDependencyError
 from tree_sway.files.export import table_writing
 from tree_sway.pictures import animation
 
@@ -214,8 +216,23 @@ def test_a_command_says_what_it_lacks_before_it_opens_anything(
 
 def test_every_extra_that_is_advised_is_one_of_the_package() -> None:
     text = (Path(__file__).parents[2] / 'setup.py').read_text(encoding='utf-8')
-    for extra in {*extras.EXTRAS.values(), 'ros'}:
+    for extra in {*(each.name for each in extras.EXTRAS.values()), 'ros'}:
         assert f"    '{extra}': [" in text
+    named = set(re.findall(r"'([\w-]+)>=([\d.]+)", text))
+    for module, (_, distribution, least) in extras.EXTRAS.items():
+        if module not in ('PIL', 'dask'):  # brought by those of their extra
+            assert (distribution, least) in named
+
+
+def test_a_package_that_is_too_old_is_refused_with_the_version_that_is_needed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    versions = {'pyserial': '3.4.1', 'tqdm': '4.60.0', 'pillow': '10.2.0.dev1'}
+    monkeypatch.setattr(extras, '_version', lambda name: versions.get(name, ''))
+    monkeypatch.setattr(extras, 'find_spec', lambda _: object())
+    extras.refuse_missing(['tqdm', 'PIL', 'numba', 'rclpy'], '...')
+    with pytest.raises(MissingDependencyError, match=r'pyserial 3.4.1 is too old: 3.5 or newer'):
+        extras.refuse_missing(['serial'], '...')
 
 
 def test_a_warning_is_a_note_on_one_line(

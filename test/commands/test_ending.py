@@ -95,3 +95,27 @@ def test_without_a_signal_the_handlers_are_as_before():
 def test_the_command_line_is_ready_for_ctrl_c_before_numpy_is_loaded():
     code = "import sys, tree_sway.commands.cli; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, '-c', code]).returncode == 0
+
+
+# What an executor does at the end of Python: it waits for its threads.
+WAITED_FOR = """
+from concurrent.futures import ThreadPoolExecutor
+import time
+from tree_sway.commands.ending import Ending
+with Ending(is_last=True) as ending:
+    ending.look()
+    ThreadPoolExecutor().submit(time.sleep, 20)
+    print("ready", flush=True)
+    while not ending.is_asked:
+        time.sleep(0.01)
+"""
+
+
+def test_python_is_not_waited_for_behind_the_last_one():
+    command = [sys.executable, '-c', WAITED_FOR]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == 'ready\n'
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30.0) == 0
+    assert time.monotonic() - begin < 2.5

@@ -10,8 +10,6 @@ import re
 import pytest
 
 pytest.importorskip('aiohttp')
-pytest.importorskip('paho')
-pytest.importorskip('pymodbus')
 pytest.importorskip('serial')
 
 from tree_sway.sensors.registry import open_source, source_kinds  # noqa: E402
@@ -31,7 +29,7 @@ def test_an_address_of_the_page_opens(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path('token').write_text('secret')
+    Path('token').write_text('secret-word')
     assert open_source(address).name
 
 

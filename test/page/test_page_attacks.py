@@ -24,8 +24,9 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway import doorkeeper  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
-from tree_sway.page import access, doorkeeper, guard  # noqa: E402
+from tree_sway.page import access, guard  # noqa: E402
 from tree_sway.page.access import make_token, read_token  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402

@@ -18,10 +18,11 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway import doorkeeper  # noqa: E402
+from tree_sway.doorkeeper import is_loopback  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
-from tree_sway.page import doorkeeper  # noqa: E402
 from tree_sway.page import server as server_module  # noqa: E402
-from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
+from tree_sway.page.access import refusal, require_token  # noqa: E402
 from tree_sway.page.guard import STATIC  # noqa: E402
 from tree_sway.page.page_client import PageClient  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402

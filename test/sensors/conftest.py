@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import os
 import socket
@@ -192,6 +192,48 @@ def broker() -> Iterator[Broker]:
     made = Broker()
     yield made
     made.close()
+
+
+@pytest.fixture
+def modbus() -> Iterator[Callable[..., str]]:
+    """Answer Modbus TCP by registers, or by what a function makes of a request."""
+    made: list[socket.socket] = []
+
+    def registers_of(values: dict[int, int]) -> Callable[[bytes], bytes]:
+        def answer(request: bytes) -> bytes:
+            first, count = struct.unpack_from('>HH', request, 8)
+            try:
+                words = [values[first + k] for k in range(count)]
+            except KeyError:
+                return request[:4] + bytes([0, 3, request[6], request[7] | 0x80, 2])
+            body = bytes([request[6], request[7], 2 * count]) + struct.pack(f'>{count}H', *words)
+            return request[:4] + struct.pack('>H', len(body)) + body
+
+        return answer
+
+    def start(values: dict[int, int] | Callable[[bytes], bytes]) -> str:
+        answer = registers_of(values) if isinstance(values, dict) else values
+        server = socket.create_server(('127.0.0.1', 0))
+        made.append(server)
+
+        def run() -> None:
+            while True:
+                try:
+                    with server.accept()[0] as link:
+                        while request := link.recv(256):
+                            link.sendall(answer(request))
+                except OSError:
+                    if server.fileno() < 0:
+                        return
+
+        threading.Thread(target=run, daemon=True).start()
+        return f'127.0.0.1:{server.getsockname()[1]}'
+
+    yield start
+    for server in made:
+        with suppress(OSError):
+            server.shutdown(socket.SHUT_RDWR)
+        server.close()
 
 
 @contextmanager

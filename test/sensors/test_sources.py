@@ -198,8 +198,6 @@ MQTT = [
 
 @pytest.mark.parametrize(('topic', 'payload', 'options'), MQTT)
 def test_topics_of_mqtt_sway_a_tree(hear, broker: Broker, sways, topic, payload, options):
-    pytest.importorskip('paho')
-
     def publish() -> None:
         if 'wind/direction' in broker.topics:
             broker.publish('wind/direction', b'270')
@@ -213,7 +211,6 @@ def test_topics_of_mqtt_sway_a_tree(hear, broker: Broker, sways, topic, payload,
 
 
 def test_a_broker_that_breaks_is_subscribed_again(hear, broker: Broker):
-    pytest.importorskip('paho')
     heard = hear(f'mqtt://127.0.0.1:{broker.port}/wind')
     heard.until(lambda: heard.wind.accepted, lambda: broker.publish('wind', b'5.0'))
     broker.drop()
@@ -378,21 +375,10 @@ def test_a_signal_k_server_sways_a_tree(hear, port, sways):
     assert subscriptions[0]['subscribe'][0]['path'] == 'environment.wind.*'
 
 
-def test_registers_of_modbus_sway_a_tree(hear, port, sways):
-    pytest.importorskip('pymodbus')
-    from pymodbus.server import ModbusTcpServer
-    from pymodbus.simulator import DataType, SimData, SimDevice
-
-    async def start() -> Any:
-        # A wind speed of 6.5 m/s in tenths, and 270 degrees, three registers apart.
-        registers = [SimData(0x1F4, values=[65, 6, 0, 270], datatype=DataType.REGISTERS)]
-        server = ModbusTcpServer(SimDevice(1, registers), address=('127.0.0.1', port))
-        await server.serve_forever(background=True)
-        return server.shutdown
-
-    with in_a_loop(start):
-        options = 'speed=0x1F4&direction=0x1F7&scale=0.1&every=0.1'
-        heard = hear(f'modbus:127.0.0.1:{port}?{options}')
-        newest = sways(heard, lambda: None, (1.0, 0.0))
-        heard.wind.stop()
+def test_registers_of_modbus_sway_a_tree(hear, modbus, sways):
+    """A wind speed of 6.5 m/s in tenths, and 270 degrees, three registers apart."""
+    place = modbus({0x1F4: 65, 0x1F5: 6, 0x1F6: 0, 0x1F7: 270})
+    options = 'speed=0x1F4&direction=0x1F7&scale=0.1&every=0.1'
+    heard = hear(f'modbus:{place}?{options}')
+    newest = sways(heard, lambda: None, (1.0, 0.0))
     assert newest.speed == pytest.approx(6.5)

@@ -10,6 +10,7 @@ without one; so a thread checks as well, and ends the process after a timeout.
 
 from __future__ import annotations
 
+import contextlib
 import faulthandler
 import os
 import signal
@@ -30,10 +31,13 @@ class Ending:
     """
     A context that handles SIGINT and SIGTERM, in the main thread only.
 
-    After a signal no exception leaves it, as interrupted work may raise any.
+    After a signal no exception leaves it, as interrupted work may raise any. Behind a last one the
+    process is over: Python's own end would wait for threads of libraries, and take down modules
+    one by one, which takes seconds on a busy machine.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, is_last: bool = False) -> None:
+        self._is_last = is_last
         self.is_asked = False
         self.limit = SHORTEST
         self._breaks_in = True
@@ -61,6 +65,11 @@ class Ending:
     def __exit__(self, *_: object) -> bool:
         if not self._before:
             return False
+        if self._is_last and self.is_asked:
+            for each in (sys.stdout, sys.stderr):
+                with contextlib.suppress(AttributeError, OSError, ValueError):  # none, or closed
+                    each.flush()
+            os._exit(0)
         self._over.set()
         for number, before in zip(_SIGNALS, self._before, strict=True):
             # Further signals are ignored: a second Ctrl-C during the end is not an error.

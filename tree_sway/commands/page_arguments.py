@@ -10,7 +10,8 @@ import sys
 from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
-from tree_sway.page.access import is_loopback, make_token, read_token
+from tree_sway.doorkeeper import is_loopback
+from tree_sway.page.access import make_token, read_token
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.server import PageServer
 

@@ -16,6 +16,7 @@ import webbrowser
 import numpy as np
 
 from tree_sway.commands.arguments import chosen_leaves, opened_scene
+from tree_sway.commands.ending import Ending
 from tree_sway.commands.learn_argument import (
     add_learn_argument,
     check_learn_argument,
@@ -95,18 +96,23 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.motion and arguments.stand > 1:
         what = f'motion sensors on a stand of {arguments.stand} trees'
         raise ParameterError(what, where='--motion', cure='leave --stand out')
-    with sensing(arguments) as motion:
+    with Ending(is_last=True) as ending, sensing(arguments) as motion:
         if arguments.history is not None:
             with inside('--history'):
                 refuse_no_history(arguments.history, list(motion.places))
         if arguments.sensor is None:
-            return _serve(arguments, settings, opened_wind(arguments), motion)
+            return _serve(arguments, settings, opened_wind(arguments), motion, ending)
         with listening(arguments) as wind:
-            return _serve(arguments, settings, wind, motion)
+            return _serve(arguments, settings, wind, motion, ending)
+    return 0  # interrupted while it started
 
 
 def _serve(
-    arguments: argparse.Namespace, settings: PageSettings, wind: WindSource, motion: MotionFeed
+    arguments: argparse.Namespace,
+    settings: PageSettings,
+    wind: WindSource,
+    motion: MotionFeed,
+    ending: Ending,
 ) -> int:
     """Serve the page of a wind and of the sensors on the tree."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
@@ -140,13 +146,12 @@ def _serve(
         if arguments.open:
             webbrowser.open(server.url)
         try:
+            ending.look()
             end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
-            while session.failure is None and time.monotonic() < end:
+            while not ending.is_asked and session.failure is None and time.monotonic() < end:
                 session.wait(min(0.1, end - time.monotonic()))
                 learning.keep(session.simulator)
                 _note_history(history, session.simulator)
-        except KeyboardInterrupt:
-            print('', file=sys.stderr)
         finally:
             session.stop()
             learning.keep(session.simulator)

@@ -27,9 +27,9 @@ import secrets
 import stat
 from urllib.parse import urlsplit
 
+from tree_sway.doorkeeper import is_loopback
 from tree_sway.errors import ParameterError
 
-_OWN_NAMES = ('localhost',)
 _LARGEST_TOKEN = 256
 _SHORTEST_TOKEN = 8
 _OF_VIEWERS = b'tree_sway: may look'
@@ -53,16 +53,6 @@ class Access(Enum):
     NONE = 0
     LOOK = 1
     CONTROL = 2
-
-
-def is_loopback(address: str) -> bool:
-    """Whether an address to bind to is reachable only from this machine."""
-    if address in _OWN_NAMES:
-        return True
-    try:
-        return ipaddress.ip_address(address.strip('[]')).is_loopback
-    except ValueError:
-        return False
 
 
 def read_token(path: str | Path) -> str:

@@ -81,6 +81,10 @@ def page_pictures(
             self._answer(page.encode(), 'text/html')
 
         def do_POST(self) -> None:
+            # A page of another origin must not put pictures into the film.
+            if self.headers['Origin'] != f'http://127.0.0.1:{self.connection.getsockname()[1]}':
+                self.send_error(403)
+                return
             if size := int(self.headers['Content-Length'] or 0):
                 pictures.put(self.rfile.read(size))
             self._answer(states.get(), 'application/json')

@@ -17,6 +17,7 @@ import time
 from aiohttp import web
 from aiohttp.typedefs import Handler
 
+from tree_sway.doorkeeper import Doorkeeper
 from tree_sway.page.access import (
     Access,
     access_of,
@@ -29,7 +30,6 @@ from tree_sway.page.access import (
     viewers_token,
     WRONG_TOKEN,
 )
-from tree_sway.page.doorkeeper import Doorkeeper
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.refusals import Refusals
 

@@ -21,9 +21,9 @@ import time
 
 from aiohttp import web, WSCloseCode, WSMsgType
 
+from tree_sway.doorkeeper import Doorkeeper
 from tree_sway.errors import TransportError, TreeSwayError
 from tree_sway.page.access import is_own_page
-from tree_sway.page.doorkeeper import Doorkeeper
 from tree_sway.page.guard import add_headers, Guard, STATIC
 from tree_sway.page.page_client import PageClient
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT

@@ -15,13 +15,12 @@ import threading
 import time
 
 from tree_sway.errors import shown
+from tree_sway.sensors.one_sender import OneSender
 from tree_sway.sensors.transports.link import Link, LONGEST_PAUSE
 from tree_sway.sensors.transports.transport import Message, Transport
 
 _LOOK = 0.5
 """Interval at which it is looked whether anything comes [s]."""
-_MOST_CAUSES = 20
-"""Number of causes of refusals that are counted apart."""
 _SHOWN_CAUSES = 3
 _SHOWN_BYTES, _SHOWN_LETTERS = 300, 120
 """Length of a message that is shown, before and after what cannot be printed is replaced."""
@@ -62,15 +61,24 @@ class LiveSource(ABC):
     ) -> None:
         self.accepted = self.other = 0
         """Numbers of samples, and of messages that are about something else."""
-        self.refused: dict[str, int] = {}
-        """Numbers of samples that were refused, by cause."""
         self._log = log
         self._messages = messages
         self._expects = expects
         self._patience = patience
         self._last = ''
         self._ended = threading.Event()
-        self._link = Link(transport, self._receive, log, silence, longest_pause=longest_pause)
+        self._senders = OneSender()
+        self._followed = -math.inf
+        self._link = Link(
+            transport,
+            self._receive,
+            log,
+            silence,
+            longest_pause=longest_pause,
+            admits=self._admits,
+        )
+        self.refused = self._link.refused
+        """Numbers of samples and messages that were refused, by cause."""
 
     def start(self) -> None:
         """Start to listen."""
@@ -93,7 +101,7 @@ class LiveSource(ABC):
         """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
         if self.accepted:
             return 'live' if self._is_live() else 'stale'
-        if self._link.messages:
+        if self._link.messages or self.refused:
             return 'unknown'
         return 'waiting' if self._link.is_up else 'connecting'
 
@@ -114,22 +122,40 @@ class LiveSource(ABC):
         self._last = shown(message.data[:_SHOWN_BYTES].decode('utf-8', 'replace'), _SHOWN_LETTERS)
         self._take(message)
 
+    def _follows(self, sender: str) -> bool:
+        """Whether a good sample is of the sender that is followed; count and name the others."""
+        now = time.monotonic()
+        if self._senders.admit(sender, now):
+            self._followed = now
+            return True
+        cause = f'another sender, {shown(sender, _SHOWN_LETTERS)}'
+        if self._link.refuse(cause):
+            self._log(f'refused: {cause}, until {self._senders.current} is silent')
+        return False
+
+    def _admits(self, message: Message) -> bool:
+        """Whether to read a message: not that of one who was refused, which may be a flood."""
+        senders = self._senders
+        is_live = time.monotonic() - self._followed <= senders.patience
+        is_other = message.origin in senders.refused and message.origin != senders.current
+        return not (is_live and is_other) or self._follows(message.origin)
+
     def _refuse(self, cause: str, count: int = 1) -> None:
-        """Count refused samples, by the first causes that occur."""
-        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
-            self.refused[cause] = self.refused.get(cause, 0) + count
+        self._link.refuse(cause, count)
 
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
         link = self._link
         if not link.is_up:
             return f'no connection to {link.transport}: {link.failure or "not yet"}'
-        if not link.messages:
+        if not link.messages and not self.refused:
             return f'listening to {link.transport}: nothing has come yet'
-        came = f'{link.messages} {self._messages} came'
+        number = max(link.messages, sum(self.refused.values()))
+        came = f'{number} {self._messages} came'
         if self.refused:
             causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])
-            return f'{came}, all were refused: {causes}; the last: {self._last}'
+            last = f'; the last: {self._last}' if self._last else ''
+            return f'{came}, all were refused: {causes}{last}'
         return f'{came}, none was understood, the last: {self._last}; expected {self._expects}'
 
     def _watch(self) -> None:

@@ -5,7 +5,8 @@ Wind of a live source: its samples, its state for viewers, and news for the term
 
 The wind of an instant is passed on as it comes. Means of 20 s and more are blown as gusts about
 them, until they are too old. Where messages do not say what they are, the time between them
-decides; a first one counts as a mean until the second comes.
+decides; a first one counts as a mean until the second comes. That time is the lower median of the
+last ones, as an outage is no period; a single one of more than ten minutes may be an outage.
 """
 
 from __future__ import annotations
@@ -34,6 +35,10 @@ _PATIENCE = {'waiting': 4.0, 'unknown': 3.0}
 """Time [s] after which silence, or messages that are not understood, are told."""
 _USUAL_INTERVAL = 60.0
 """Length of a mean [s] until the second one tells it."""
+_GAPS = 5
+"""Number of times between messages that tell their period."""
+_LONGEST_SINGLE = 600.0
+"""Longest time between the first two messages that is taken for their period [s]."""
 _LASTS = 3.0
 """Number of intervals for which a mean is used."""
 _QUEUE = 4096
@@ -96,7 +101,8 @@ class LiveWind(LiveSource):
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
-        self._arrival = self._gap = -math.inf
+        self._arrival = -math.inf
+        self._gaps: deque[float] = deque(maxlen=_GAPS)
         self._expires = -math.inf
         self._blown = -math.inf
         self._is_guess = False
@@ -143,6 +149,7 @@ class LiveWind(LiveSource):
             'kind': 'live',
             'name': self.name,
             'state': self.state,
+            'refused': dict(self.refused),
         }
         if newest is not None:
             east, north, _ = newest.velocity(self.bearing)
@@ -193,30 +200,34 @@ class LiveWind(LiveSource):
         readings = self._opened.source.read(message)
         self.other += not readings
         for reading in readings:
-            if not self._is_good(reading):
+            if not self._is_good(reading, message.origin):
                 continue
             assert isinstance(reading, WindReading)
             self._use(reading)
 
-    def _is_good(self, reading: Reading) -> bool:
-        """Count a reading; whether it is a wind."""
+    def _is_good(self, reading: Reading, origin: str) -> bool:
+        """Count a reading; whether it is a wind of the sender that is followed."""
         cause = reading.reason if isinstance(reading, Refusal) else ''
         if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
             cause = 'speed is too fast or no number'
-        if not cause:
-            self.accepted += 1
-            return True
-        self._refuse(cause)
-        return False
+        if cause:
+            self._refuse(cause)
+            return False
+        sender = reading.sender if isinstance(reading, WindReading) else ''
+        if not self._follows(' '.join(filter(None, (origin, sender)))):
+            return False
+        self.accepted += 1
+        return True
 
     def _use(self, reading: WindReading) -> None:
         now = time.monotonic()
         is_first = self.newest is None
         is_guess = self._is_guess
-        before = self._gap
-        self._gap = now - self._arrival
+        if not is_first:
+            self._gaps.append(now - self._arrival)
         self._arrival = now
-        interval = self._interval(reading, before)
+        period = self._period
+        interval = self._interval(reading, period)
         velocity = reading.velocity(self.bearing)
         with self._lock:
             self.newest = reading
@@ -229,7 +240,7 @@ class LiveWind(LiveSource):
                 age = 0.0 if reading.time is None else max(time.time() - reading.time, 0.0)
                 self._expires = now - age + (_LASTS * interval if lasts is None else lasts)
             else:
-                self._expires = now + max(_LIVE_FOR, _LASTS * self._gap if not is_first else 0.0)
+                self._expires = now + max(_LIVE_FOR, _LASTS * (period or 0.0))
         if self._heard is not None:
             self._heard(reading)
         if is_first:
@@ -244,20 +255,24 @@ class LiveWind(LiveSource):
         else:
             self._samples.append((now, velocity))
 
-    def _interval(self, reading: WindReading, gap_before: float) -> float:
+    @property
+    def _period(self) -> float | None:
+        """Usual time between two messages [s]; None while it is not known."""
+        gaps = sorted(self._gaps)
+        if not gaps or (len(gaps) == 1 and gaps[0] > _LONGEST_SINGLE):
+            return None
+        return gaps[(len(gaps) - 1) // 2]
+
+    def _interval(self, reading: WindReading, period: float | None) -> float:
         """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
-        source = self._opened.source
         self._is_guess = False
-        for known in (self._opened.mean, reading.interval, source.interval):
+        for known in (self._opened.mean, reading.interval, self._opened.source.interval):
             if known is not None:
                 return known
-        self._is_guess = math.isinf(self._gap)
-        if self._is_guess:
+        self._is_guess = period is None
+        if period is None:
             return _USUAL_INTERVAL
-        # One long gap is a failure of a fast instrument, unless it is the only one.
-        is_slow = self._gap >= LEAST_INTERVAL
-        was_slow = math.isinf(gap_before) or gap_before >= LEAST_INTERVAL
-        return self._gap if is_slow and was_slow else 0.0
+        return period if period >= LEAST_INTERVAL else 0.0
 
     def _gusts_text(self, reading: WindReading) -> str:
         """Return what is known about the gusts of a reading, as words."""

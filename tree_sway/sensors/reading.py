@@ -36,6 +36,8 @@ class WindReading:
         Time of the measurement since 1970 [s]; None for that of its arrival.
     place
         Name of the station, where the message has it.
+    sender
+        What the message says of the instrument that it is of, as its serial number.
 
     """
 
@@ -47,6 +49,7 @@ class WindReading:
     interval: float | None = None
     time: float | None = None
     place: str = ''
+    sender: str = ''
 
     def velocity(self, bearing: float) -> Velocity:
         """

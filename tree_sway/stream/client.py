@@ -91,6 +91,9 @@ class StreamClient:
     on_frame
         Function called on the client's thread with every frame and its arrival [s] by the own
         clock.
+    on_message
+        Function called on that thread with the bytes of every description and frame that is sound,
+        to hand them on.
 
     Raises
     ------
@@ -114,6 +117,7 @@ class StreamClient:
         by_wind: bool = False,
         wind_only: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
+        on_message: Callable[[bytes], None] | None = None,
     ) -> None:
         refuse_other_kind('url', url, str, "give 'http://there:8765/'")
         try:
@@ -152,6 +156,7 @@ class StreamClient:
         """Solver of the scene by its wind; None where states are received."""
         self._rate = rate
         self._on_frame = on_frame
+        self._on_message = on_message
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
@@ -318,6 +323,7 @@ class StreamClient:
             raise FormatError(str(message.data))
         elif message.data[:4] == MAGIC:
             self._describe(decode_description(message.data))
+            self._hand_on(message.data)
         elif message.data[:4] == TABLES:
             description = self.description
             if description is not None:
@@ -327,6 +333,11 @@ class StreamClient:
             self._awaited -= 1
             self._ask()
             self._push(decode_frame(message.data), time.time())
+            self._hand_on(message.data)
+
+    def _hand_on(self, message: bytes) -> None:
+        if self._on_message is not None:
+            self._on_message(message)
 
     def _ask(self) -> None:
         """Request as many frames as may be in transit."""

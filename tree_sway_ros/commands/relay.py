@@ -1,59 +1,72 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway relay``: the wind of a remote site, published as by an anemometer.
+``tree-sway relay``: a remote site, served here as a page, or its wind as by an anemometer.
 
-The remote site serves a page, by ``tree-sway show`` or the node ``viewer``: only the wind of its
-stream is requested, for the nodes `wind` and `solver` of this site.
+The remote site serves a page, by ``tree-sway show`` or the node ``viewer``. A page here serves its
+frames on as they come, and needs no ROS. With ROS only the wind is requested, for the nodes `wind`
+and `solver` of this site.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from importlib.util import find_spec
 import time
-from typing import Any
 from urllib.parse import parse_qsl, urlencode, urlsplit
+import webbrowser
 
 from tree_sway.commands.ending import Ending
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.page.access import read_token
+from tree_sway.page.server import PageServer
 from tree_sway.stream.client import StreamClient
-from tree_sway.stream.protocol import Frame, PAUSED, WIND_LOST
+from tree_sway.stream.protocol import MAGIC
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
-from tree_sway_ros.process.listener import Listener
-from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, WIND
-from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
-from tree_sway_ros.wire.wind_messages import WindWriter
 
 _LOOK = 0.2
-_REPORT_EVERY = 1.0
-"""Interval of reports on `/diagnostics` [s]."""
+_RATE_OF_WIND, _RATE_OF_PAGE = 20.0, 60.0
 
 _SILENT, _UNREACHED, _PATIENCE = 3.0, 12.0, 30.0
 """Times without a first frame [s] until that is said, and until a page is given up that is not
 reached, or that is connected but sends none."""
-
-_OVERDUE = 2.0
-"""Time without a frame after which the remote site counts as lost [s]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add('url', help='address of the page at the remote site, such as http://there:8765/')
-    add('--token-file', default='', metavar='FILE', help='file with the access token of that page')
     add('--namespace', default='', help='namespace of the nodes at this site')
-    add('--rate', type=float, default=20.0, help='samples per second [Hz] (%(default)s)')
+    rates = f'{_RATE_OF_WIND:g}, {_RATE_OF_PAGE:g} for a page'
+    add('--rate', type=float, help=f'samples or frames per second [Hz] ({rates})')
+    add(
+        '--page',
+        action='store_true',
+        help='serve a page, as is done without ROS; the token in the file is that of both pages',
+    )
+    add_page_arguments(parser)
     add_seconds(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Relay the wind until the time is over or Ctrl-C."""
+    """Relay until the time is over or Ctrl-C."""
     seconds = seconds_of(arguments)
     url = with_token(arguments.url, read_token(arguments.token_file))
+    if arguments.page or find_spec('rclpy') is None:
+        return _to_page(arguments, url, seconds)
+    return _to_topics(arguments, url, seconds)
+
+
+def _to_topics(arguments: argparse.Namespace, url: str, seconds: float) -> int:
+    from tree_sway_ros.commands.relay_to_topics import Relay
+    from tree_sway_ros.process.listener import Listener
+
+    rate = arguments.rate or _RATE_OF_WIND
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:
         relay = Relay(site.node)
-        with StreamClient(url, rate=arguments.rate, wind_only=True, on_frame=relay.take) as client:
+        with StreamClient(url, rate=rate, wind_only=True, on_frame=relay.take) as client:
             wait_for_frames(client)
             print(f'relaying the wind of {client.url}', flush=True)
             end = time.monotonic() + seconds
@@ -61,6 +74,37 @@ def run(arguments: argparse.Namespace) -> int:
                 site.spin(_LOOK)
                 relay.report(client)
             print(f'{relay.published} samples, {client.unreadable} unreadable')
+    return 0
+
+
+def _to_page(arguments: argparse.Namespace, url: str, seconds: float) -> int:
+    """Serve descriptions and frames as they come, to those who look: nothing is changed there."""
+
+    def status() -> Mapping[str, object]:
+        return client.status
+
+    def take(message: bytes) -> None:
+        if message[:4] == MAGIC:
+            server.describe(message)
+        else:
+            server.publish(message)
+
+    server = PageServer(page_settings(arguments), status=status)
+    client = StreamClient(url, rate=arguments.rate or _RATE_OF_PAGE, on_message=take)
+    with Ending(is_last=True) as ending, server, client:
+        wait_for_frames(client)
+        ending.look()
+        print_address(server, f'relaying {client.url} to')
+        if arguments.open:
+            webbrowser.open(server.url)
+        end = time.monotonic() + seconds
+        state = client.state
+        while not ending.is_asked and time.monotonic() < end:
+            time.sleep(_LOOK)
+            if client.state != state and client.state != 'connecting':
+                state = client.state
+                print(f'{client.url}: {state} {client.problem if state == "lost" else ""}')
+        print(f'{client.received} frames, {client.unreadable} unreadable')
     return 0
 
 
@@ -99,73 +143,3 @@ def with_token(url: str, token: str) -> str:
         raise ParameterError(f'not an address ({error})', where='url') from None
     others = [(name, value) for name, value in parse_qsl(parts.query) if name != 'token']
     return parts._replace(query=urlencode([*others, ('token', token)])).geturl()
-
-
-class Relay:
-    """
-    Publisher of the remote wind, as long as a sensor measures it there.
-
-    A frame of a paused tree repeats an old wind, and one without a measured wind has the decaying
-    or the calm wind of its solver: neither is a sample.
-    """
-
-    def __init__(self, node: Any) -> None:
-        self.published = 0
-        """Number of samples."""
-        self._writer = WindWriter('geometry_msgs/Vector3Stamped', 'to', 'map')
-        self._node = node
-        self._wind = node.create_publisher(message_class(WIND), WIND.name, qos_profile(WIND))
-        self._diagnostics = node.create_publisher(
-            message_class(DIAGNOSTICS), DIAGNOSTICS.name, qos_profile(DIAGNOSTICS)
-        )
-        self._flags = 0
-        self._arrival = time.monotonic()
-        self._reported = -_REPORT_EVERY
-        self._text = ''
-
-    def take(self, frame: Frame, _arrival: float) -> None:
-        """Publish the wind of a frame if it is a sample; called by the client's thread."""
-        self._flags = frame.flags
-        self._arrival = time.monotonic()
-        if not frame.flags & (PAUSED | WIND_LOST):
-            self._wind.publish(self._writer.message(frame.stamp, frame.wind))
-            self.published += 1
-
-    def status(self, client: StreamClient) -> Status:
-        """Status of the wind for `/diagnostics`."""
-        silence = time.monotonic() - self._arrival
-        values: dict[str, object] = {
-            'samples': self.published,
-            'frames': client.received,
-            'unreadable': client.unreadable,
-            'connection': client.state,
-            'age of the last frame [s]': silence,
-        }
-        level = OK
-        text = f'the wind of {client.url}'
-        if silence > _OVERDUE:
-            level = WARN
-            text = f'nothing from {client.url} for {silence:.0f} s: {client.problem}'
-        elif self._flags & PAUSED:
-            level = WARN
-            text = 'nothing is published: the remote tree is paused'
-        elif self._flags & WIND_LOST:
-            level = WARN
-            text = 'nothing is published: the remote site has no measured wind'
-        return Status('wind', level, text, values)
-
-    def report(self, client: StreamClient) -> None:
-        """Publish the status if it is due, and print it when the wind is lost or back."""
-        now = time.monotonic()
-        if now - self._reported < _REPORT_EVERY:
-            return
-        self._reported = now
-        status = self.status(client)
-        name = self._node.get_fully_qualified_name().lstrip('/')
-        stamp = self._node.get_clock().now().to_msg()
-        array = status_array([status], prefix=name, hardware=client.url, stamp=stamp)
-        self._diagnostics.publish(array)
-        heading = status.message.partition(':')[0]
-        if heading != self._text and (self._text or status.level != OK):
-            print(status.message, flush=True)
-        self._text = heading

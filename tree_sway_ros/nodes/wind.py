@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 import math
 import time
 from typing import Any
@@ -81,6 +82,9 @@ class WindNode(TreeSwayNode):
         if not self.is_active:
             return
         self._report.gaps.note(info)
+        count = partial(self.count_publishers, self._topic)
+        if not self._report.followed.admits(info, count, time.monotonic()):
+            return
         sample = wind_from_message(message)
         frame_id = self.values['frame_id']
         turn = None

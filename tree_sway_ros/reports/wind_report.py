@@ -11,6 +11,7 @@ import time
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
+from tree_sway_ros.reports.one_publisher import OnePublisher
 from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 
@@ -50,6 +51,8 @@ class WindReport:
         self._square_left_out = 0.0
         self.gaps = SequenceGaps()
         """Samples that were lost on their way to the node."""
+        self.followed = OnePublisher()
+        """The publisher whose samples are used."""
 
     def add(self, left_out: float = 0.0) -> None:
         """Count a good sample, of which a component in [m/s] across the plane was left out."""
@@ -112,6 +115,7 @@ class WindReport:
             'age [s]': 'never' if math.isinf(age) else age,
             'publishers': len(publishers),
             'lost': self.gaps.lost,
+            'of other publishers, refused': self.followed.refused,
             'across the force plane, left out [m/s]': round(self.left_out, 3),
             'refused': gate.counts.refused,
             **vars(gate.counts),
@@ -153,7 +157,10 @@ class WindReport:
             faults.append(f'{lost} samples lost on the way')
         if len(publishers) > 1:
             shown = ', '.join(sorted(publishers)[:_SHOWN])
-            faults.append(f'{len(publishers)} publishers mix: {shown}')
+            faults.append(
+                f'{len(publishers)} publishers: {shown}; one is used, '
+                f'{self.followed.refused} samples of others were refused'
+            )
         level = max(level, WARN) if faults else level
         return Status('wind', level, '; '.join([text, *faults]), values)
 

@@ -19,6 +19,7 @@ from tree_sway_ros.reports.diagnostics import (  # noqa: E402
     status_array,
     WARN,
 )
+from tree_sway_ros.reports.one_publisher import OnePublisher  # noqa: E402
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps  # noqa: E402
 from tree_sway_ros.reports.sway_report import _wind, SwayReport  # noqa: E402
 from tree_sway_ros.reports.wind_report import LOST_AFTER, WindReport  # noqa: E402
@@ -170,7 +171,33 @@ def test_several_publishers_are_named(clock):
     assert (one.level, one.values['publishers']) == (OK, 1)
     two = report.status(TIMEOUT, gate, publishers=('/roof', '/mast'))
     assert two.level == WARN
-    assert '2 publishers mix: /mast, /roof' in two.message
+    assert '2 publishers: /mast, /roof; one is used, 0 samples of others' in two.message
+
+
+def is_admitted(one: OnePublisher, number: int, now: float, publishers: int = 2) -> bool:
+    return one.admits({'publication_sequence_number': number}, lambda: publishers, now)
+
+
+@pytest.mark.parametrize('ahead', [-1000, 0, 3, 1000])
+def test_one_of_two_publishers_is_followed_by_its_numbers(ahead):
+    one = OnePublisher()
+    assert is_admitted(one, 2000, 0.0, 1)
+    for k in range(1, 200):
+        assert is_admitted(one, 2000 + k, 0.05 * k)
+        assert not is_admitted(one, 2000 + ahead + k, 0.05 * k + 0.01)
+    assert one.refused == 199
+    assert not is_admitted(one, 2000 + ahead + 205, 10.5)
+    assert is_admitted(one, 2000 + ahead + 230, 11.5), 'the first was silent'
+    assert is_admitted(one, 2000 + ahead + 231, 11.55)
+    assert not is_admitted(one, 2200, 11.56)
+
+
+def test_losses_and_restarts_of_one_publisher_are_no_second():
+    one = OnePublisher()
+    for now, number in enumerate([5, 6, 9, 20, 1, 2, 3]):
+        assert is_admitted(one, number, 0.05 * now, 1)
+    assert one.admits({}, lambda: 2, 0.0), 'middleware without numbers'
+    assert one.refused == 0
 
 
 def test_a_replay_is_no_live_wind(clock):

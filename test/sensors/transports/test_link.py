@@ -9,7 +9,6 @@ import pytest
 
 from tree_sway.errors import MissingDependencyError
 from tree_sway.sensors.transports.modbus import Modbus
-from tree_sway.sensors.transports.mqtt import Mqtt
 from tree_sway.sensors.transports.serial_port import SerialPort
 from tree_sway.sensors.transports.stream_lines import Question
 from tree_sway.sensors.transports.tcp import Tcp
@@ -129,8 +128,7 @@ def test_a_link_ends_at_once(hear, server, seconds):
     ('module', 'make'),
     [
         ('serial', lambda: SerialPort('/dev/ttyUSB0')),
-        ('paho', lambda: Mqtt('host', ('topic',))),
-        ('pymodbus', lambda: Modbus('host', 0, 1)),
+        ('serial', lambda: Modbus('/dev/ttyUSB0', 0, 1, baud=9600)),
     ],
 )
 def test_a_missing_library_is_named_with_its_cure(monkeypatch, module, make):

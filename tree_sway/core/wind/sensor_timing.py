@@ -11,6 +11,7 @@ _DROPOUT_PERIODS = 3.0  # gap from which it is a dropout
 _GAIN = 0.1  # weight of a new interval
 _LONGEST_BELIEVED = 3.0  # interval over the period: a longer one may be a dropout
 _SHORTEST_BELIEVED = 1 / 3  # a shorter one may be a burst of delayed samples
+_LONGEST_FIRST = 600.0  # first interval [s]: a longer one is an outage
 _SHRINK = 0.6  # factor of the period by such a short one, so that a wrong guess does not last
 _LATENESS_GAIN = 0.02  # rate at which the allowance for late samples decreases
 _CATCH_UP = 0.25  # at most this part of an interval
@@ -44,7 +45,7 @@ class SensorTiming:
         if math.isinf(gap):
             return
         if self.period is None:
-            self.period = gap
+            self.period = gap if gap <= _LONGEST_FIRST else None
         elif gap < _SHORTEST_BELIEVED * self.period:
             self.period *= _SHRINK
         else:

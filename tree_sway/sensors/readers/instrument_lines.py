@@ -30,6 +30,8 @@ from tree_sway.sensors.transports.transport import Message
 
 LINE_KINDS = ('auto', *SENTENCES, *KINDS)
 """Sentences that may be chosen where an instrument sends several."""
+_MOST_LINES = 64
+"""Number of lines of a datagram that are read."""
 EXPECTS = (
     'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill, Vaisala WXT, Young, SDI-12, JSON, '
     'name=value, or numbers as 5.3,270'
@@ -78,7 +80,10 @@ class InstrumentLines:
     def __call__(self, message: Message) -> Sequence[Reading]:
         """Read the lines of a message."""
         found = list[Reading]()
-        for line in message.data.decode('utf-8', 'replace').splitlines():
+        lines = message.data.decode('utf-8', 'replace').splitlines()
+        if len(lines) > _MOST_LINES:
+            found.append(Refusal('lines', f'more than {_MOST_LINES} lines in a message'))
+        for line in lines[:_MOST_LINES]:
             if not line.strip():
                 continue
             for each in self._read(line):

@@ -77,6 +77,7 @@ class WindNames:
                 bearing,
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
+                sender=_sender(leaves),
             )
         ]
 
@@ -95,6 +96,19 @@ class WindNames:
 
 
 _ABSENT = object()
+_SENDERS = (
+    'serial_number', 'sn', 'serial', 'mac', 'device_id', 'deviceid', 'deveui', 'dev_eui',
+    'station_id', 'stationid', 'sensor_id', 'sensorid', 'id',
+)  # fmt: skip
+"""Names of what tells an instrument from another, in lower case."""
+
+
+def _sender(leaves: Mapping[str, Any]) -> str:
+    """Return what a message says of its instrument; empty for nothing."""
+    named = {name.lower(): value for name, value in leaves.items()}
+    found = next((named[name] for name in _SENDERS if isinstance(named.get(name), str | int)), '')
+    return str(found)[:_LONGEST]
+
 
 
 def _found(

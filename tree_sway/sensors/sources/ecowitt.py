@@ -11,8 +11,10 @@ A station sends every 8 to 60 s: a shorter interval than 20 s is the wind itself
 from __future__ import annotations
 
 from collections.abc import Sequence
+from hashlib import sha256
 from urllib.parse import parse_qsl
 
+from tree_sway.doorkeeper import is_loopback
 from tree_sway.sensors.readers.named_values import WindNames
 from tree_sway.sensors.reading import Reading, Refusal
 from tree_sway.sensors.source_address import SourceAddress
@@ -22,6 +24,7 @@ from tree_sway.sensors.transports.transport import Message
 
 _KIND = 'upload'
 _MOST_FIELDS = 500
+_SHORTEST_PASSKEY = 8
 _NAMES = WindNames()
 
 
@@ -31,15 +34,30 @@ def read_upload(message: Message) -> Sequence[Reading]:
         form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
     except ValueError:
         return [Refusal(_KIND, 'too many fields')]
-    return _NAMES.read(dict(form), _KIND)
+    named = dict(form)
+    if secret := named.pop('PASSKEY', ''):
+        named.setdefault('ID', f'station {sha256(secret.encode()).hexdigest()[:8]}')
+    return _NAMES.read(named, _KIND)
 
 
 def open_ecowitt(address: SourceAddress) -> Source:
-    """Open a server on a port: ``ecowitt:8080``, on one address of this machine with ``host``."""
+    """
+    Open a server on a port: ``ecowitt:8080``, for this machine alone.
+
+    ``host=0.0.0.0`` opens it to the network, for whoever sends the word in ``passkey_file``.
+    """
     text = address.place
     if not text.isdigit() or not 0 < int(text) < 65_536:
         raise address.error('no port', 'give ecowitt:8080, and that port in the station')
-    server = HttpServer(int(text), address.text_of('host', '0.0.0.0'))
+    host = address.text_of('host', '127.0.0.1')
+    passkey = address.secret('passkey_file')
+    if not is_loopback(host) and len(passkey) < _SHORTEST_PASSKEY:
+        raise address.error(
+            f'{host} is open to the network, without a passkey of {_SHORTEST_PASSKEY} letters',
+            'write one to a file, name it as passkey_file=FILE, and give it in the station: as '
+            'its password, or in its path, as /PASSKEY/',
+        )
+    server = HttpServer(int(text), host, passkey)
     expects = 'the upload of Ecowitt or of Weather Underground, with windspeedmph'
     return Source(server, read_upload, 'weather station', expects)
 

@@ -43,7 +43,7 @@ def open_modbus(address: SourceAddress) -> Source:
     scale = address.number('scale', 0.1, 1e-6, 1e3)
     turn = address.number('direction_scale', 1.0, 1e-6, 1e3)
     heading = address.angle('heading_degrees')
-    kind = address.text_of('kind', KINDS[0])
+    kind = address.text_of('kind', 'holding')
     registers = [speed, direction] if direction != _NO_DIRECTION else [speed]
     first = min(registers)
     count = max(registers) - min(registers) + 1

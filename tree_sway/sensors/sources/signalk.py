@@ -52,8 +52,8 @@ class SignalKWind:
     def __call__(self, message: Message) -> Sequence[Reading]:
         """Read a delta: a reading where it has the speed of the best pair."""
         found = list[Reading]()
-        changed = set[str]()
-        for path, value in _values(parse_json(message.data)):
+        changed = dict[str, str]()
+        for path, value, sender in _values(parse_json(message.data)):
             if path != _HEADING and not path.startswith(_WIND):
                 continue
             known = number(value)
@@ -62,30 +62,31 @@ class SignalKWind:
                 continue
             name = path.removeprefix(_WIND)
             self.values[name] = known
-            changed.add(name)
+            changed[name] = sender
         for speed, angle, is_from_bow in _PAIRS:
             if speed in self.values and angle in self.values:
                 if speed in changed:
-                    found.append(self._reading(speed, angle, is_from_bow))
+                    found.append(self._reading(speed, angle, is_from_bow, changed[speed]))
                 break
         return found
 
-    def _reading(self, speed: str, angle: str, is_from_bow: bool) -> Reading:
+    def _reading(self, speed: str, angle: str, is_from_bow: bool, sender: str) -> Reading:
         if self.values[speed] < 0.0:
             return Refusal(_KIND, f'{speed} is {self.values[speed]:g}')
         bow = self.values.get(_HEADING, self.heading) if is_from_bow else 0.0
         bearing = (self.values[angle] + bow) % math.tau
-        return WindReading(f'{_KIND} {speed}', self.values[speed], bearing, interval=0.0)
+        kind = f'{_KIND} {speed}'
+        return WindReading(kind, self.values[speed], bearing, interval=0.0, sender=sender)
 
 
-def _values(document: Any) -> Iterator[tuple[str, Any]]:
-    """Yield paths and values of a delta; nothing of any other document."""
+def _values(document: Any) -> Iterator[tuple[str, Any, str]]:
+    """Yield paths, values and their source of a delta; nothing of any other document."""
     updates = document.get('updates') if isinstance(document, dict) else None
     for update in updates if isinstance(updates, list) else ():
         values = update.get('values') if isinstance(update, dict) else None
         for each in values if isinstance(values, list) else ():
             if isinstance(each, dict) and isinstance(each.get('path'), str):
-                yield each['path'], each.get('value')
+                yield each['path'], each.get('value'), str(update.get('$source', ''))
 
 
 def open_signalk(address: SourceAddress) -> Source:

@@ -43,7 +43,8 @@ def open_tempest(address: SourceAddress) -> Source:
         bearing = bearing_of(cells[2])
         if bearing is None:
             return [Refusal(_KIND, f'direction is {str(cells[2])[:20]}')]
-        return [WindReading(_KIND, cells[1], bearing, interval=0.0)]
+        sender = str(document.get('serial_number', ''))
+        return [WindReading(_KIND, cells[1], bearing, interval=0.0, sender=sender)]
 
     expects = "a Tempest hub's rapid_wind"
     return Source(Udp('', port, is_shared=True, silence=30.0), read, 'Tempest', expects)

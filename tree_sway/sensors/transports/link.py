@@ -9,11 +9,15 @@ from dataclasses import dataclass
 import time
 
 from tree_sway.sensors.transports.link_failure import failure_text
+from tree_sway.sensors.transports.pace import MOST, Pace
 from tree_sway.sensors.transports.transport import Message, Transport
 from tree_sway.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 """Pause between two attempts [s]: doubled from the first to the longest while there is no data."""
+_MOST_CAUSES = 20
+"""Number of causes of refusals that are counted apart."""
+_TOO_MANY = f'more than {MOST:g} messages per second'
 
 
 @dataclass(eq=False)
@@ -32,6 +36,8 @@ class Link(Worker):
     silence: float | None = None
     first_pause: float = FIRST_PAUSE
     longest_pause: float = LONGEST_PAUSE
+    admits: Callable[[Message], bool] = lambda _message: True
+    """Whether to hand on a message; asked first, so that others do not use up the rate."""
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
@@ -41,7 +47,10 @@ class Link(Worker):
         self.connections = self.messages = 0
         self.failure = ''
         """Reason of the last failure; empty while there is a connection."""
+        self.refused: dict[str, int] = {}
+        """Numbers of what was refused, by cause."""
         self._latest = 0.0
+        self._pace = Pace()
 
     @property
     def is_over(self) -> bool:
@@ -57,10 +66,25 @@ class Link(Worker):
         self.log(f'listening to {self.transport}')
 
     def deliver(self, message: Message) -> None:
-        """Count a message and hand it on."""
+        """Count a message and hand it on, unless too many come."""
         self._latest = time.monotonic()
         self.messages += 1
-        self.take(message)
+        if self.admits(message):
+            if self._pace.admits(len(message.data)):
+                self.take(message)
+            else:
+                self.refuse(_TOO_MANY)
+        if rest := self._pace.rest:
+            self.pause(rest)
+
+    def refuse(self, cause: str, count: int = 1) -> bool:
+        """Count what is refused, by the first causes that occur; return whether one is new."""
+        is_new = cause not in self.refused
+        if is_new and len(self.refused) >= _MOST_CAUSES:
+            is_new = False
+            cause = 'other causes'
+        self.refused[cause] = self.refused.get(cause, 0) + count
+        return is_new
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the thread is stopped."""
@@ -76,6 +100,7 @@ class Link(Worker):
 
     def _run(self) -> None:
         pause = self.first_pause
+        self._pace.begin()
         while not self._stopping.is_set():
             before = self.messages
             try:

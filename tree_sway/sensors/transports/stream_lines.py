@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 import time
 
-from tree_sway.sensors.transports.lines import Lines
+from tree_sway.sensors.transports.lines import Lines, LONGEST
 from tree_sway.sensors.transports.transport import Message, Receiver
 
 READ_FOR = 0.1
@@ -46,3 +46,6 @@ def deliver_lines(
             due = time.monotonic() + question.every
         for line in lines.feed(read()):
             receiver.deliver(Message(line))
+        if lines.dropped:
+            receiver.refuse(f'a line of more than {LONGEST} bytes', lines.dropped)
+            lines.dropped = 0

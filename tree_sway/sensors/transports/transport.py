@@ -13,8 +13,8 @@ class Message:
     """
     One message of an instrument: a line without its end, a datagram, a body of HTTP.
 
-    ``origin`` is the topic of MQTT, the path of HTTP or the address that sent a datagram, empty
-    elsewhere.
+    ``origin`` tells its sender: the topic of MQTT, or the address that sent a request, with
+    the port of a datagram; it is empty where there is one sender only.
     """
 
     data: bytes
@@ -32,7 +32,10 @@ class Receiver(Protocol):
         """Note that the connection is made."""
 
     def deliver(self, message: Message) -> None:
-        """Deliver a message."""
+        """Deliver a message; rests where too many come."""
+
+    def refuse(self, cause: str, count: int = 1) -> object:
+        """Count messages that are not delivered, by their cause."""
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the end is requested."""

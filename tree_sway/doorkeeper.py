@@ -14,6 +14,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 import contextlib
+import ipaddress
 import socket
 import ssl
 
@@ -22,6 +23,8 @@ ASKING_TIME = 5.0
 
 _PAUSE = 1.0
 """Pause after the system refused a socket [s]."""
+
+_OWN_NAMES = ('localhost',)
 
 MakeProtocol = Callable[[], asyncio.BaseProtocol]
 
@@ -39,7 +42,7 @@ class Doorkeeper:
 
     """
 
-    def __init__(self, most: int, complain: Callable[[str], None]) -> None:
+    def __init__(self, most: int, complain: Callable[[str], object]) -> None:
         self.most = most
         self._complain = complain
         self.n_closed = 0
@@ -109,3 +112,13 @@ class Doorkeeper:
 def _is_open(visitor: socket.socket) -> bool:
     """Whether a socket is open on both sides."""
     return visitor.fileno() != -1
+
+
+def is_loopback(address: str) -> bool:
+    """Whether an address to bind to is reachable only from this machine."""
+    if address in _OWN_NAMES:
+        return True
+    try:
+        return ipaddress.ip_address(address.strip('[]')).is_loopback
+    except ValueError:
+        return False
