@@ -91,6 +91,9 @@ class BuildNative(build_ext):
         compiler = self.compiler
         choose_compiler(compiler)
         options = [*OPTIONS.split(), *([] if sys.platform == 'win32' else ['-fPIC'])]
+        # Such as -fsanitize=address,undefined, which .ci/run tests the core with.
+        more = os.environ.get('TREE_SWAY_CXXFLAGS', '').split()
+        options += more
         folder = Path(self.build_temp, 'native')
         try:
             sources = [str(ROOT / 'native' / f'{name}.cpp') for name in SOURCES]
@@ -105,7 +108,9 @@ class BuildNative(build_ext):
             target = self.get_ext_fullpath(ext.name)
             Path(target).parent.mkdir(parents=True, exist_ok=True)
             libraries = [] if sys.platform == 'win32' else ['m']
-            compiler.link_shared_object(objects, target, libraries=libraries, target_lang='c')
+            compiler.link_shared_object(
+                objects, target, libraries=libraries, target_lang='c', extra_postargs=more
+            )
         except (CompileError, LinkError) as error:
             raise SystemExit(f'the native core is not built ({error}); {COMPILER}') from None
 

@@ -179,6 +179,7 @@ def wanted():
     names = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'lab/pyproject.toml')
     files = [ROOT / name for name in names]
     files += [CONSTRAINTS, HASHES, Path(__file__).resolve()]
+    files += sorted((ROOT / 'native').iterdir())  # compiled by the installation
     digest = hashlib.sha256()
     for path in files:
         if path.is_file():
@@ -209,6 +210,8 @@ def make_ready(environment, extras):
     if 'ros' in there | extras and not ('ros' in there and made_from[:3] == wanted()):
         # By their hashes: they are built by one person (doc/licences.md).
         pip(environment, '--require-hashes', '--no-deps', '-r', str(HASHES))
+    if not any(map(shutil.which, ('c++', 'g++', 'clang++'))):
+        pip(environment, 'ziglang>=0.13')  # compiles the native core
     target = f'{ROOT}[{",".join(sorted((there | extras) - {"lab"}))}]'
     pip(environment, '-c', str(CONSTRAINTS), '--no-build-isolation', '-e', target)
     if 'lab' in there | extras:  # a project of its own, with what its truths need

@@ -15,8 +15,8 @@ class Text {
   }
 
   Text &add(const char *words) {
-    for (; *words && left_ > 1; left_--) {
-      *next_++ = *words++;
+    for (; *words && left_ > 1; left_--, words++) {
+      *next_++ = *words >= ' ' && *words <= '~' ? *words : '?';
       *next_ = '\0';
     }
     return *this;

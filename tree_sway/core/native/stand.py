@@ -51,6 +51,14 @@ class States(NamedTuple):
     """History of the wind where gusts reach limbs one after another, (t, h)."""
 
 
+class _Owner:
+    """Closes a stand when neither it nor a view of its memory is left."""
+
+    def __init__(self, handle: int, models: tuple[NativeModel, ...]) -> None:
+        self._models = models  # which outlive the stand
+        weakref.finalize(self, LIBRARY.sway_stand_close, handle)
+
+
 class NativeStand:
     """
     Trees of some models, each at a place.
@@ -91,8 +99,8 @@ class NativeStand:
         )
         if not self._handle:
             raise ParameterError(error.value.decode(), where='trees')
-        weakref.finalize(self, LIBRARY.sway_stand_close, self._handle)
-        self.states = self._views(len(trees))
+        owner = _Owner(self._handle, self.models)
+        self.states = self._views(len(trees), owner)
         self._counts = np.zeros(2, dtype=np.int64)
         self._wind = (ctypes.c_double * 3)()
         self._first_row = np.zeros((1, 2), dtype=np.int64)
@@ -100,12 +108,12 @@ class NativeStand:
         self._keys_at = LastAddress()
         self._poses_at = LastAddress()
 
-    def _views(self, count: int) -> States:
-        """Return views of the states; they keep the stand alive."""
+    def _views(self, count: int, owner: _Owner) -> States:
+        """Return views of the states; they keep its memory."""
         stride, width = ctypes.c_size_t(), ctypes.c_size_t()
         first = LIBRARY.sway_state(self._handle, ctypes.byref(stride), ctypes.byref(width))
         memory = (ctypes.c_double * (count * stride.value)).from_address(first)
-        memory.stand = self  # type: ignore[attr-defined]
+        memory.owner = owner  # type: ignore[attr-defined]
         self._rows = rows = np.frombuffer(memory).reshape(count, stride.value)
         m = width.value
         scalars = rows[:, 6 * m :]

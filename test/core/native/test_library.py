@@ -1,0 +1,76 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The functions of the native core are called as its header declares them."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+import re
+
+import pytest
+
+from tree_sway.core.model.sway_model import MEANINGS, TYPES
+from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
+from tree_sway.core.native.model import Sizes
+from tree_sway.core.native.stand import _TREE
+
+NATIVE = Path(__file__).parents[3] / 'native'
+HEADER = re.sub(r'/\*.*?\*/', '', (NATIVE / 'sway.h').read_text(encoding='utf-8'), flags=re.S)
+
+pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
+
+
+def kind(declared: str) -> object:
+    """Return the type of ctypes of a result or an argument as it is declared."""
+    words = re.sub(r'\b(const|struct)\b', '', declared).strip()
+    if words == 'const char *' or (words.startswith('char') and words.endswith('*')):
+        return 'text'
+    if '*' in words or '[' in words:
+        return ctypes.c_void_p
+    named = {'int': ctypes.c_int, 'size_t': ctypes.c_size_t, 'double': ctypes.c_double}
+    return named.get(words.split()[0]) if words.split()[0] != 'void' else None
+
+
+def declared() -> dict[str, tuple[object, list[object]]]:
+    """Return result and arguments of every function of the header."""
+    found = {}
+    for result, name, given in re.findall(r'SWAY_API\s+([\w\s*]+?)(\bsway_\w+)\(([^)]*)\)', HEADER):
+        arguments = [] if given.strip() == 'void' else given.split(',')
+        found[name] = kind(result), [kind(each) for each in arguments]
+    return found
+
+
+def test_every_function_is_called_as_it_is_declared() -> None:
+    functions = declared()
+    assert functions.keys() == SIGNATURES.keys()
+    for name, (result, arguments) in functions.items():
+        own_result, own_arguments = SIGNATURES[name]
+        of_text = [ctypes.c_void_p if each == 'text' else each for each in arguments]
+        assert list(own_arguments) == of_text, name
+        assert own_result == (ctypes.c_char_p if result == 'text' else result), name
+
+
+def test_version_and_structures_are_those_of_the_header() -> None:
+    assert f'#define SWAY_VERSION {VERSION}\n' in HEADER
+    assert LIBRARY.sway_version() == VERSION
+    body = HEADER.partition('struct sway_sizes {')[2].partition('}')[0]
+    assert [name for name, _ in Sizes._fields_] == re.findall(r'int64_t (\w+);', body)
+    body = HEADER.partition('struct sway_tree {')[2].partition('}')[0]
+    assert list(_TREE.names or ()) == re.findall(r'\b(\w+)(?:\[3\])?;', body)
+    assert _TREE.itemsize == 8 * 7
+
+
+def test_the_list_of_arrays_is_that_of_the_model() -> None:
+    text = (NATIVE / 'arrays.inc').read_text(encoding='utf-8')
+    rows = re.findall(r'SWAY_ARRAY\((\w+), (\w+), (\w+), ([^)]*)\)', text)
+    listed = {name: (of, sizes.split(', ')) for of, name, group, sizes in rows}
+    named = {'double': 'float64', 'float': 'float32', 'int64_t': 'int64'}
+    for name, meaning in MEANINGS.items():
+        of, sizes = listed[name]
+        assert named[of] == TYPES[name].__name__
+        assert len(sizes) == len(meaning.shape)
+        for size, wanted in zip(sizes, meaning.shape, strict=True):
+            if size != 'SIZE_any':
+                own = size.removeprefix('SIZE_').replace('_plus_', ' + ')
+                assert own == str(wanted), name
