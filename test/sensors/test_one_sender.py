@@ -33,7 +33,9 @@ def test_of_two_senders_one_is_followed_and_the_other_refused(
     assert names[:3] == ['phone', 'other', 'phone'], 'who is heard twice first is followed'
     assert set(names[2:]) == {'phone'}
     assert one.refused == {'other': 199}
-    assert 'other' in one.problem and '199 ' in one.problem and one.current == 'phone'
+    assert 'other' in one.problem
+    assert '199 ' in one.problem
+    assert one.current == 'phone'
 
 
 @pytest.mark.parametrize('period', [0.01, 1.0, 60.0])
@@ -56,7 +58,8 @@ def test_a_stray_message_does_not_keep_the_sensor_out() -> None:
 def test_a_sender_of_a_new_port_each_time_is_one() -> None:
     one = OneSender()
     assert all(one.admit(f'10.0.0.2:{40000 + number}', number * 0.1) for number in range(500))
-    assert one.problem == '' and one.refused == {}
+    assert one.problem == ''
+    assert one.refused == {}
 
 
 def test_an_outage_is_no_period() -> None:
@@ -64,7 +67,8 @@ def test_an_outage_is_no_period() -> None:
     for at in [*range(20), 3600.0]:
         assert one.admit('vane', at)
     assert one.patience == 3.0
-    assert one.admit('other', 3604.0) and one.current == 'other'
+    assert one.admit('other', 3604.0)
+    assert one.current == 'other'
 
 
 def test_several_messages_at_a_time_are_one_sender_between_them() -> None:
@@ -82,5 +86,6 @@ def test_the_counts_are_bounded() -> None:
     one.admit('phone', 0.01)
     for number in range(10_000):
         assert not one.admit(f'stranger {number}', 0.02 + 1e-5 * number)
-    assert len(one.refused) <= 32 and one.total_refused == 10_000
+    assert len(one.refused) <= 32
+    assert one.total_refused == 10_000
     assert len(one.problem) < 200

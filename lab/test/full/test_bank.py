@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
+from tree_sway_lab.full.bank import Air
 
 from tree_sway.core.beams.branch_model import TreeBeams
 from tree_sway.core.model.settings import Settings
@@ -14,7 +15,6 @@ from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
-from tree_sway_lab.full.bank import Air
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient

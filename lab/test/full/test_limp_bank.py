@@ -14,7 +14,6 @@ from tree_sway_lab.tip_error import record_tips, roughness, tip_error
 from tree_sway_lab.validation.truth import FINE, SETTINGS, true_tips, WOOD
 from tree_sway_lab.validation.winds import FRAME, turbulent
 
-from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.scene.make import make_simulator
 
 

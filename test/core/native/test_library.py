@@ -35,7 +35,8 @@ def kind(declared: str) -> object:
 def declared() -> dict[str, tuple[object, list[object]]]:
     """Return result and arguments of every function of the header."""
     found = {}
-    for result, name, given in re.findall(r'SWAY_API\s+([\w\s*]+?)(\bsway_\w+)\(([^)]*)\)', HEADER):
+    pattern = r'SWAY_API\s+([\w\s*]+?)(\bsway_\w+)\(([^)]*)\)'
+    for result, name, given in re.findall(pattern, HEADER):
         arguments = [] if given.strip() == 'void' else given.split(',')
         found[name] = kind(result), [kind(each) for each in arguments]
     return found

@@ -57,9 +57,12 @@ def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays):
             del content[int(rng.integers(0, len(content))) :]
         try:
             stepped(bytes(content))
-        except FormatError as error:
+        except FormatError as refusal:
+            reason = str(refusal)
             refused += 1
-            assert "array '" in str(error)
+        else:
+            continue
+        assert "array '" in reason
     assert 0.2 * TRIALS < refused < TRIALS
 
 
@@ -99,4 +102,4 @@ def test_a_tree_that_stands_nowhere_is_refused(arrays, place):
     model = NativeModel(bytes_of(arrays))
     for kind in (0, 1, -1):
         with pytest.raises(ParameterError, match='not finite|does not exist'):
-            NativeStand([model], np.array([kind]), np.array([place], float), np.ones(1))
+            NativeStand([model], np.array([kind]), np.array([place], dtype=float), np.ones(1))

@@ -157,7 +157,8 @@ def test_a_majority_decides_what_a_sensor_measures(first: dict[str, Any]) -> Non
     assert phone.quantities == ('acceleration', 'rate')
     assert refused <= 1
     found = phone.at(11.0, 0.01)
-    assert found is not None and np.isfinite(found[:6]).all()
+    assert found is not None
+    assert np.isfinite(found[:6]).all()
 
 
 def test_a_part_that_stops_does_not_make_the_rest_useless() -> None:
@@ -169,8 +170,10 @@ def test_a_part_that_stops_does_not_make_the_rest_useless() -> None:
         refused += not phone.offer(0.01 * k, acceleration=swaying(k)['acceleration'])
         if k == 550:
             assert 'a quantity is missing' in phone.trouble
-    assert phone.quantities == ('acceleration',) and phone.lost == ('rate',)
-    assert refused <= 101 and not phone.trouble
+    assert phone.quantities == ('acceleration',)
+    assert phone.lost == ('rate',)
+    assert refused <= 101
+    assert not phone.trouble
 
 
 def test_a_dead_sensor_is_told_within_two_seconds() -> None:
@@ -178,9 +181,11 @@ def test_a_dead_sensor_is_told_within_two_seconds() -> None:
     for k in range(500):
         phone.offer(0.01 * k, **swaying(k))
     taken = sum(phone.offer(0.01 * k, **swaying(500)) for k in range(500, 800))
-    assert taken <= 101 and phone.counts.stuck >= 199
+    assert taken <= 101
+    assert phone.counts.stuck >= 199
     assert 'repeats the same numbers' in phone.trouble
-    assert phone.offer(8.0, **swaying(801)) and not phone.trouble
+    assert phone.offer(8.0, **swaying(801))
+    assert not phone.trouble
 
 
 def test_spikes_are_left_out_and_counted() -> None:

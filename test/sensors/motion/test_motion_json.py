@@ -176,7 +176,8 @@ def test_samples_come_over_udp_and_only_of_one_sender(sense: Any, host: str) -> 
     assert -0.1 < at < 5.0
     assert sensed.live.state == 'live'
     assert name.rpartition(' ')[2] in sensed.live.note
-    assert [each for each in sensed.said if name in each] and len(sensed.said) < 6
+    assert [each for each in sensed.said if name in each]
+    assert len(sensed.said) < 6
 
 
 def feed(live: LiveMotion, *documents: Any, origin: str = 'phone') -> None:
@@ -194,7 +195,8 @@ def test_a_stranger_that_came_first_gives_way(monkeypatch: pytest.MonkeyPatch) -
         now = 0.01 * (k + 1)
         feed(live, {'acc': [0, 0, 9.8]})
     came = [each.acceleration for each in live.drain()]
-    assert came[:2] == [(0.0, 0.0, 1.0)] * 2 and set(came[2:]) == {(0.0, 0.0, 9.8)}
+    assert came[:2] == [(0.0, 0.0, 1.0)] * 2
+    assert set(came[2:]) == {(0.0, 0.0, 9.8)}
     assert 190 < len(came) < 210
     assert live.refused == {'another sender, phone': 402 - len(came)}
 
@@ -213,7 +215,8 @@ def test_a_phone_whose_gyroscope_stops_is_told_and_then_done_without(
         if k == 290:
             assert sum(live.refused.values()) == 91
             assert 'acceleration alone' in said[-1]
-    assert live.accepted > 3050 and live.quantities == ('acceleration',)
+    assert live.accepted > 3050
+    assert live.quantities == ('acceleration',)
     assert said[-1].endswith(': acceleration come')
 
 

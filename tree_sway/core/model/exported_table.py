@@ -93,8 +93,8 @@ def arrays_of_table(
         for row, shape in zip(rows.T.astype(np.float64), shapes, strict=True):
             slopes += row[:, None] * shape
         slopes *= (root[:, None] * root).ravel()
-        sizes = MEANINGS[name].shape[:-2]
-        found[name] = slopes.reshape(*sizes, m, m).astype(np.float32)
+        sizes = [int(each) for each in MEANINGS[name].shape[:-2]]
+        found[name] = slopes.reshape([*sizes, m, m]).astype(np.float32)
     return found
 
 

@@ -114,12 +114,12 @@ class NativeStand:
         first = LIBRARY.sway_state(self._handle, ctypes.byref(stride), ctypes.byref(width))
         memory = (ctypes.c_double * (count * stride.value)).from_address(first)
         memory.owner = owner  # type: ignore[attr-defined]
-        self._rows = rows = np.frombuffer(memory).reshape(count, stride.value)
+        self._rows = rows = np.ctypeslib.as_array(memory).reshape(count, stride.value)
         m = width.value
         scalars = rows[:, 6 * m :]
         coordinates = [rows[:, row * m : (row + 1) * m] for row in range(6)]
-        single = (scalars[:, k] for k in range(3, 7))
-        return States(*coordinates, scalars[:, :3], *single, scalars[:, 8:])
+        single = [scalars[:, k] for k in range(3, 7)]
+        return States._make([*coordinates, scalars[:, :3], *single, scalars[:, 8:]])
 
     def reset(self) -> None:
         """Return every tree to rest."""
