@@ -249,8 +249,8 @@ def link_resources():
 def make_venv(environment):
     """Create an empty virtual environment with pip in it."""
     try:
-        import ensurepip
-        import venv
+        import ensurepip  # noqa: F401
+        import venv  # noqa: F401
     except ImportError:
         stop(
             'this Python cannot make virtual environments (ensurepip is missing)',

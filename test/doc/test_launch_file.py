@@ -26,7 +26,7 @@ def module(name: str, **members: Any) -> ModuleType:
 
 def test_its_nodes_and_parameters_are_ours(monkeypatch: pytest.MonkeyPatch) -> None:
     """With launch's classes replaced by records, as launch is no dependency of the tests."""
-    record = lambda **words: SimpleNamespace(**words)
+    record = lambda **words: SimpleNamespace(**words)  # noqa: E731
     monkeypatch.setitem(sys.modules, 'launch', module('launch', LaunchDescription=list))
     monkeypatch.setitem(sys.modules, 'launch_ros', module('launch_ros'))
     actions = module('launch_ros.actions', Node=record)

@@ -74,7 +74,7 @@ def test_an_error_in_a_callback_ends_nothing_and_is_reported(
 def test_a_clock_that_cannot_be_ends_nothing(compose, observer):
     nodes = compose(wind={'use_sim_time': True})
     clock = observer.publisher(CLOCK)
-    tell = lambda second: clock.publish(Clock(clock=Time(sec=second)))
+    tell = lambda second: clock.publish(Clock(clock=Time(sec=second)))  # noqa: E731
     observer.until(lambda: tell(-5) or nodes['wind'].guard.count, 'the failure')
     now = nodes['wind'].get_clock().now
     observer.until(lambda: tell(7) or now().nanoseconds == 7 * 10**9, 'the time')

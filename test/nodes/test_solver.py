@@ -174,7 +174,7 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
     assert change('publish_every', 4).successful
     period = nodes['solver'].pacer.period
     changed = nodes['solver'].get_clock().now().nanoseconds // period + 4
-    later = lambda: [tick for tick in (stamp(f) // period for f in frames) if tick > changed]
+    later = lambda: [tick for tick in (stamp(f) // period for f in frames) if tick > changed]  # noqa: E731
     observer.until(lambda: len(later()) > 6, 'frames')
     groups = [tick // 4 for tick in later()]
     assert len({*groups}) == len(groups)  # none of four has two, however late
@@ -183,7 +183,7 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
 def test_a_late_joiner_gets_the_whole_description_once(compose, observer, tree_file):
     compose(solver={'tree': tree_file})
     early = observer.listen(TREE_DESCRIPTION)
-    is_whole = lambda: any('state' in json.loads(each.data) for each in early)
+    is_whole = lambda: any('state' in json.loads(each.data) for each in early)  # noqa: E731
     observer.until(is_whole, 'the state in the description')
     late, frames = observer.listen(TREE_DESCRIPTION), observer.listen(SEGMENT_POSES)
     observer.until(lambda: len(frames) > 60, 'a second of frames')
@@ -207,7 +207,7 @@ def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
     assert change('damping_ratio', 0.9).successful
     observer.until(lambda: solver.simulator.check_tuning().damping_ratio == 0.9, 'the damping')
     n = len(frames)
-    still = lambda: np.ptp([block(frame)[2, 0] for frame in frames[-30:]]) < 1e-5
+    still = lambda: np.ptp([block(frame)[2, 0] for frame in frames[-30:]]) < 1e-5  # noqa: E731
     observer.until(lambda: len(frames) > n + 60 and still(), 'a steady bend')
     lean = block(frames[-1])[2, 0]
     assert change('stiffness_factor', 8.0).successful
@@ -256,7 +256,7 @@ def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_fil
     observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, 'the tree to bend')
     assert observer.call(SetBool, 'solver/pause', SetBool.Request(data=True)).success
     # Frames from before the pause may be heard after its response.
-    stands_still = lambda: (block(frames[-1]) == block(frames[-2])).all()
+    stands_still = lambda: (block(frames[-1]) == block(frames[-2])).all()  # noqa: E731
     observer.until(stands_still, 'the tree to stand still')
     n = len(frames)
     observer.until(lambda: len(frames) > n + 10, 'frames while paused')

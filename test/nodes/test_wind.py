@@ -138,7 +138,7 @@ def test_wind_in_another_frame_is_turned_by_tf(compose, observer, statuses, tf, 
     nodes = compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    listens = lambda: mast.say(-4.0, frame_id='mast') and len(tf) == 2
+    listens = lambda: mast.say(-4.0, frame_id='mast') and len(tf) == 2  # noqa: E731
     observer.until(listens, 'the node to listen to /tf')
     assert not filtered  # the transform may be on its way
     tf['/tf_static'](transform('mast', 'boat', 0.0))

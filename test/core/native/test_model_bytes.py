@@ -101,5 +101,5 @@ def test_another_version_is_refused(arrays):
 def test_a_tree_that_stands_nowhere_is_refused(arrays, place):
     model = NativeModel(bytes_of(arrays))
     for kind in (0, 1, -1):
-        with pytest.raises(ParameterError, match='not finite|does not exist'):
+        with pytest.raises(ParameterError, match=r'not finite|does not exist'):
             NativeStand([model], np.array([kind]), np.array([place], dtype=float), np.ones(1))

@@ -73,7 +73,7 @@ def test_tf2_ros_is_preferred_where_it_is_installed(monkeypatch):
     """With tf2_ros replaced by records, as it is no dependency of the tests."""
     turn = yaw(0.3)
 
-    class TransformException(Exception):
+    class TransformException(Exception):  # noqa: N818
         pass
 
     class Buffer:

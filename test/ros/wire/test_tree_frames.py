@@ -38,7 +38,7 @@ def node_of(namespace='/', **values):
     publishers, log = {}, []
 
     def publisher(topic):
-        from tf2_msgs.msg import TFMessage
+        from tf2_msgs.msg import TFMessage  # noqa: F401
 
         return publishers.setdefault(topic.name, Publisher())
 

@@ -72,7 +72,7 @@ class Phone:
 
     def config(self, _asked: Mapping[str, str]) -> str:
         inputs = [
-            {'source': source, 'outputs': [dict([pair]) for pair in zip('xyzt', names)]}
+            {'source': source, 'outputs': [dict([pair]) for pair in zip('xyzt', names)]}  # noqa: B905
             for source, names in self.sources.items()
         ]
         return json.dumps({'title': 'Acceleration (with g)', 'inputs': inputs})

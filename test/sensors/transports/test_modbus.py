@@ -9,7 +9,7 @@ import threading
 
 import pytest
 
-from test.sensors.conftest import modbus
+from test.sensors.conftest import modbus  # noqa: F401
 from tree_sway.sensors.transports.modbus import checksum, Modbus
 
 
@@ -58,7 +58,7 @@ def test_a_device_on_a_line_is_read(hear) -> None:
         (lambda request: b'HTTP/1.1 400 Bad Request', 'not that of Modbus'),
     ],
 )
-def test_a_wrong_answer_is_told(hear, modbus, answer, said: str) -> None:
+def test_a_wrong_answer_is_told(hear, modbus, answer, said: str) -> None:  # noqa: F811
     host, port = modbus(answer).split(':')
     heard = hear(Modbus(host, 0, 2, port=int(port)))
     heard.until(lambda: any(said in text for text in heard.said))
@@ -89,7 +89,7 @@ def test_late_answers_without_end_do_not_hold_a_link(hear, server) -> None:
 
 
 @pytest.mark.parametrize('seed', range(5))
-def test_no_answer_breaks_a_link(hear, modbus, seed: int) -> None:
+def test_no_answer_breaks_a_link(hear, modbus, seed: int) -> None:  # noqa: F811
     rng = random.Random(seed)
 
     def answer(request: bytes) -> bytes:
