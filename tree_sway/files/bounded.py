@@ -48,8 +48,8 @@ def bounded_arrays(
     Raises
     ------
     FormatError
-        The function raised one, or another error, or took more than `MEMORY` or `SECONDS`; its message has the
-        ``kind`` of file and the cure.
+        The function raised one, or another error, or took more than `MEMORY` or `SECONDS`; then
+        its message has the ``kind`` of file and the cure.
     MissingDependencyError
         The function imports a module that is not installed.
 

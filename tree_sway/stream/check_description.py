@@ -210,7 +210,8 @@ def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
             wanted = axis if isinstance(axis, int) else sizes.setdefault(axis, size)
             require(f'shape of {name}', size == wanted)
         if kind == '<f4':
-            require(name, (np.abs(array) < GREATEST).all(axis=tuple(range(1, array.ndim))))
+            is_good = np.abs(array) < GREATEST
+            require(name, is_good.all(axis=tuple(range(1, array.ndim))))
     return sizes
 
 
