@@ -20,12 +20,13 @@ import os, resource, sys
 os.environ['OPENBLAS_NUM_THREADS'] = '1'
 resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
 from tree_sway.errors import TreeSwayError
+from tree_sway.files.trees.source import open_scene
 from tree_sway.files.trees.tree_file import read_trees
 from tree_sway.files.wind.wind_file import read_wind
 used = resource.getrusage(resource.RUSAGE_SELF)
 resource.setrlimit(resource.RLIMIT_CPU, 2 * (5 + int(used.ru_utime + used.ru_stime) + 1,))
 try:
-    (read_wind if sys.argv[2] == 'wind' else read_trees)(sys.argv[1])
+    {'wind': read_wind, 'tree': read_trees, 'scene': open_scene}[sys.argv[2]](sys.argv[1])
 except TreeSwayError as error:
     print(error)
 """
@@ -214,7 +215,8 @@ BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
 def test_a_bomb_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
     make, reason = BOMBS[name]
     make(tmp_path / name)
-    kind = 'tree' if name.endswith(('.mat', '.yaml', '.gpkg', '.xlsx')) else 'wind'
+    kind = 'tree' if name.endswith(('.mat', '.yaml')) else 'wind'
+    kind = 'scene' if name.endswith(('.gpkg', '.xlsx')) else kind
     command = [sys.executable, '-c', READ, str(tmp_path / name), kind]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert (ended.returncode, ended.stderr) == (0, '')
