@@ -60,8 +60,8 @@ const Meaning MEANINGS[] = {
 };
 constexpr int N_MEANINGS = sizeof(MEANINGS) / sizeof(*MEANINGS);
 
-// Largest magnitude of a number whose products are finite.
-constexpr double LARGEST = 1e150;
+// No tree has a number of this magnitude, in SI.
+constexpr double LARGEST = 1e18;
 
 // Numbers of coordinates and key rotations beyond which a file is none of a tree.
 constexpr int64_t MOST_COORDINATES = 1 << 16, MOST_SEGMENTS = 1 << 26;

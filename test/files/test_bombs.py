@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that claim much: refused within 5 s of a processor and 1 GiB of memory."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 import io
 from pathlib import Path
 import sqlite3
 import struct
 import subprocess
 import sys
+import zipfile
 import zlib
 
 import pytest
@@ -19,12 +20,13 @@ import os, resource, sys
 os.environ['OPENBLAS_NUM_THREADS'] = '1'
 resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
 from tree_sway.errors import TreeSwayError
+from tree_sway.files.trees.source import open_scene
 from tree_sway.files.trees.tree_file import read_trees
 from tree_sway.files.wind.wind_file import read_wind
 used = resource.getrusage(resource.RUSAGE_SELF)
 resource.setrlimit(resource.RLIMIT_CPU, 2 * (5 + int(used.ru_utime + used.ru_stime) + 1,))
 try:
-    (read_wind if sys.argv[2] == 'wind' else read_trees)(sys.argv[1])
+    {'wind': read_wind, 'tree': read_trees, 'scene': open_scene}[sys.argv[2]](sys.argv[1])
 except TreeSwayError as error:
     print(error)
 """
@@ -133,12 +135,76 @@ def million_keys(path: Path) -> None:
     path.write_text('branches:\n' + '\n'.join(f'k{i}: 1' for i in range(1_000_000)))
 
 
+def geopackage(path: Path, table: object, *statements: str) -> None:
+    base = sqlite3.connect(path)
+    base.execute('CREATE TABLE gpkg_contents (table_name, data_type)')
+    base.execute('CREATE TABLE gpkg_geometry_columns (table_name, column_name, srs_id)')
+    base.execute("INSERT INTO gpkg_contents VALUES (?, 'features')", (table,))
+    base.execute("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', 0)", (table,))
+    for each in statements:
+        base.execute(each)
+    base.commit()
+    base.close()
+
+
+def layer_without_end(path: Path) -> None:
+    rows = 'WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)'
+    view = f"CREATE VIEW trees AS {rows} SELECT i AS geom, 'oak' AS species FROM n WHERE i < 0"
+    geopackage(path, 'trees', view)
+
+
+def giant_cell(path: Path) -> None:
+    blobs = ', '.join(f'zeroblob(900000000) AS {name}' for name in ('geom', 'species', 'height'))
+    geopackage(path, 'trees', f'CREATE VIEW trees AS SELECT {blobs}')
+
+
+def blob_as_name(path: Path) -> None:
+    geopackage(path, b'\0\1', 'CREATE TABLE trees (geom, species, height)')
+
+
+def geometry_cut_off(path: Path) -> None:
+    rows = "INSERT INTO trees VALUES (x'47500001', 'oak', 12), (x'4750000100000000', 'oak', 9)"
+    geopackage(path, 'trees', 'CREATE TABLE trees (geom, species, height)', rows)
+
+
+def spreadsheet(path: Path, part: str, body: Iterator[bytes]) -> None:
+    """Write a spreadsheet of which a part is replaced."""
+    openpyxl = pytest.importorskip('openpyxl', reason='the extra inventory is not installed')
+    stream = io.BytesIO()
+    openpyxl.Workbook().save(stream)
+    with zipfile.ZipFile(stream) as good, zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as bad:
+        for each in good.namelist():
+            with bad.open(each, 'w', force_zip64=True) as file:
+                for data in body if each == part else [good.read(each)]:
+                    file.write(data)
+
+
+SHEET = 'xl/worksheets/sheet1.xml'
+
+
+def packed_sheet(path: Path) -> None:
+    spreadsheet(path, SHEET, (bytes(1 << 24) for _ in range(60)))
+
+
+def laughs(path: Path) -> None:
+    entities = ''.join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10}">' for i in range(1, 12))
+    head = f'<?xml version="1.0"?><!DOCTYPE b [<!ENTITY a0 "ha">{entities}]>'
+    body = '<worksheet><sheetData><row><c t="inlineStr"><is><t>&a11;</t></is></c></row>'
+    spreadsheet(path, SHEET, iter([f'{head}{body}</sheetData></worksheet>'.encode()]))
+
+
 BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
     'chunks.mcap': (chunks_in_chunks, 'Nested MCAP chunks'),
     'packed.mcap': (packed_chunk, 'more than 768 MiB of memory or 20 s'),
     'packed': (packed_bag, 'File too large'),
     'view.db3': (view_without_end, 'missing tables'),
     'computed.db3': (computed_column, 'not a bag that can be read'),
+    'endless.gpkg': (layer_without_end, 'more than 768 MiB of memory or 20 s'),
+    'giant.gpkg': (giant_cell, 'string or blob too big'),
+    'name.gpkg': (blob_as_name, 'a layer whose name is no text'),
+    'cut.gpkg': (geometry_cut_off, 'no layer of points'),
+    'packed.xlsx': (packed_sheet, 'more than 768 MiB when it is unpacked'),
+    'laughs.xlsx': (laughs, 'not a spreadsheet that can be read'),
     'cells.mat': (many_cells, 'more than 100000 arrays'),
     'ends.csv': (line_ends, 'more than 4000000 lines'),
     'keys.yaml': (million_keys, 'more than 600000 keys and values'),
@@ -152,6 +218,7 @@ def test_a_bomb_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
         pytest.importorskip('rosbags', reason='rosbags is not installed')
     make(tmp_path / name)
     kind = 'tree' if name.endswith(('.mat', '.yaml')) else 'wind'
+    kind = 'scene' if name.endswith(('.gpkg', '.xlsx')) else kind
     command = [sys.executable, '-c', READ, str(tmp_path / name), kind]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert (ended.returncode, ended.stderr) == (0, '')

@@ -164,6 +164,15 @@ def test_results_come_as_they_are_done(apart: SeparateCluster) -> None:
         assert sorted(run_all(distributed, client, abs, work)) == [0, 1, 2, 3, 4]
 
 
+def test_a_worker_that_lies_or_fails_is_told(apart: SeparateCluster) -> None:
+    with cluster.cluster(1, apart.address) as (distributed, client):
+        work = [('piece 1', ('x',))]
+        with pytest.raises(TransportError, match='piece 1: a worker returned a str that is no'):
+            list(run_all(distributed, client, str, work, lambda result, _: result == 'y'))
+        with pytest.raises(TransportError, match='piece 1: a worker failed .ValueError'):
+            list(run_all(distributed, client, int, work))
+
+
 def study_with_another(started: list[multiprocessing.process.BaseProcess]) -> None:
     """Start a worker, then a process that is none, and press Ctrl-C."""
     with cluster.cluster(1):

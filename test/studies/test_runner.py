@@ -30,6 +30,7 @@ from tree_sway.studies.runner import (
     batches,
     compute_batch,
     estimated_time,
+    is_outcome,
     missing_cases,
     result_path,
     run_study,
@@ -347,3 +348,13 @@ def test_no_page_of_the_cluster_answers_other_users() -> None:
                     answered[page] = response.read()
     assert len(listening) >= 4
     assert answered in ({}, {'sitemap.json': b'{"paths": ["/sitemap.json"]}'})
+
+
+def test_only_the_rows_of_the_cases_are_an_outcome():
+    asked = cases(2)
+    good = [(asked[0], {'a': 1.0}), (asked[1], TreeSwayError('no wind'))]
+    assert is_outcome(good, asked, {})
+    large = {'a': 'x' * (1 << 18)}
+    for bad in (None, 'ab', good[:1], good[::-1], [*good, good[0]], [(asked[0], 3), good[1]],
+                [(asked[0], {'a': object()}), good[1]], [(asked[0], large), good[1]]):  # fmt: skip
+        assert not is_outcome(bad, asked, {})

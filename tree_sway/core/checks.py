@@ -72,11 +72,18 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(number)
 
 
-def refuse_time_step(dt: float) -> None:
-    """Refuse a time step [s] that is not finite and above 0."""
-    if not (math.isfinite(number_of('step', dt)) and dt > 0.0):
+GREATEST = 1e18
+"""Bound of the numbers of a model, a state and a description, in SI: no tree comes near it."""
+LONGEST_STEP = 0.5
+"""Longest step of a simulator [s]; a stall beyond it is skipped, or solved in several steps."""
+
+
+def refuse_time_step(dt: float, longest: float = LONGEST_STEP) -> None:
+    """Refuse a time step [s] that is not above 0, longer than the longest, or not finite."""
+    if not (0.0 < number_of('step', dt) <= longest and math.isfinite(dt)):
+        limit = f' and up to {longest:g} s: take several for more' if longest < math.inf else ''
         raise ParameterError(
-            f'time step of {dt} s', where='step', cure='give a finite one above 0'
+            f'time step of {dt} s', where='step', cure=f'give a finite one above 0{limit}'
         )
 
 

@@ -14,7 +14,7 @@ _BETWEEN = '\x1f'
 
 def table_of_cells(
     columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
+    rows: Iterable[Sequence[str]],
     source: str,
     numbers: Sequence[int] | None = None,
     units: Sequence[str] = (),

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tree_sway.core.checks import GREATEST
 from tree_sway.core.tree.species import SPECIES
 from tree_sway.errors import FormatError, inside
 
@@ -27,9 +28,6 @@ MOST_POSES = 10_000_000
 
 MOST_COORDINATES = 65_535
 """Largest number of coordinates of all trees; a frame counts them in two bytes."""
-
-_GREATEST = 1e12
-"""Largest height, error or number of the law of the leaves."""
 
 Array = NDArray[Any]
 
@@ -212,15 +210,16 @@ def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
             wanted = axis if isinstance(axis, int) else sizes.setdefault(axis, size)
             require(f'shape of {name}', size == wanted)
         if kind == '<f4':
-            require(name, np.isfinite(array).all(axis=tuple(range(1, array.ndim))))
+            is_good = np.abs(array) < GREATEST
+            require(name, is_good.all(axis=tuple(range(1, array.ndim))))
     return sizes
 
 
 def is_finite(value: object) -> bool:
-    """Whether a value of JSON is a number, and not beyond `_GREATEST`."""
+    """Whether a value of JSON is a number, and not beyond `GREATEST`."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return False
-    return -_GREATEST < value < _GREATEST
+    return -GREATEST < value < GREATEST
 
 
 def require(name: str, holds: ArrayLike) -> None:
@@ -228,4 +227,5 @@ def require(name: str, holds: ArrayLike) -> None:
     rows = np.atleast_1d(holds)
     if not rows.all():
         row = f'[{int(np.argmin(rows))}]' if np.ndim(holds) else ''
-        raise FormatError('inconsistent with the rest, or not finite', where=f'{name}{row}')
+        what = 'inconsistent with the rest, not finite, or a number that no tree has'
+        raise FormatError(what, where=f'{name}{row}')

@@ -24,7 +24,7 @@ from typing import Any
 
 from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.core.checks import within
-from tree_sway.errors import ParameterError, TransportError
+from tree_sway.errors import ParameterError, TransportError, TreeSwayError
 from tree_sway.extras import PACKAGE
 from tree_sway.studies.lost_workers import told_lost_workers
 
@@ -32,6 +32,7 @@ ATTEMPTS = 4
 """Number of workers that may die of one piece of work before the study ends."""
 ROOMS = 'core', 'files', 'studies'
 """Rooms whose source and tables determine the results."""
+_LONGEST_REASON = 400
 _PATIENCE = 15.0
 """Longest wait for a scheduler and for its first worker [s]."""
 _REPEAT = 2.0
@@ -174,22 +175,34 @@ def run_all(
     client: Any,
     function: Callable[..., Any],
     work: Sequence[tuple[str, tuple[Any, ...]]],
+    is_answer: Callable[..., bool] = lambda result, *arguments: True,
 ) -> Iterator[Any]:
     """
     Yield the results of a function for pieces of work, in the order in which they are finished.
 
     Each piece has a name, which has to be its own, and arguments. What a lost worker had is done
     by another, which is reported on standard error. Raises a `TransportError` for a piece that
-    ends `ATTEMPTS` workers, or when the scheduler is lost.
+    ends `ATTEMPTS` workers, for a result that is no answer to its arguments, for what a worker
+    raises, or when the scheduler is lost.
     """
     with told_lost_workers(client, [name for name, _ in work]):
         futures = [
             client.submit(function, *arguments, key=name, pure=False) for name, arguments in work
         ]
         waiting = set(futures)
+        asked = dict(work)
         try:
             for future in distributed.as_completed(futures):
+                error = future.exception()
+                if error is not None:
+                    _refuse_error(distributed, future.key, error)
                 result = future.result()
+                if not is_answer(result, *asked[future.key]):
+                    raise TransportError(
+                        f'a worker returned a {type(result).__name__} that is no answer to it',
+                        where=future.key,
+                        cure='end that worker, and run it again: what is finished is kept',
+                    )
                 waiting.discard(future)
                 future.release()  # its result is not kept on the cluster
                 yield result
@@ -210,6 +223,16 @@ def run_all(
         finally:
             with suppress(Exception):  # the study has ended in another way, which counts
                 client.cancel(list(waiting), force=True)
+
+
+def _refuse_error(distributed: Any, name: str, error: BaseException) -> None:
+    """Raise what a worker raised; an error that is none of this package in one line."""
+    own = TreeSwayError, distributed.KilledWorker, distributed.client.FutureCancelledError
+    if isinstance(error, (*own, distributed.comm.CommClosedError)):
+        raise error
+    what = f'a worker failed ({type(error).__name__}: {error})'
+    cure = 'see to that worker, and run it again: what is finished is kept'
+    raise TransportError(what[:_LONGEST_REASON], where=name, cure=cure) from None
 
 
 @contextmanager

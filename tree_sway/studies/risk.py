@@ -111,9 +111,14 @@ def risk_rows(
     """
     pieces = [(f'kind {number}', (kind,)) for number, kind in enumerate(work.kinds)]
     with cluster(min(workers, max(len(pieces), 1)), scheduler) as (distributed, client):
-        for result in run_all(distributed, client, compute_kind, pieces):
+        for result in run_all(distributed, client, compute_kind, pieces, is_result):
             rows = rows_of_kind(work, result)
             yield len(rows), rows
+
+
+def is_result(result: Any, kind: RiskKind) -> bool:
+    """Whether a worker returned what was asked of it."""
+    return isinstance(result, KindResult) and result.kind == kind
 
 
 def rows_of_kind(work: RiskWork, result: KindResult) -> list[Row]:

@@ -24,6 +24,8 @@ from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.studies.cluster import cluster, run_all
 from tree_sway.studies.plan import Case, Plain
 
+_LARGEST_ROW = 1 << 16
+"""Largest row of a case as JSON [bytes]."""
 _START, _SET_UP, _STEP = 4.0, 2.5, 2e-4
 """Time to start workers, to set up a tree of 900 branches, and for each of its steps [s]."""
 _LARGEST_BATCH = 8
@@ -130,6 +132,18 @@ def compute_batch(cases: list[Case], files: dict[str, Any]) -> list[Outcome]:
     return outcomes
 
 
+def is_outcome(result: Any, cases: list[Case], _files: dict[str, Any]) -> bool:
+    """Whether a worker returned the row or the error of each of its cases, and no more."""
+    try:
+        found = [case for case, _ in result]
+        rows = [row for _, row in result if not isinstance(row, TreeSwayError)]
+        size = sum(len(json.dumps(row)) for row in rows)
+    except (TypeError, ValueError, RecursionError):
+        return False
+    is_all = found == cases and all(isinstance(row, dict) for row in rows)
+    return is_all and size <= _LARGEST_ROW * len(cases)
+
+
 def batches(cases: list[Case], workers: int) -> list[list[Case]]:
     """
     Group cases of one tree with one set of settings.
@@ -170,7 +184,7 @@ def _outcomes(cases: list[Case], workers: int, scheduler: str | None) -> Iterato
     opened: dict[str, Any] = {}
     work = [(part[0].name, (part, files_of(part, opened))) for part in batches(cases, workers)]
     with cluster(workers, scheduler) as (distributed, client):
-        for outcomes in run_all(distributed, client, compute_batch, work):
+        for outcomes in run_all(distributed, client, compute_batch, work, is_outcome):
             yield from outcomes
 
 

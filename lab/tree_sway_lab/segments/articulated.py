@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import array_to_fill, one_of_each
+from tree_sway.core.checks import array_to_fill, one_of_each, refuse_time_step
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway.core.tree.tree import Tree
@@ -165,6 +165,7 @@ class ArticulatedTree:
         step is taken in finer pieces. Returns whether that helped; if not the tree is at rest
         again.
         """
+        refuse_time_step(dt)
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)

@@ -155,7 +155,7 @@ def test_a_storm_that_is_held_says_so(stem):
     assert sim.counts.clamped >= status.count(LOAD_CLAMPED)
 
 
-@pytest.mark.parametrize('dt', [0.0, -0.1, float('nan'), float('inf')])
+@pytest.mark.parametrize('dt', [0.0, -0.1, 0.51, 10.0, float('nan'), float('inf')])
 def test_a_step_that_is_none_is_refused(fork, dt):
     sim = swaying(fork(), 'branch')
     sim.step([5.0, 0.0, 0.0], DT)

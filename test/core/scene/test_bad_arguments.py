@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.identification.calibration import calibrate
 from tree_sway.core.model.settings import Settings
@@ -285,3 +286,22 @@ def test_numbers_beyond_floats_are_refused(fork):
     for call in (lambda: sim.step((1.0, 2.0, 3.0), 10**400), lambda: grow('oak', 10**400, rng=1)):
         with pytest.raises(ParameterError, match=r'time step of 1000|height nan'):
             call()
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_a_step_beyond_the_longest_is_refused_and_changes_nothing(fork, kind):
+    sim = simulator(fork(), kind)
+    sim.step((5.0, 0.0, 0.0), LONGEST_STEP)
+    before = sim.state().values
+    with pytest.raises(ParameterError, match='up to 0.5 s: take several for more'):
+        sim.step((25.0, 0.0, 0.0), 10.0)
+    assert (sim.state().values == before).all()
+
+
+@pytest.mark.parametrize('value', [np.nan, np.inf, 1e308])
+def test_a_state_with_numbers_that_no_tree_has_is_refused(fork, value):
+    sim = make_simulator(fork(), model=4)
+    state = sim.state()
+    with pytest.raises(StateError, match='a number that no tree has'):
+        sim.set_state(replace(state, values=np.full_like(state.values, value)))
+    assert (sim.state().values == state.values).all()

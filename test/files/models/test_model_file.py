@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 import json
 import math
 import zipfile
@@ -192,3 +193,13 @@ def test_a_file_with_any_damaged_byte_is_refused_or_the_same(file):
         file.write_bytes(damaged)
         with suppress(FormatError):
             assert (make_simulator(read_model(file)).place() == rest).all()
+
+
+@pytest.mark.parametrize('name', ['branch_offset', 'segment_rest', 'stiffness', 'mass'])
+def test_numbers_that_no_tree_has_are_refused_with_a_right_digest(fork, tmp_path, name):
+    model = prepare(fork(), species_named('oak'))
+    value = getattr(model, name)
+    great = 1e308 if name == 'mass' else np.full_like(value, 1e308)
+    write_model(tmp_path / 'a.npz', replace(model, **{name: great}))
+    with pytest.raises(FormatError, match=f"'{name}': a number that no tree has"):
+        read_model(tmp_path / 'a.npz')

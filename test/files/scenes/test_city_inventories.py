@@ -393,9 +393,10 @@ def test_spreadsheet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert inventory.lines == (3, 5)
     assert len(open_scene(path).trees) == 2
     (tmp_path / 'cut.xlsx').write_bytes(path.read_bytes()[:1000])
-    with pytest.raises(FormatError, match='no spreadsheet that can be read'):
+    with pytest.raises(FormatError, match='not a spreadsheet that can be read'):
         open_scene(tmp_path / 'cut.xlsx')
-    monkeypatch.setitem(__import__('sys').modules, 'openpyxl', None)
+    (tmp_path / 'openpyxl.py').write_text("raise ModuleNotFoundError(name='openpyxl')")
+    monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(MissingDependencyError, match='openpyxl'):
         open_scene(path)
 

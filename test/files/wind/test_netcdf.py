@@ -69,9 +69,10 @@ def test_errors_name_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyP
         read_wind(path, at=('north', 'east'))
     whole = written(tmp_path / 'whole.nc').read_bytes()
     (tmp_path / 'cut.nc').write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(FormatError, match='cannot be read as netCDF'):
+    with pytest.raises(FormatError, match='not a netCDF file that can be read'):
         read_wind(tmp_path / 'cut.nc')
-    monkeypatch.setitem(__import__('sys').modules, 'netCDF4', None)
+    (tmp_path / 'netCDF4.py').write_text("raise ModuleNotFoundError(name='netCDF4')")
+    monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(MissingDependencyError, match=r'netCDF4.*'):
         read_wind(tmp_path / 'whole.nc')
     assert 'netcdf' in {known.name for known in wind_file.WIND_FORMATS}

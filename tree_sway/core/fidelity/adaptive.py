@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.checks import refuse_time_step, three_numbers, within
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import TreeState
@@ -246,8 +246,9 @@ class AdaptiveSimulator(SwaySimulator):
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Detect a load beyond that of the choice before its step."""
         x, y, z = three_numbers('wind', wind_mean)
+        refuse_time_step(dt)
         load = x * x + y * y + z * z
-        self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
+        self._gust *= math.exp(-dt / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):
             self._gust = load
             self._bearing = np.array([x, y, z])

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.beams.field_counts import ROOMS
+from tree_sway.core.checks import GREATEST
 from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.settings import Settings
@@ -383,7 +384,7 @@ class SwayModel:
         tree = self.tree
         settings = self.settings
         return {
-            **{name: each for name, each in self.arrays().items() if each.size},
+            **{n: each for n, each in self.arrays().items() if each.size and _is_native(n)},
             'gravity': np.array([settings.gravity]),
             'crown_coherence': np.array([settings.crown_coherence]),
             'tree_start': tree.start,
@@ -419,8 +420,9 @@ class SwayModel:
             if array.dtype != TYPES[name] or not _fits(array.shape, shape):
                 what = f'{array.dtype} of shape {array.shape}'
                 raise _misfit(name, what, f'{TYPES[name]} of shape {shape}')
-            if not np.isfinite(array).all():
-                raise _misfit(name, 'a number that is not finite', 'finite numbers')
+            _refuse_numbers(name, array)
+        if (self.stiffness < 0.0).any():
+            raise _misfit('stiffness', 'a negative number', 'those of a tree that stands')
         self._check_indices()
 
     def _may_lack(self, group: str) -> bool:
@@ -495,13 +497,21 @@ class SwayModel:
             if name not in arrays:
                 raise _misfit(name, 'missing', 'an array of every model')
         for name, size in NUMBERS.items():
-            if arrays[name].size != size or not np.isfinite(arrays[name]).all():
-                raise _misfit(name, f'of shape {arrays[name].shape}', f'{size} finite numbers')
+            if arrays[name].size != size:
+                raise _misfit(name, f'of shape {arrays[name].shape}', f'{size} numbers')
+            _refuse_numbers(name, arrays[name])
         given: dict[str, Any] = {**arrays, 'drag_law': DragLaw(*arrays['drag_law'].tolist())}
         given |= {name: float(arrays[name]) for name in NUMBERS if name != 'drag_law'}
         made = cls(tree=tree, species=species, settings=settings, **given)
         made.check()
         return made
+
+
+def _is_native(name: str) -> bool:
+    """Whether the native core needs an array or number."""
+    if name in NUMBERS or name in ('stiffness', 'own_damping', 'shapes'):
+        return True
+    return MEANINGS[name].group in (PLACING, TABLE, LIMBS, LIMB_LOADS)
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | str, ...]) -> bool:
@@ -510,6 +520,13 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | str, ...]) -> bool:
     return len(shape) == len(wanted) and all(
         isinstance(size, str) or size == own for own, size in pairs
     )
+
+
+def _refuse_numbers(name: str, array: NDArray[Any]) -> None:
+    """Refuse numbers that no tree has: not finite, or so great that poses would not be."""
+    if not (np.abs(array) < GREATEST).all():
+        what = 'a number that no tree has, or that is not finite'
+        raise _misfit(name, what, f'numbers below {GREATEST:g}')
 
 
 def _misfit(name: str, what: str, wanted: str) -> FormatError:

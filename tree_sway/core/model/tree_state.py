@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import GREATEST
 from tree_sway.errors import StateError
 
 
@@ -73,8 +74,9 @@ def refuse_other_state(state: TreeState, own: TreeState) -> None:
                 where=own.tree,
                 cure='set a state of the same tree with the same species, settings and model',
             )
-    if not np.isfinite(state.values).all():
-        raise StateError('a state that is not finite', where=own.tree)
+    if not (np.abs(state.values) < GREATEST).all():
+        what = 'a state with a number that no tree has, or that is not finite'
+        raise StateError(what, where=own.tree, cure='set what state() of a simulator returned')
 
 
 def digest_of(*header: Any) -> str:

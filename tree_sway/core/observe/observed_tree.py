@@ -23,7 +23,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import array_to_read, refuse_time_step, three_numbers, within
+from tree_sway.core.checks import (
+    array_to_read,
+    LONGEST_STEP,
+    refuse_time_step,
+    three_numbers,
+    within,
+)
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
@@ -193,7 +199,7 @@ class ObservedTree(SwaySimulator):
 
         A `ParameterError` refuses a rate beyond 1 to 10,000 Hz.
         """
-        if within('rate', rate, 1.0, 10_000.0, 'Hz') == self._rate:
+        if within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz') == self._rate:
             return
         before = self.observer if self._rate else None
         self._rate = rate
@@ -291,8 +297,7 @@ class ObservedTree(SwaySimulator):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step as `SwaySimulator.step`, then correct the motion."""
         x, y, z = three_numbers('wind', wind_mean)
-        if dt != self._dt:
-            refuse_time_step(dt)
+        refuse_time_step(dt)  # before anything changes
         swing, added = self._swing, self._added
         eta, rate, _ = swing
         eta -= added[0]

@@ -18,6 +18,8 @@ without cancellation.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -64,7 +66,7 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
         coefficients are all zero, named by its index.
 
     """
-    refuse_time_step(dt)
+    refuse_time_step(dt, math.inf)
     parts = {'inertia': inertia, 'damping': damping, 'stiffness': stiffness}
     values = np.broadcast_arrays(*(np.atleast_1d(each) for each in parts.values()))
     i, c, k = (

@@ -267,7 +267,7 @@ class SwaySimulator:
         Raises
         ------
         ParameterError
-            A step that is not above 0 or not finite.
+            A step that is not above 0, or longer than `LONGEST_STEP`.
 
         """
         counts = self.counts

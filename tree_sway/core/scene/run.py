@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.averaging import WindAverage
@@ -32,7 +33,7 @@ from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.intake import GoodWind, WindIntake
 from tree_sway.errors import TreeSwayError
 
-LONGEST_JUMP = 500_000_000
+LONGEST_JUMP = round(1e9 * LONGEST_STEP)
 """Longest time that one `Run.advance` solves [ns]; time before it is skipped."""
 
 _BACK = 1_000_000_000
@@ -275,7 +276,9 @@ class Run:
         self.clamped += passed > limit
         periods = min(passed, limit)
         self._index = index
-        n_steps = 1 if may_join and self._cost > 0.5e-9 * self.period else periods
+        n_steps = periods
+        if may_join and self._cost > 0.5e-9 * self.period:  # each no longer than a step may be
+            n_steps = -(-periods * self.period // LONGEST_JUMP)
         length = self.period * periods // n_steps  # whole numbers: the same dt at any lateness
         dt = length * 1e-9
         for later in range(n_steps - 1, -1, -1):

@@ -262,7 +262,7 @@ class SceneSimulator:
         Raises
         ------
         ParameterError
-            A step that is not above 0 or not finite.
+            A step that is not above 0, or longer than `LONGEST_STEP`.
 
         """
         refuse_time_step(dt)

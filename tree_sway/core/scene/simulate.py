@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.checks import refuse_other_kind, within
+from tree_sway.core.checks import LONGEST_STEP, refuse_other_kind, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.observed_tree import ObservedTree
@@ -198,7 +198,8 @@ class Rig:
                 load = simulator.load_band(per_rotation)
                 bands.append((tips + simulator.band(chosen.tolist()), moment + load))
 
-        count, steps = _steps(simulator, wind, within('rate', rate, 1.0, 10_000.0, 'Hz'), measure)
+        steps_per_second = within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz')
+        count, steps = _steps(simulator, wind, steps_per_second, measure)
         if seconds is not None:
             within('seconds', seconds, 0.0, 1e9, 's', above=True)
             count = min(count, max(round(seconds * rate), 1))

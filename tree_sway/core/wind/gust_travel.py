@@ -111,7 +111,7 @@ class GustHistory:
         finite, or a step that is not above 0.
         """
         x, y, z = three_numbers('wind', wind_mean)
-        refuse_time_step(dt)
+        refuse_time_step(dt, math.inf)
         if not math.isfinite(x + y + z):
             raise ParameterError(f'wind ({x}, {y}, {z}) m/s', cure='give finite numbers')
         self._n_changes += 1

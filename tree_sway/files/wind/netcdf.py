@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
-from tree_sway.extras import cure_of_missing
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.bounded import Arrays, bounded_arrays
 from tree_sway.files.column_names import rank_of, unit_factor, UNITS
-from tree_sway.files.text_file import reason_of
 from tree_sway.files.wind.compass import FULL_CIRCLE, velocity_to
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
@@ -50,18 +49,31 @@ def read_netcdf_wind(
         If netCDF4 is not installed.
 
     """
-    try:
-        from netCDF4 import Dataset
-    except ModuleNotFoundError:
-        cure = cure_of_missing('netCDF4')
-        raise MissingDependencyError("No module named 'netCDF4'", cure=cure) from None
-    point = _point(at)
-    try:
-        with Dataset(path) as data:
-            return _read(data, str(path), point, turbulence, seed)
-    except (OSError, ValueError, RuntimeError, KeyError, IndexError) as error:
-        what = f'cannot be read as netCDF: {reason_of(error)}'
-        raise FormatError(what, where=str(path), cure='download it again') from None
+    point = [repr(degrees) for degrees in _point(at) or ()]
+    cure = 'download it again'
+    found = bounded_arrays(winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
+    rows = WindRows(str(path), row_name='sample')
+    velocity = found['velocity']
+    good = np.isfinite(velocity).all(axis=1)
+    for index in np.flatnonzero(~good).tolist():
+        rows.refuse(index + 1, 'no value')
+    rows.time = array('d', found['seconds'][good])
+    rows.velocity = array('d', velocity[good].ravel())
+    rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
+    if 'gust' in found:
+        rows.gust = found['gust'][good]
+    notes = tuple(found['notes'].tolist())
+    record = rows.record(epoch=float(found['epoch']), notes=notes)
+    return filled_means(record, turbulence, seed)
+
+
+def winds_of_netcdf(path: str, *at: str) -> Arrays:
+    """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
+    from netCDF4 import Dataset
+
+    point = (float(at[0]), float(at[1])) if at else None
+    with Dataset(path) as data:
+        yield from _read(data, path, point)
 
 
 def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
@@ -76,9 +88,7 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
     return latitude, longitude
 
 
-def _read(
-    data: Any, source: str, point: tuple[float, float] | None, turbulence: bool, seed: float
-) -> WindRecord:
+def _read(data: Any, source: str, point: tuple[float, float] | None) -> Arrays:
     found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
     is_polar = None in [found[each] for each in _COMPONENTS]
     if found['time'] is None or (is_polar and None in [found[each] for each in _POLAR]):
@@ -99,16 +109,10 @@ def _read(
         north = second.series('speed', clock, place)
         velocity = np.stack([east, north, np.zeros(len(east))], axis=1)
     seconds, epoch = _seconds(clock)
-    rows = WindRows(source, row_name='sample')
-    good = np.isfinite(velocity).all(axis=1)
-    for index in np.flatnonzero(~good).tolist():
-        rows.refuse(index + 1, 'no value')
-    rows.time = array('d', seconds[good])
-    rows.velocity = array('d', velocity[good].ravel())
-    rows.number = array('q', (np.flatnonzero(good) + 1).tolist())
+    yield from (('velocity', velocity), ('seconds', seconds), ('epoch', epoch))
+    yield 'notes', np.array(notes, dtype=np.str_)
     if found['gust'] is not None:
-        rows.gust = _Variable(data, found['gust'], source).series('speed', clock, place)[good]
-    return filled_means(rows.record(epoch=epoch, notes=tuple(notes)), turbulence, seed)
+        yield 'gust', _Variable(data, found['gust'], source).series('speed', clock, place)
 
 
 def _velocity_from(speed: Floats, degrees: Floats) -> Floats:

@@ -17,7 +17,7 @@ const MOST_STATES = 50000000;
 const FASTEST = 1e6;
 const LEAST_RATIO = 0.1;
 /** Largest magnitude of any number, such as a height [m]. */
-const GREATEST = 1e12;
+const GREATEST = 1e18;
 
 export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
@@ -62,7 +62,7 @@ export function sizesOf(parts, forms) {
       if (typeof axis === "string") size[axis] ??= shape[i];
       need(shape[i] === (typeof axis === "string" ? size[axis] : axis), name);
     });
-    need(values.every(Number.isFinite), name);
+    need(values.every(isFinite), name);
   }
   return size;
 }

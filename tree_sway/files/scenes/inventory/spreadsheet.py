@@ -4,17 +4,23 @@
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import islice, repeat, zip_longest
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
 
-from tree_sway.errors import FormatError, MissingDependencyError
-from tree_sway.extras import cure_of_missing
+from tree_sway.errors import FormatError
+from tree_sway.files.bounded import (
+    Arrays,
+    bounded_arrays,
+    MEMORY,
+    packed_rows,
+    unpacked_rows,
+)
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import rank_of
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import MAX_LINES, reason_of
+from tree_sway.files.text_file import MAX_LINES
 
 _QUANTITIES = ('species', 'genus', 'height', 'diameter', 'girth', 'x', 'latitude', 'place')
 _CHUNK = 1 << 20
@@ -29,21 +35,9 @@ def read_spreadsheet(path: Path) -> TextTable:
     Raises a `FormatError` for a broken file or no such sheet, and a `MissingDependencyError`
     without openpyxl.
     """
-    try:
-        from openpyxl import load_workbook
-    except ModuleNotFoundError:
-        cure = cure_of_missing('openpyxl')
-        raise MissingDependencyError("No module named 'openpyxl'", cure=cure) from None
-    try:
-        book = load_workbook(path, read_only=True, data_only=True)
-        sheets = [list(_rows(sheet)) for sheet in book.worksheets]
-        if _has_formulas(path):
-            formulas = load_workbook(path, read_only=True).worksheets
-            for rows, sheet in zip(sheets, formulas, strict=True):
-                _tell_formulas(rows, sheet)
-    except Exception as error:  # of zip, of XML, of the format: openpyxl has no root of its own
-        what = f'no spreadsheet that can be read: {reason_of(error)}'
-        raise FormatError(what, where=str(path), cure='save it as .xlsx or .csv again') from None
+    cure = 'save it as .xlsx or .csv again'
+    arrays = bounded_arrays(rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
+    sheets = [list(unpacked_rows(each)) for each in arrays.values()]
     tables = [
         (rows, number)
         for rows in sheets
@@ -59,13 +53,31 @@ def read_spreadsheet(path: Path) -> TextTable:
     return table_of_cells(rows[number], below, str(path), lines)
 
 
+def rows_of_spreadsheet(path: str) -> Arrays:
+    """Yield the rows of texts of each sheet."""
+    from openpyxl import load_workbook
+
+    with ZipFile(path) as archive:
+        size = sum(each.file_size for each in archive.infolist())
+    if size > MEMORY:
+        raise ValueError(f'more than {MEMORY >> 20} MiB when it is unpacked')
+    has_formulas = _has_formulas(path)
+    book = load_workbook(path, read_only=True, data_only=True)
+    formulas = load_workbook(path, read_only=True).worksheets if has_formulas else repeat(None)
+    for number, (sheet, written) in enumerate(zip(book.worksheets, formulas, strict=False)):
+        rows = sheet.iter_rows(values_only=True)
+        if written is not None:
+            rows = map(_told_formulas, rows, written.iter_rows(values_only=True))
+        yield str(number), packed_rows(islice(rows, MAX_LINES))
+
+
 def _n_known(cells: list[str]) -> int:
     """Count of the quantities of an inventory that a row names."""
     names = [cell for cell in cells if cell]
     return sum(any(rank_of(name, each) is not None for name in names) for each in _QUANTITIES)
 
 
-def _has_formulas(path: Path) -> bool:
+def _has_formulas(path: str) -> bool:
     """Whether the file may have formulas: they are read from it a second time."""
     with ZipFile(path) as archive:
         for name in archive.namelist():
@@ -76,15 +88,11 @@ def _has_formulas(path: Path) -> bool:
     return False
 
 
-def _tell_formulas(rows: list[list[str]], sheet: Any) -> None:
+def _told_formulas(cells: tuple[Any, ...], written: tuple[Any, ...]) -> list[Any]:
     """Put formulas that no program has calculated yet in place of their empty cells."""
-    for cells, written in zip(rows, sheet.iter_rows(values_only=True), strict=False):
-        for column, formula in enumerate(written[: len(cells)]):
-            if not cells[column] and isinstance(formula, str) and formula.startswith('='):
-                cells[column] = f'formula {formula}, not calculated'
-
-
-def _rows(sheet: Any) -> Any:
-    """Texts of the cells of each row."""
-    for row in islice(sheet.iter_rows(values_only=True), MAX_LINES):
-        yield ['' if cell is None else str(cell).replace('\x1f', ' ') for cell in row]
+    return [
+        f'formula {formula}, not calculated'
+        if cell is None and isinstance(formula, str) and formula.startswith('=')
+        else cell
+        for cell, formula in zip_longest(cells, written[: len(cells)])
+    ]
