@@ -296,7 +296,7 @@ def _tree_lines(facts: dict[str, Any]) -> list[str]:
         f'  wood       {facts["wood"]}: {facts["modulus"] / 1e9:.3g} GPa, '
         f'{facts["density"]:.4g} kg/m^3',
         f'  mass       {facts["mass"]:.4g} kg, {"in leaf" if facts["in_leaf"] else "leafless"}',
-        f'  roots      {"rigid" if roots is None else f"{roots:.3g} N m/rad"}',
+        f'  root plate {"does not turn" if roots is None else f"turns by {roots:.3g} N m/rad"}',
     ]
 
 

@@ -10,7 +10,7 @@ import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
 import { Risk } from "./risk.js";
-import { QUANTITIES, Trace, unitOf } from "./trace.js";
+import { Trace } from "./trace.js";
 import { language, motionSensors, setLanguage, windFrom, windSource, word } from "./words.js";
 
 /** Age of the newest frame from which on the stream counts as behind [ms]. */
@@ -81,8 +81,8 @@ const stream = new TreeStream(address.href, {
     const { name, trees, nSegments, kinds } = description;
     const models = new Set(kinds.map(({ model }) => modelName(model)));
     const counts = { trees: grouped(trees.length), segments: grouped(nSegments) };
-    const error = Math.max(...kinds.map((kind) => kind.basis_error));
-    write({ name, ...counts, model: [...models].join(", "), error: `± ${Number((1000 * error).toPrecision(2))} mm` });
+    const error = Number((1000 * Math.max(...kinds.map((kind) => kind.basis_error))).toPrecision(2));
+    write({ name, ...counts, model: [...models].join(", "), error: word("up_to", `${error} mm`) });
     document.title = `${name} – tree sway`;
     showButtons();
     showPanel();
@@ -181,13 +181,20 @@ function notice(title, text, canRetry = false) {
   element("retry").hidden = !canRetry;
 }
 
-/** @param {string} text @param {boolean} [isProblem] */
-function toast(text, isProblem = true) {
+/** @param {string} text @param {boolean} [isProblem] @param {boolean} [isLasting] until the next one */
+function toast(text, isProblem = true, isLasting = false) {
   write({ toast: text });
   element("toast").classList.toggle("problem", isProblem);
   element("toast").hidden = false;
   clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => (element("toast").hidden = true), 6000);
+  if (!isLasting) toastTimer = setTimeout(() => (element("toast").hidden = true), 6000);
+}
+
+/** Save the tree as a file, and say that it is being written. @param {"glb" | "html"} suffix */
+async function saveFile(suffix) {
+  toast(word("writing"), false, true);
+  await saveTree(suffix, treeName(), query.get("token"));
+  element("toast").hidden = true;
 }
 
 function showFacts() {
@@ -200,17 +207,19 @@ function showFacts() {
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
   const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
-  const { mean, greatest } = traces.wind.statistics;
+  const gusts = traces.wind.statistics;
+  const delay = Math.round(playout.delay);
+  element("latency").title = word("latency_of_what", Number.isFinite(latency) ? latency.toFixed(0) : "–", delay);
   write({
     drawn: `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`,
     stream: `${Math.round(since.frames / span)} Hz, ${(since.bytes / span / 1000).toFixed(1)} kB/s`,
-    latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
-    "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
+    latency: Number.isFinite(latency) ? `${(latency + delay).toFixed(0)} ms` : "–",
+    "wind-now": playout.isWindLost ? "–" : `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
     sensors: motionSensors(status.motion),
     warnings: (status.warnings ?? []).join("; "),
     "band-of": status.motion?.band && shown.value === "motion" && scene.picked < 0 ? word("band") : "",
-    gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
+    gust: gusts ? word("gust", gusts.mean.toFixed(1), gusts.greatest.toFixed(1)) : "",
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
   });
@@ -266,12 +275,11 @@ function draw(now) {
     hands.sound?.follow(speed, scene.leavesShown && scene.hasLeaves, at);
     const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
-      traces.wind.add(now / 1000, speed);
+      traces.wind.add(now / 1000, playout.isWindLost ? NaN : speed);
       const isSure = shown.value === "motion" && scene.picked < 0;
       traces.tip.add(now / 1000, value, isSure ? status.motion?.band : undefined);
     }
-    const { factor, unit, digits } = unitOf(shown.value, value);
-    write({ "tip-now": `${(factor * value).toFixed(digits && digits + 1)} ${unit}` });
+    write({ "tip-now": traces.tip.textOf(value) });
   }
   showFacts();
 }
@@ -328,7 +336,6 @@ function speak(chosen) {
   showPanel();
   risk.show();
   element("error").parentElement?.setAttribute("title", word("error_of_what"));
-  element("latency").title = word("latency_of_what");
   showButtons();
   pick(scene.picked);
   showState();
@@ -345,8 +352,8 @@ const actions = {
     endClip?.();
     endClip = endClip ? null : recordClip(canvas, treeName());
   },
-  glb: () => saveTree("glb", treeName(), query.get("token")),
-  html: () => saveTree("html", treeName(), query.get("token")),
+  glb: () => saveFile("glb"),
+  html: () => saveFile("html"),
   link: copyLink,
   full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
   help: () => help.showModal(),
@@ -381,8 +388,12 @@ for (const [id, action] of Object.entries(actions)) {
 }
 document.addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
-  if (target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.metaKey) return;
-  keys[event.key.toLowerCase()]?.();
+  if (target.closest("input[type='text'], select, dialog") || event.ctrlKey || event.metaKey) return;
+  const own = target.matches("button, summary") ? /^( |Enter)$/ : target.matches("input") ? /^(Arrow|Home|End|Page)/ : /^$/;
+  if (own.test(event.key)) return;
+  // The camera listens to the picture, also while a button that was clicked has the focus.
+  if (target !== canvas) canvas.dispatchEvent(new KeyboardEvent("keydown", event));
+  else keys[event.key.toLowerCase()]?.();
 });
 navigator.xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
 let pressed = [0, 0];
@@ -420,7 +431,7 @@ prefers("color-scheme: dark", (isDark) => setDay(isDark ? "dark" : "light"));
 prefers("reduced-motion: reduce", (isCalm) => (scene.flutters = !isCalm));
 setDay(days.find((each) => each === settings.day) ?? day);
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });
-if (settings.shown in QUANTITIES) shown.value = settings.shown;
+if ([...shown.options].some(({ value }) => value === settings.shown)) shown.value = settings.shown;
 // A page that is a file already is its own export.
 for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());

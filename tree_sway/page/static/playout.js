@@ -4,7 +4,7 @@
  * Catmull-Rom curve through them. Where frames are close together, the next one is predicted on the parabola of
  * the last three, since a tree has inertia. The last minute is kept to look back at. */
 
-import { PAUSED, RESTARTED } from "./protocol.js";
+import { PAUSED, RESTARTED, WIND_LOST } from "./protocol.js";
 
 /** Initial and longest playout delay [ms]. The delay is the spacing of frames and their largest lateness, which
  * decays with the time constant below. */
@@ -72,6 +72,8 @@ export class Playout {
     /** @type {[number, number, number]} */
     this.wind = [0, 0, 0];
     this.isPaused = false;
+    /** Whether no sample of the wind is in use. */
+    this.isWindLost = true;
     this._back = 0;
     /** Stamp of the newest frame when looking back began [ms]. */
     this._from = 0;
@@ -163,6 +165,7 @@ export class Playout {
     catmullRom(frames[Math.max(before - 1, first)], a, b, frames[Math.min(next + 1, frames.length - 1)], u, this._shown);
     for (let c = 0; c < 3; c++) this.wind[c] = a.wind[c] + u * (b.wind[c] - a.wind[c]);
     this.isPaused = (b.flags & PAUSED) !== 0;
+    this.isWindLost = (b.flags & WIND_LOST) !== 0;
     if (!isBack) this._blend(now, this._shown);
     return this._shown;
   }
@@ -187,7 +190,7 @@ function predicted(a, b, c) {
     const lastStep = ((b.coordinates[i] - a.coordinates[i]) * span) / before;
     return each + step + ((2 * span) / (span + before)) * (step - lastStep);
   });
-  return { ...c, stamp: c.stamp + span, flags: c.flags & PAUSED, coordinates };
+  return { ...c, stamp: c.stamp + span, flags: c.flags & (PAUSED | WIND_LOST), coordinates };
 }
 
 /** Catmull-Rom curve from b to c; its slopes there are those from a to c and from b to d. @param {Frame} a @param {Frame} b

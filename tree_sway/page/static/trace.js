@@ -7,35 +7,56 @@ import { textOf } from "./files.js";
 /** Time shown at once, and time kept to look back at [s]. */
 const SECONDS = 20;
 export const LOOK_BACK = 60;
+/** Points further apart than this are not joined by a line [s]. */
+const GAP = 1;
 /** Quantities: least span of the axis, so that rest does not look like a storm, and units by size.
  * @type {Record<string, {least: number, units: Unit[]}>} */
 export const QUANTITIES = JSON.parse(await textOf("units.json"));
 
 /** Unit of a value. @param {string} quantity @param {number} value */
-export function unitOf(quantity, value) {
+function unitOf(quantity, value) {
   const { units } = QUANTITIES[quantity];
   return units.find(({ below = Infinity }) => value < below) ?? units[0];
+}
+
+/** Measured points, in runs without a gap. @template {{time: number, value: number}} T @param {T[]} points */
+function runsOf(points) {
+  const runs = /** @type {T[][]} */ ([]);
+  let last = -Infinity;
+  for (const point of points) {
+    const isMeasured = Number.isFinite(point.value);
+    if (isMeasured && point.time - last > GAP) runs.push([]);
+    if (isMeasured) runs[runs.length - 1].push(point);
+    last = isMeasured ? point.time : -Infinity;
+  }
+  return runs;
 }
 
 export class Trace {
   /** @param {HTMLElement} element that it is shown in @param {string} quantity */
   constructor(element, quantity) {
-    this.quantity = quantity;
-    this._line = element.querySelector("polyline");
-    this._shade = element.querySelector("polygon");
+    this.show(quantity);
+    this._line = element.querySelector(".line");
+    this._shade = element.querySelector(".band");
     this._labels = element.querySelectorAll("li");
     /** Age of the right end [s]. */
     this.back = 0;
-    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
   }
 
   /** Begin anew. @param {string} quantity */
   show(quantity) {
     this.quantity = quantity;
-    this._points.length = 0;
+    this._unit = unitOf(quantity, 0);
+    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
   }
 
-  /** @param {number} time [s] @param {number} value
+  /** A value in the unit of the axis. @param {number} value */
+  textOf(value) {
+    const { factor, unit, digits } = this._unit;
+    return `${(factor * value).toFixed(digits)} ${unit}`;
+  }
+
+  /** @param {number} time [s] @param {number} value not finite where nothing is measured
    * @param {number[]} [band] interval of the real one, less the value */
   add(time, value, band) {
     const points = this._points;
@@ -49,26 +70,32 @@ export class Trace {
     return { end, points: this._points.filter(({ time }) => time <= end && time >= end - SECONDS) };
   }
 
+  /** Mean and greatest of the values that are shown; null without any. */
   get statistics() {
-    const values = this._shown.points.map(({ value }) => value);
-    const mean = values.reduce((a, b) => a + b, 0) / Math.max(1, values.length);
-    return { mean, greatest: Math.max(0, ...values) };
+    const values = this._shown.points.map(({ value }) => value).filter(Number.isFinite);
+    if (!values.length) return null;
+    return { mean: values.reduce((a, b) => a + b) / values.length, greatest: Math.max(...values) };
   }
 
   draw() {
     const { points, end } = this._shown;
-    const highest = points.map(({ value, band = [0, 0] }) => value + band[1]);
+    const runs = runsOf(points);
+    const highest = runs.flat().map(({ value, band = [0, 0] }) => value + band[1]);
     const greatest = Math.max(...highest, QUANTITIES[this.quantity].least);
-    const { factor, unit, digits } = unitOf(this.quantity, greatest);
+    this._unit = unitOf(this.quantity, greatest);
+    const { factor, unit } = this._unit;
     const power = 10 ** Math.floor(Math.log10(greatest * factor));
     const top = power * ([1, 2, 5].find((step) => step * power >= 0.999 * greatest * factor) ?? 10);
     /** @param {number} time @param {number} value */
     const corner = (time, value) => [SECONDS - end + time, 1 - Math.min(Math.max((value * factor) / top, 0), 1)];
-    this._line?.setAttribute("points", points.map(({ time, value }) => corner(time, value)).join(" "));
-    const sure = points.map(({ time, value, band = [0, 0] }) => band.map((off) => corner(time, value + off)));
-    const around = [...sure.map(([low]) => low), ...sure.map(([, high]) => high).reverse()];
-    this._shade?.setAttribute("points", points.some(({ band }) => band) ? around.join(" ") : "");
-    const numbers = [top, top / 2, 0].map((each) => each.toFixed(each < 10 && digits === 0 ? 1 : digits).replace(/\.0$/, ""));
+    const lines = runs.map((run) => `M${run.map(({ time, value }) => corner(time, value)).join("L")}`);
+    this._line?.setAttribute("d", lines.join(""));
+    const bands = runs.filter((run) => run.some(({ band }) => band)).map((run) => {
+      const sure = run.map(({ time, value, band = [0, 0] }) => band.map((off) => corner(time, value + off)));
+      return `M${[...sure.map(([low]) => low), ...sure.map(([, high]) => high).reverse()].join("L")}Z`;
+    });
+    this._shade?.setAttribute("d", bands.join(""));
+    const numbers = [top, top / 2, 0].map((each) => String(Number(each.toPrecision(2))));
     const times = [20, 15, 10, 5, 0].map((ago) => Math.round(ago + this.back)).map((ago, i) => `${ago ? "−" : ""}${ago}${i < 4 ? "" : " s"}`);
     [unit, ...numbers, ...times].forEach((text, i) => (this._labels[i].textContent = text));
   }
