@@ -470,6 +470,26 @@ def test_a_link_keeps_camera_and_view(live: Live, visit: Visit) -> None:
     visit(script)
 
 
+def test_a_link_asks_for_its_tree_and_says_what_it_cannot_have(live: Live, visit: Visit) -> None:
+    usual = live.session.choices
+
+    async def script(browser: Browser) -> None:
+        await browser.run("document.getElementById('link').click()")
+        assert 'age=0' in await browser.run('location.hash')
+        await browser.open('about:blank')
+        await browser.open(f'{live.server.url}#age=12&tree=oak&height=tall')
+        await browser.until("window.treeSway && treeSway.state === 'live'")
+        await browser.until("document.getElementById('control-age').value === '12'")
+        told = "document.getElementById('toast').textContent"
+        await browser.until(f"{told}.includes('oak') && {told}.includes('tall')")
+        assert '12' not in await browser.run(told)
+
+    try:
+        visit(script)
+    finally:
+        live.session.choices = usual
+
+
 def test_the_slider_of_age_says_whose_stem_a_tree_has(live: Live, visit: Visit) -> None:
     usual = live.session.choices
     field = "document.getElementById('control-age').closest('.field')"

@@ -59,6 +59,10 @@ let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
 const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 let day = days[0];
+/** Whether the tree of a link has been asked for and is still to come. */
+let isFollowing = false;
+/** Controls that say what the tree is: a link carries them. */
+const OF_TREE = ["tree", "height", "age", "individual", "month", "model"];
 /** Segment that was clicked; -1 if the branch was picked in another way. */
 let pointedAt = -1;
 let endClip = /** @type {(() => void) | null} */ (null);
@@ -77,7 +81,8 @@ const stream = new TreeStream(address.href, {
   onDescription(description) {
     const isFirst = !scene.description;
     scene.describe(description);
-    if (isFirst && view) scene.camera.set(view);
+    if ((isFirst || isFollowing) && view) scene.camera.set(view);
+    isFollowing = false;
     const { name, trees, nSegments, kinds } = description;
     const models = new Set(kinds.map(({ model }) => modelName(model)));
     const counts = { trees: grouped(trees.length), segments: grouped(nSegments) };
@@ -110,6 +115,7 @@ const stream = new TreeStream(address.href, {
       scene.flower(Number(values.month));
       for (const control of controls) control.value = values[control.name] ?? control.value;
       panel.update(values, Boolean(refused));
+      followLink(values);
     }
     status = newStatus ?? status;
     if (newStatus) {
@@ -131,6 +137,21 @@ const treeName = () => connection.description?.name ?? "tree";
 function giveUp(title, text) {
   notice(title, text);
   return new Promise(() => undefined);
+}
+
+/** Ask once for the tree of a link; say what of it cannot be asked for. @param {Record<string, unknown>} values */
+function followLink(values) {
+  const wanted = OF_TREE.filter((name) => name in settings && String(values[name]) !== settings[name]);
+  const missed = wanted.filter((name) => {
+    const control = controls.find((each) => each.name === name);
+    const value = control && typeof control.value === "number" ? Number(settings[name]) : settings[name];
+    const isKnown = control && (control.choices?.length ? control.choices.includes(String(value)) : Number.isFinite(value));
+    if (isKnown) stream.set(name, value);
+    isFollowing ||= Boolean(isKnown);
+    return !isKnown;
+  });
+  if (missed.length) toast(word("of_link", missed.map((name) => `${word(name)} ${settings[name]}`).join(", ")));
+  for (const name of OF_TREE) delete settings[name];
 }
 
 /** State of the stream, and its text. @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
@@ -320,7 +341,8 @@ function pickNext(step) {
 
 async function copyLink() {
   const { leavesShown: leaves, isAutumn: autumn, picked: branch } = scene;
-  const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }) };
+  const tree = controls.filter(({ name }) => OF_TREE.includes(name)).map(({ name, value }) => [name, value]);
+  const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }), ...Object.fromEntries(tree) };
   history.replaceState(null, "", viewLink(scene, all));
   const link = new URL(location.href);
   if (viewersToken) link.searchParams.set("token", viewersToken);
