@@ -69,7 +69,11 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
     options: dict[str, Any] = {**reader_options(arguments.wind_option)}
     record = read_wind(arguments.wind, **options)
     refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
-    for note in filter(None, (*record.notes, refused)):
+    wanted = getattr(arguments, 'seconds', None)
+    short = ''
+    if wanted is not None and record.duration + record.period < wanted:
+        short = f'the record has {record.duration:.3g} s of the {wanted:g} s that were asked for'
+    for note in filter(None, (*record.notes, refused, short)):
         print(f'note: {note}', file=sys.stderr)
     return record
 

@@ -124,6 +124,11 @@ def unit_known(kind: str, unit: str) -> bool:
     return bool(unit) and unit_factor(kind, unit) is not None
 
 
+def is_name(column: str, quantity: str) -> bool:
+    """Whether a whole column's name, brackets and all, is one of a quantity."""
+    return folded(column) in _NAMES[quantity]
+
+
 def unit_in_name(name: str, quantity: str) -> str:
     """Return the unit at the end of a column's name, as in ``x_m``; empty without one."""
     kind = COLUMNS[quantity]['unit']
@@ -142,7 +147,7 @@ def trailing_unit(name: str, known: str, kind: str) -> str:
             for each in (unit.replace('_', '/'), unit.replace('_', ''), _IN.sub('', unit)):
                 if unit_known(kind, each):
                     return each
-    if len(known) < _SHORTEST_GLUED:
-        return ''
+    if len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES:
+        return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters
     end = whole[len(known) :]
     return next((each for each in (end, _IN.sub('', end)) if unit_known(kind, each)), '')
