@@ -36,7 +36,8 @@ class SensorLine:
 
 
 _STAMP = re.compile(
-    r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
+    r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
+    r'|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
     re.ASCII,
 )
 """Time since 1970 in s or ms, or date and time, that a logger puts before a line."""

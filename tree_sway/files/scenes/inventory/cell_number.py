@@ -26,7 +26,9 @@ _AND_MORE = re.compile(
 )
 """End of the highest class, as in ``24 m. en hoger``: its number is the least of the class."""
 _SPLIT = re.compile(r'[+;&|/]|,\s')
-_SLASHES = re.compile(r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?')
+_SLASHES = re.compile(
+    r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?'
+)
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
 
