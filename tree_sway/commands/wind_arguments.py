@@ -15,6 +15,7 @@ from tree_sway.commands.arguments import (
     add_tree_arguments,
     refuse_unused,
 )
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.errors import ParameterError
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.wind.record import WindRecord
@@ -69,11 +70,7 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
     options: dict[str, Any] = {**reader_options(arguments.wind_option)}
     record = read_wind(arguments.wind, **options)
     refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
-    wanted = getattr(arguments, 'seconds', None)
-    short = ''
-    if wanted is not None and record.duration + record.period < wanted:
-        short = f'the record has {record.duration:.3g} s of the {wanted:g} s that were asked for'
-    for note in filter(None, (*record.notes, refused, short)):
+    for note in filter(None, (*record.notes, refused)):
         print(f'note: {note}', file=sys.stderr)
     return record
 
@@ -82,6 +79,8 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record of the arguments, repeated, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)
+        if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
+            print(f'note: {short}', file=sys.stderr)
         return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
     return SimulatedWind(SWAY['mean_speed'].checked(simulated_speed(arguments)))
 

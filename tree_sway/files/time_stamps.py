@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
+import math
 import re
 
 import numpy as np
@@ -51,6 +52,12 @@ _DAYS = (
     (2_440_587.5, 2_470_000.0, 2_440_587.5, 'Julian days'),
 )
 """Least and largest number of a count of days, that of 1970-01-01, and its name."""
+_SERIALS = (
+    (25_569.0, "Excel's days since 1900"),
+    (24_107.0, "Excel's since 1904"),
+    (40_587.0, 'modified Julian days'),
+)
+"""Counts of days whose numbers overlap: that of 1970-01-01, and their name."""
 _MANY_HOURS = 0.2
 """Step of days that counts of seconds have as well, in [d]."""
 
@@ -108,19 +115,28 @@ def _days(values: Floats, factor: float) -> Times | None:
     whole milliseconds. Where both may be, there is no epoch but a note.
     """
     known = values[np.isfinite(values)]
-    if len(known) < 2 or factor not in (1.0, 86400.0):
+    if not len(known) or factor not in (1.0, 86400.0):
         return None
     least, most = float(known.min()), float(known.max())
     kind = next((each for each in _DAYS if each[0] <= least and most < each[1]), None)
     if kind is None:
         return None
-    step = float(np.median(np.abs(np.diff(known))))
+    step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
     is_round = abs(step * 1e3 - round(step * 1e3)) < 1e-3 and step >= 1e-3
     if factor == 1.0 and (is_round or not 0.0 < step < _MANY_HOURS):
         return Times(values, None, f'times are taken as seconds, not as {kind[3]}')
     first = float(known[0])
     seconds = np.round((values - first) * 86400.0, 3)
-    return Times(seconds, (first - kind[2]) * 86400.0, f'times are taken as {kind[3]}')
+    note = f'times are taken as {kind[3]}, from {_day(first - kind[2])}'
+    if first < _DAYS[1][1]:
+        others = [each for each in _SERIALS if each[1] != kind[3]]
+        note += ''.join(f'; as {name} from {_day(first - zero)}' for zero, name in others)
+    return Times(seconds, (first - kind[2]) * 86400.0, note)
+
+
+def _day(days: float) -> str:
+    """Return the date of a number of days after 1970-01-01."""
+    return (_1970 + timedelta(days=math.floor(days))).isoformat()
 
 
 def dates(stamps: Sequence[str]) -> Times:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+import re
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,7 +101,8 @@ class InventoryColumns:
                     unread.append(row)
                 continue
             values[row], units[row] = found
-            n_ranges += not text.strip().replace('.', '').isdigit() and '-' in text.strip()[1:]
+            is_range = re.search(r'\S\s*[-/]', text) is not None
+            n_ranges += is_range and found == cell_number(text)
         if unread:
             text = self.table.cells(index, unread[:1])[0]
             self.note(
