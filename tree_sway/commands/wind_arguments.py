@@ -15,6 +15,7 @@ from tree_sway.commands.arguments import (
     add_tree_arguments,
     refuse_unused,
 )
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.errors import ParameterError
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.wind.record import WindRecord
@@ -78,6 +79,8 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record of the arguments, repeated, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)
+        if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
+            print(f'note: {short}', file=sys.stderr)
         return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
     return SimulatedWind(SWAY['mean_speed'].checked(simulated_speed(arguments)))
 

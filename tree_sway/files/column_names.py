@@ -124,6 +124,11 @@ def unit_known(kind: str, unit: str) -> bool:
     return bool(unit) and unit_factor(kind, unit) is not None
 
 
+def is_name(column: str, quantity: str) -> bool:
+    """Whether a whole column's name, brackets and all, is one of a quantity."""
+    return folded(column) in _NAMES[quantity]
+
+
 def unit_in_name(name: str, quantity: str) -> str:
     """Return the unit at the end of a column's name, as in ``x_m``; empty without one."""
     kind = COLUMNS[quantity]['unit']
@@ -142,7 +147,18 @@ def trailing_unit(name: str, known: str, kind: str) -> str:
             for each in (unit.replace('_', '/'), unit.replace('_', ''), _IN.sub('', unit)):
                 if unit_known(kind, each):
                     return each
-    if len(known) < _SHORTEST_GLUED:
-        return ''
     end = whole[len(known) :]
+    if len(end) > len(folded(words[-1])):
+        return ''  # stem_diam_m is in m, and not a 'stem dia' in mm
+    if whole not in _WITH_UNIT and (len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES):
+        return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters
     return next((each for each in (end, _IN.sub('', end)) if unit_known(kind, each)), '')
+
+
+_WITH_UNIT = frozenset(
+    folded(name)
+    for known in COLUMNS.values()
+    for name in known['names']
+    if unit_known(known['unit'], re.split(r'[\s_]+', name)[-1])
+)
+"""Names that end with their unit as their last word, as ``gust_mph``, in any form: gustMph."""

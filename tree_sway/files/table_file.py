@@ -22,10 +22,12 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.column_names import (
     COLUMNS,
+    is_name,
     name_and_unit,
     rank_of,
     unit_factor,
     unit_in_name,
+    unit_known,
     UNITS,
 )
 from tree_sway.files.text_file import finite, why_no_number
@@ -130,7 +132,10 @@ class TextTable:
 
     def unit_of(self, index: int, quantity: str) -> str:
         """Return the unit of a column of a quantity as it is written; empty without one."""
-        name, unit = name_and_unit(self.columns[index], COLUMNS[quantity]['unit'])
+        column, kind = self.columns[index], COLUMNS[quantity]['unit']
+        name, unit = name_and_unit(column, kind)
+        if not unit_known(kind, unit) and is_name(column, quantity):
+            unit = ''  # brackets that are part of the name: avg wind speed (10min)
         row = self.units[index] if index < len(self.units) else ''
         return unit or unit_in_name(name, quantity) or row.strip()
 

@@ -6,7 +6,7 @@ Times of loggers, stations and services: dates in any usual order, 12-hour clock
 A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024`` or ``202403011200``,
 with a time of 24 or of 12 hours, and maybe a zone. Whether ``3/1/24`` has the month first is seen
 in the whole column. Numbers are seconds, or if they are as large as the time since 1970 in s, ms,
-us or ns, that.
+us or ns, that; or the days of Excel, of MATLAB, or Julian ones.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, timedelta
 from itertools import pairwise
+import math
 import re
 
 import numpy as np
@@ -43,6 +44,22 @@ _ANY = re.compile(_DATE + _CLOCK + _ZONE, re.ASCII)
 _DIGITS = re.compile(r'(19|20)\d\d(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])([01]\d|2[0-4])?(\d\d){0,2}')
 _SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
 """Least number that is a time since 1970, and its unit in [s]: each is of 1973 or later."""
+
+_DAYS = (
+    (25_569.0, 51_500.0, 25_569.0, "Excel's days since 1900"),
+    (51_500.0, 70_000.0, 40_587.0, 'modified Julian days'),
+    (719_529.0, 767_011.0, 719_529.0, "MATLAB's days"),
+    (2_440_587.5, 2_470_000.0, 2_440_587.5, 'Julian days'),
+)
+"""Least and largest number of a count of days, that of 1970-01-01, and its name."""
+_SERIALS = (
+    (25_569.0, "Excel's days since 1900"),
+    (24_107.0, "Excel's since 1904"),
+    (40_587.0, 'modified Julian days'),
+)
+"""Counts of days whose numbers overlap: that of 1970-01-01, and their name."""
+_MANY_HOURS = 0.2
+"""Step of days that counts of seconds have as well, in [d]."""
 
 _NONE = np.iinfo(np.int64).min
 _DAY = 86_400_000_000
@@ -78,12 +95,48 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     numbers = [finite(stamp) for stamp in stamps]
     values = np.array([np.nan if number is None else number for number in numbers])
     size = abs(float(np.nanmedian(values)))
+    days = _days(values, factor)
+    if days is not None and days.epoch is not None:
+        return days
+    note = '' if days is None else days.note
     if factor == 1.0:
         factor = next((unit for least, unit in _SINCE_1970 if size >= least), 1.0)
     if size * factor < _SINCE_1970[-1][0]:
-        return Times(values * factor, None)
+        return Times(values * factor, None, note)
     origin = float(values[np.isfinite(values)][0])
     return Times((values - origin) * factor, origin * factor)
+
+
+def _days(values: Floats, factor: float) -> Times | None:
+    """
+    Return the times of counts of days; None if they are none.
+
+    Without a unit, the step tells them from seconds: 10 min are 0.00694 d, and loggers' steps are
+    whole milliseconds. Where both may be, there is no epoch but a note.
+    """
+    known = values[np.isfinite(values)]
+    if not len(known) or factor not in (1.0, 86400.0):
+        return None
+    least, most = float(known.min()), float(known.max())
+    kind = next((each for each in _DAYS if each[0] <= least and most < each[1]), None)
+    if kind is None:
+        return None
+    step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
+    is_round = abs(step * 1e3 - round(step * 1e3)) < 1e-3 and step >= 1e-3
+    if factor == 1.0 and (is_round or not 0.0 < step < _MANY_HOURS):
+        return Times(values, None, f'times are taken as seconds, not as {kind[3]}')
+    first = float(known[0])
+    seconds = np.round((values - first) * 86400.0, 3)
+    note = f'times are taken as {kind[3]}, from {_day(first - kind[2])}'
+    if first < _DAYS[1][1]:
+        others = [each for each in _SERIALS if each[1] != kind[3]]
+        note += ''.join(f'; as {name} from {_day(first - zero)}' for zero, name in others)
+    return Times(seconds, (first - kind[2]) * 86400.0, note)
+
+
+def _day(days: float) -> str:
+    """Return the date of a number of days after 1970-01-01."""
+    return (_1970 + timedelta(days=math.floor(days))).isoformat()
 
 
 def dates(stamps: Sequence[str]) -> Times:

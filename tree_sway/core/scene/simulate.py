@@ -31,7 +31,7 @@ from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.interpolated import interpolated_means
-from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.wind.limits import FASTEST_WIND, shorter_than
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
@@ -200,8 +200,10 @@ class Rig:
 
         steps_per_second = within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz')
         count, steps = _steps(simulator, wind, steps_per_second, measure)
+        short = ''
         if seconds is not None:
             within('seconds', seconds, 0.0, 1e9, 's', above=True)
+            short = shorter_than(count / rate, seconds)
             count = min(count, max(round(seconds * rate), 1))
         refuse_too_many_steps(count, rate)
         for _ in itertools.islice(steps, count):
@@ -215,6 +217,7 @@ class Rig:
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
             (
+                *filter(None, [short]),
                 *_doubts(simulator, before),
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(simulator),

@@ -14,3 +14,13 @@ FASTEST_WIND = 150.0
 def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:
     """Whether a vector in [m/s] is finite and no faster than a limit."""
     return math.hypot(x, y, z) <= limit
+
+_WHOLE = 0.99
+"""Share of the time that is asked for from which a wind is long enough."""
+
+
+def shorter_than(length: float, seconds: float | None) -> str:
+    """Return a note where a wind of a length [s] is shorter than what is asked for; or nothing."""
+    if seconds is None or length >= _WHOLE * seconds:
+        return ''
+    return f'the wind has {length:.3g} s of the {seconds:g} s that were asked for'

@@ -88,8 +88,22 @@ def row_times(
     cells = [table.cells(column, rows) for column in columns]
     stamps = cells[0] if join is None else [join(parts) for parts in zip(*cells, strict=True)]
     times = times_of(stamps, factor)
+    if join is None and times.epoch is None and not times.note:
+        times = replace(times, note=_doubt(table, columns[0], times))
     zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
     return times if zone is None or times.epoch is None else _in_utc(times, zone[1])
+
+
+def _doubt(table: TextTable, column: int, times: Times) -> str:
+    """Return a note on whole seconds that no header tells, as they may be hours or days."""
+    steps = np.diff(times.seconds[np.isfinite(times.seconds)])
+    name = table.columns[column]
+    if 'sec' in name.lower() or table.unit_of(column, 'time') or not len(steps):
+        return ''
+    step = float(np.median(np.abs(steps)))
+    if step < 1.0 or step % 1.0:
+        return ''
+    return f'no unit of {name} in the header: taken in s; call it time [h] or time [days] if it is'
 
 
 def _in_utc(times: Times, name: str) -> Times:

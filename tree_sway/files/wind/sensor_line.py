@@ -4,14 +4,17 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import xor
 from pathlib import Path
+import re
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import read_lines
+from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.units import Velocity
 
@@ -31,6 +34,13 @@ class SensorLine:
     velocity: Velocity | None
     refusal: str = ''
 
+
+_STAMP = re.compile(
+    r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
+    r'|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
+    re.ASCII,
+)
+"""Time since 1970 in s or ms, or date and time, that a logger puts before a line."""
 
 ParseLine = Callable[[str], SensorLine | None]
 """Parse a line; None if it is not about the wind. Never raises."""
@@ -66,7 +76,7 @@ def read_sensor_log(
     path: Path, parse: ParseLine, kinds: Sequence[str], rate: float, notes: Sequence[str] = ()
 ) -> tuple[str, WindRecord]:
     """
-    Read the wind of a log of an anemometer's lines, which have equal spacing, without times.
+    Read the wind of a log of an anemometer's lines, which have equal spacing, maybe without times.
 
     Lines that are not about the wind are ignored; a refused one keeps its time. Of the wanted
     kinds, the best one first, the first with a good line is read; its name is returned before the
@@ -83,6 +93,7 @@ def read_sensor_log(
     if not rate > 0.0:
         raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
     found: dict[str, WindRows] = {}
+    stamps: dict[str, list[str]] = {}
     for number, line in enumerate(read_lines(path), start=1):
         said = parse(line)
         if said is None:
@@ -92,10 +103,16 @@ def read_sensor_log(
             rows.refuse(number, said.refusal)
         else:
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
+            stamp = _STAMP.match(line)
+            stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:
         what = f'no sentence {" or ".join(kinds)}'
         raise FormatError(what, where=str(path), cure="log the wind instrument's output")
     best = next((kind for kind in there if found[kind].time), there[0])
+    if found[best].time and all(stamps[best]):
+        times = times_of(stamps[best])
+        found[best].time = array('d', times.seconds)
+        return best, found[best].record(epoch=times.epoch, notes=tuple(notes))
     spaced = f'{best} sentences have no times and are taken at {rate:g} Hz'
     return best, found[best].record(notes=(spaced, *notes))

@@ -16,7 +16,7 @@ _GROUPED = re.compile(
 )
 """A number of thousands with a fraction, ``1.234,5`` or ``1,234.5``."""
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
-_SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
+_SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&|]|,\s)\s*\d')
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
 """Letter of a class before its range, as in ``c. 9 tot 12 m.``."""
 _AND_MORE = re.compile(
@@ -25,7 +25,10 @@ _AND_MORE = re.compile(
     re.IGNORECASE,
 )
 """End of the highest class, as in ``24 m. en hoger``: its number is the least of the class."""
-_SPLIT = re.compile(r'[+;&]|,\s')
+_SPLIT = re.compile(r'[+;&|/]|,\s')
+_SLASHES = re.compile(
+    r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?'
+)
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
 
@@ -61,9 +64,15 @@ def stems_number(text: str) -> tuple[float, str] | None:
     """
     Return the number of a cell of one stem or several, as `cell_number`.
 
-    Stems such as ``320, 280`` or ``30+25`` are one of the sum of their sections.
+    Stems such as ``320, 280``, ``30+25`` or ``20/18/15`` are one of the sum of their sections;
+    ``18/20`` is a class of nurseries, a range.
     """
-    if not _SEVERAL.search(text):
+    slashes = _SLASHES.match(text)
+    is_class = slashes is None or (
+        slashes[3] is None
+        and float(slashes[1].replace(',', '.')) < float(slashes[2].replace(',', '.'))
+    )
+    if is_class and not _SEVERAL.search(text):
         return cell_number(text)
     found = [cell_number(part) for part in _SPLIT.split(text)]
     stems = [each for each in found if each is not None]

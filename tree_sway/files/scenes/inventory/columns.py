@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+import re
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,12 +93,22 @@ class InventoryColumns:
         values = np.full(self.n_rows, np.nan)
         units = [''] * self.n_rows
         n_ranges = 0
+        unread = list[int]()
         for row, text in enumerate(self.texts(index)):
             found = stems_number(text) if stems else cell_number(text)
             if found is None:
+                if stems and any(map(str.isdigit, text)):
+                    unread.append(row)
                 continue
             values[row], units[row] = found
-            n_ranges += not text.strip().replace('.', '').isdigit() and '-' in text.strip()[1:]
+            is_range = re.search(r'\S\s*[-/]', text) is not None
+            n_ranges += is_range and found == cell_number(text)
+        if unread:
+            text = self.table.cells(index, unread[:1])[0]
+            self.note(
+                f'{len(unread)} cells of {self.table.columns[index]} cannot be read: '
+                f"{self.table.row_name} {self.table.numbers[unread[0]]} is '{text[:40]}'"
+            )
         if n_ranges:
             self.note(f'{n_ranges} cells of {self.table.columns[index]} are ranges: their middles')
         return values, self._in_one_unit(values, units, index, unit)

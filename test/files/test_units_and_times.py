@@ -1,0 +1,175 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Names with their units, counts of days, and times before the lines of instruments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway.core.scene.simulate import simulate
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.limits import shorter_than
+from tree_sway.files.column_names import COLUMNS, is_name, name_and_unit, trailing_unit, UNITS
+from tree_sway.files.scenes.inventory.cell_number import stems_number
+from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.time_stamps import times_of
+from tree_sway.files.wind.wind_file import read_wind
+
+DIAMETERS = ('stem_diameter', 'stemDiameter', 'trunk_diameter', 'trunk diameter', 'stem_diam')
+
+
+@pytest.mark.parametrize('quantity', [each for each in COLUMNS if COLUMNS[each]['unit']])
+def test_every_name_of_a_list_is_found_without_an_unknown_unit(quantity: str) -> None:
+    for name in COLUMNS[quantity]['names']:
+        table = parse_table([f'"{name}"\tother', '1\t2'], 'names.csv')
+        found = table.find(quantity)
+        assert found is not None, name
+        assert found.index == 0, name
+
+
+@pytest.mark.parametrize('name', DIAMETERS)
+def test_a_name_is_not_cut_into_a_name_and_meters(name: str) -> None:
+    table = parse_table([f'{name},x', '25,0'], 'trees.csv')
+    assert table.unit_of(0, 'diameter') == ''
+    table = parse_table([f'{name}_cm,x', '25,0'], 'trees.csv')
+    assert table.unit_of(0, 'diameter') == 'cm'
+
+
+@pytest.mark.parametrize('quantity', [each for each in COLUMNS if COLUMNS[each]['unit']])
+def test_every_name_has_the_unit_behind_it(quantity: str) -> None:
+    kind = COLUMNS[quantity]['unit']
+    wrong = list[str]()
+    for name in COLUMNS[quantity]['names']:
+        if '(' in name or TextTable((name,), (), (), str.split, '').unit_of(0, quantity):
+            continue
+        for unit in (each for each in UNITS[kind] if each.isascii() and each.isalpha()):
+            for column in (f'{name}_{unit}', f'{name} {unit}'):
+                found = TextTable((column,), (), (), str.split, '').find(quantity)
+                if not is_name(column, quantity) and (
+                    found is None or found.factor != UNITS[kind][unit]
+                ):
+                    wrong.append(column)
+    assert not wrong
+
+
+@pytest.mark.parametrize(
+    ('column', 'quantity', 'unit'),
+    [
+        ('windSpdKmh', 'wind_speed', 'kmh'), ('gustMph', 'gust', 'mph'),
+        ('dbhInch', 'diameter', 'inch'), ('dbhCm', 'diameter', 'cm'), ('htFt', 'height', 'ft'),
+        ('stem_diam_m', 'diameter', 'm'),
+    ],
+)  # fmt: skip
+def test_a_unit_counts_in_camel_case(column: str, quantity: str, unit: str) -> None:
+    assert TextTable((column,), (), (), str.split, '').unit_of(0, quantity) == unit
+
+
+def test_a_bracket_of_a_name_is_no_unit() -> None:
+    assert is_name('avg wind speed (10min)', 'wind_speed')
+    assert trailing_unit('stem_diameter', 'stem dia', 'length') == ''
+
+
+@pytest.mark.parametrize('first', [46174.5, 740000.5, 2461000.25, 60600.5])
+def test_days_are_counted_as_days(first: float) -> None:
+    times = times_of([f'{first + i / 144:.6f}' for i in range(12)])
+    assert times.seconds[-1] == pytest.approx(6600.0, abs=0.2)
+    assert times.note
+    assert times.epoch is not None
+    assert 1e9 < times.epoch < 3e9
+
+
+def test_other_readings_of_a_count_of_days_are_said() -> None:
+    note = times_of(['46174.5', '46174.506944']).note
+    assert "Excel's days since 1900, from 2026-06-01" in note
+    assert "Excel's since 1904 from 2030-06-02" in note
+    assert 'modified Julian days from 1985-04-19' in note
+    assert 'from 2024-10-17' in times_of(['60600.5', '60600.506944']).note
+
+
+@pytest.mark.parametrize('step', [0.0, 0.001, 1.0])
+def test_days_that_may_be_seconds_are_said(step: float) -> None:
+    count = 1 if step == 0.0 else 5
+    times = times_of([f'{46174 + i * step:.3f}' for i in range(count)])
+    assert times.epoch is None
+    assert 'seconds, not as' in times.note
+
+
+@pytest.mark.parametrize(
+    ('header', 'is_said'), [('time', True), ('time [h]', False), ('seconds', False)]
+)
+def test_whole_steps_without_a_unit_are_said(tmp_path: Path, header: str, is_said: bool) -> None:
+    path = tmp_path / 'wind.csv'
+    rows = ''.join(f'{float(i)},3.0,270.0\n' for i in range(9))
+    path.write_text(f'{header},speed [m/s],direction [deg]\n{rows}')
+    assert any('no unit of time' in note for note in read_wind(path).notes) == is_said
+
+
+def test_a_range_with_a_slash_is_said() -> None:
+    columns = InventoryColumns(parse_table(['dbh,x', '18/20,0', '20/18/15,0'], 'trees.csv'))
+    assert columns.numbers(0, stems=True)[0][0] == 19.0
+    assert columns.notes == ['1 cells of dbh are ranges: their middles']
+
+
+@pytest.mark.parametrize('kind', sorted(UNITS))
+def test_every_name_has_the_unit_in_its_brackets(kind: str) -> None:
+    wrong = list[str]()
+    for quantity in (each for each in COLUMNS if COLUMNS[each]['unit'] == kind):
+        for name in COLUMNS[quantity]['names']:
+            for unit, factor in UNITS[kind].items():
+                column = f'{name} [{unit}]'
+                table = TextTable((column,), (), (), str.split, 'names.csv')
+                known = name_and_unit(name, kind)[1]
+                if ')' not in unit and not known and table.factor_of(0, quantity) != factor:
+                    wrong.append(column)
+    assert not wrong
+
+
+def test_seconds_of_the_day_stay_seconds() -> None:
+    times = times_of([f'{46174.5 + i * 0.05:.2f}' for i in range(12)])
+    assert times.seconds[-1] - times.seconds[0] == pytest.approx(0.55)
+    assert 'seconds' in times.note
+
+
+@pytest.mark.parametrize('text', ['20/18/15', '20|18|15', '20+18+15', '20;18;15'])
+def test_stems_with_any_separator(text: str) -> None:
+    found = stems_number(text)
+    assert found is not None
+    assert found[0] == pytest.approx(949**0.5)
+    assert stems_number('18/20') == (19.0, '')
+
+
+def test_times_before_sentences_are_used(tmp_path: Path) -> None:
+    path = tmp_path / 'wind.nmea'
+    line = 'AIS,$WIMWV,240.0,T,4.6,M,A*22'
+    path.write_text(''.join(f'{1780000000000 + 500 * i},{line}\n' for i in range(9)))
+    record = read_wind(path)
+    assert record.duration == pytest.approx(4.0)
+    assert record.epoch == pytest.approx(1780000000.0)
+
+
+def test_windguru_is_in_knots(tmp_path: Path) -> None:
+    path = tmp_path / 'windguru.json'
+    columns = {
+        'unixtime': [1780000000 + i for i in range(5)], 'wind_avg': [10.0] * 5,
+        'wind_max': [12.0] * 5, 'wind_direction': [270.0] * 5,
+    }  # fmt: skip
+    path.write_text(json.dumps(columns))
+    assert any('kn' in note for note in read_wind(path).notes)
+
+
+def test_a_wind_shorter_than_asked_for_is_said() -> None:
+    assert '6.6 s of the 60 s' in shorter_than(6.6, 60.0)
+    assert not shorter_than(299.95, 300.0)
+    assert not shorter_than(6.6, None)
+
+
+def test_a_simulation_longer_than_its_wind_says_so(stem: Callable[..., Tree]) -> None:
+    wind = np.zeros((30, 3))
+    assert any('0.5 s of the 60 s' in each for each in simulate(stem(), wind, seconds=60.0).notes)
+    assert not any('asked for' in each for each in simulate(stem(), wind, seconds=0.5).notes)
