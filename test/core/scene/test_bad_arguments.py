@@ -293,7 +293,7 @@ def test_a_step_beyond_the_longest_is_refused_and_changes_nothing(fork, kind):
     sim = simulator(fork(), kind)
     sim.step((5.0, 0.0, 0.0), LONGEST_STEP)
     before = sim.state().values
-    with pytest.raises(ParameterError, match='up to 0.5 s: take several for more'):
+    with pytest.raises(ParameterError, match=r'up to 0\.5 s: take several for more'):
         sim.step((25.0, 0.0, 0.0), 10.0)
     assert (sim.state().values == before).all()
 

@@ -109,13 +109,13 @@ const stream = new TreeStream(address.href, {
       element("pull").hidden = hello.can_pull !== true;
       viewersToken = hello.viewers_token ?? "";
       risk.take(hello.critical_winds);
+      followLink();
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
       scene.flower(Number(values.month));
       for (const control of controls) control.value = values[control.name] ?? control.value;
       panel.update(values, Boolean(refused));
-      followLink(values);
     }
     status = newStatus ?? status;
     if (newStatus) {
@@ -139,11 +139,11 @@ function giveUp(title, text) {
   return new Promise(() => undefined);
 }
 
-/** Ask once for the tree of a link; say what of it cannot be asked for. @param {Record<string, unknown>} values */
-function followLink(values) {
-  const wanted = OF_TREE.filter((name) => name in settings && String(values[name]) !== settings[name]);
-  const missed = wanted.filter((name) => {
+/** Ask once for the tree of a link; say what of it cannot be asked for. */
+function followLink() {
+  const missed = OF_TREE.filter((name) => {
     const control = controls.find((each) => each.name === name);
+    if (!(name in settings) || String(control?.value) === settings[name]) return false;
     const value = control && typeof control.value === "number" ? Number(settings[name]) : settings[name];
     const isKnown = control && (control.choices?.length ? control.choices.includes(String(value)) : Number.isFinite(value));
     if (isKnown) stream.set(name, value);
