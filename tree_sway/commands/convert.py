@@ -38,7 +38,7 @@ from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_writing import write_usd
 from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
-from tree_sway.files.models.model_writer import write_model
+from tree_sway.files.models.model_writer import NATIVE_SUFFIX, write_model, write_native_model
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.whole_file import write_text_whole
 
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model_argument(parser)
     add_wind_arguments(parser, 'wind recording that trees sway in until --at')
     add_output_arguments(
-        parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .usdz, .xml (MJCF), .sdf, .obj'
+        parser, f'{OUTPUT_HELP}, .npz, .sway, .html, .usda, .usdz, .xml (MJCF), .sdf, .obj'
     )
     parser.add_argument(
         '--at',
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in (*_USD, *_HINGED, MODEL_SUFFIX) or (
+    elif suffix in (*_USD, *_HINGED, MODEL_SUFFIX, NATIVE_SUFFIX) or (
         suffix == '.glb' and _is_to_sway(scene, arguments)
     ):
         _write_swaying(scene, arguments, suffix)
@@ -121,7 +121,7 @@ _USD = ('.usda', '.usdz')
 _DRAWN = ('.glb', '.html', *_USD)
 """Formats to look at, in leaf if nothing else is asked for."""
 
-_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_USD, *_HINGED, '.obj')
+_FORMATS = (*SUFFIXES, MODEL_SUFFIX, NATIVE_SUFFIX, '.html', *_USD, *_HINGED, '.obj')
 
 
 def _write_moments(
@@ -162,9 +162,16 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             cure='convert the file of one of them; .html, .obj and .glb with a skin take all',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
-    if suffix == MODEL_SUFFIX:
+    if suffix in (MODEL_SUFFIX, NATIVE_SUFFIX):
         with waiting('preparing the tree'):
-            write_model(arguments.output, prepare(scene.tree, scene.species, solved(settings)))
+            model = prepare(scene.tree, scene.species, solved(settings))
+        if suffix == MODEL_SUFFIX:
+            write_model(arguments.output, model)
+            return
+        write_native_model(arguments.output, model)
+        if model.is_limp:
+            said = 'its twigs hang or whip: programs in C solve it by its table, less closely'
+            print(f'note: {said}', file=sys.stderr)
         return
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)

@@ -20,7 +20,8 @@ from tree_sway.errors import MissingDependencyError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-_FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
+FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
+"""The library, which programs in other languages may link."""
 
 _pointer, _size, _number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
 
@@ -61,7 +62,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
 def _opened() -> ctypes.CDLL:
     cure = 'pip install . in the source of tree_sway_ros; it needs a C++ compiler'
     try:
-        library = ctypes.CDLL(str(_FILE))
+        library = ctypes.CDLL(str(FILE))
     except OSError as error:
         raise MissingDependencyError('the native core is not built', cure=cure) from error
     for name, (result, arguments) in SIGNATURES.items():

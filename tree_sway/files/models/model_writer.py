@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A `SwayModel` is written as an ``.npz`` file, which `model_file` reads."""
+"""A `SwayModel` is written as an ``.npz`` file, which `model_file` reads, or as native bytes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.checks import refuse_other_kind
+from tree_sway.core.model.settings import USUAL
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.native.model import bytes_of
+from tree_sway.errors import ParameterError
 from tree_sway.files.models.model_file import FORMAT, LEAVES, TREE, VERSION
 from tree_sway.files.whole_file import whole_file
 
@@ -48,6 +51,30 @@ def write_model(path: str | Path, model: SwayModel) -> None:
             arrays[name] = np.asarray(getattr(settings, name), dtype=np.float64)
     with whole_file(path) as partial, partial.open('wb') as file:
         np.savez_compressed(file, **arrays)
+
+
+NATIVE_SUFFIX = '.sway'
+"""Suffix of the bytes of a model for the native core (``native/sway.h``)."""
+
+
+def write_native_model(path: str | Path, model: SwayModel) -> None:
+    """
+    Write the bytes by which programs in C and C++ step and place a tree.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be written.
+    ParameterError
+        A model that is no number of coordinates, which only Python solves.
+
+    """
+    refuse_other_kind('model', model, SwayModel, 'give the result of prepare')
+    if not model.has_table:
+        what = f"model '{model.settings.model}' has no table to solve it by"
+        raise ParameterError(what, where='model', cure=f'give a number, such as {USUAL}')
+    with whole_file(path) as partial:
+        partial.write_bytes(bytes_of(model.native_arrays()))
 
 
 def _plain(value: Any) -> Any:
