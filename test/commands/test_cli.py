@@ -78,8 +78,8 @@ def one_line(text: str) -> str:
         (['grow', 'oka', '--height', '12', '-o', 'x.yaml'], "did you mean 'oak'?"),
         (
             ['convert', 'no_such_tree', '-o', 'x.stl'],
-            "cannot write '.stl'; use .yaml, .yml, .glb, .npz, .sway, .html, .usda, .usdz, .xml (MJCF), "
-            '.sdf, .obj',
+            "cannot write '.stl'; use .yaml, .yml, .glb, .npz, .sway, .html, .usda, .usdz, "
+            '.xml (MJCF), .sdf, .obj',
         ),
         (['lab', 'bench', 'jog'], "invalid choice: 'jog'"),
         (['lab', 'bench', 'step', '--rounds', '0'], '--rounds: 0'),
