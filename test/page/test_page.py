@@ -660,7 +660,8 @@ def test_a_trace_has_gaps_where_nothing_was_measured(visit: Visit) -> None:
         drawn = (
             "import('/static/trace.js').then(({Trace}) => {"
             " const made = new Trace(document.getElementById('wind-trace'), 'wind');"
-            ' const none = made.statistics; [0, 0.5, 15.5, 16].forEach((time) => made.add(time, 5));'
+            ' const none = made.statistics;'
+            ' [0, 0.5, 15.5, 16].forEach((time) => made.add(time, 5));'
             f' made.add(16.5, NaN); made.add(17, 7); made.draw();'
             f' return [none, {line}.split("M").length - 1, made.statistics]; }})'
         )
