@@ -52,7 +52,7 @@ EFFECTS = {
     'sound': ('Enter', 'Boolean(treeSway.hands.sound?.isOn)'),
     'shown': ('ArrowDown', 'treeSway.traces.tip.quantity'),
     'time': ('ArrowLeft', 'treeSway.playout.back'),
-    'summary': ('Enter', "document.getElementById('panel').open"),
+    'controls-title': ('Enter', "document.getElementById('panel').open"),
     'control-mean_speed': ('ArrowRight', ''),
     'control-pause': (' ', 'treeSway.playout.isPaused'),
     'control-reset': ('Enter', ''),
@@ -142,7 +142,7 @@ def test_every_control_is_reached_and_operated_by_keys(
                 await focus(browser, 'close')
                 await press(browser, 'Enter')
                 assert not await browser.run(effect)
-            elif name in ('time', 'control-pause', 'summary'):  # back to where it was
+            elif name in ('time', 'control-pause', 'controls-title'):  # back to where it was
                 await press(browser, 'ArrowRight' if name == 'time' else key)
 
     visit(browser_class, url, script)

@@ -35,7 +35,9 @@ function runsOf(points) {
 export class Trace {
   /** @param {HTMLElement} element that it is shown in @param {string} quantity */
   constructor(element, quantity) {
-    this.show(quantity);
+    this.quantity = quantity;
+    this._unit = unitOf(quantity, 0);
+    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
     this._line = element.querySelector(".line");
     this._shade = element.querySelector(".band");
     this._labels = element.querySelectorAll("li");
@@ -47,7 +49,7 @@ export class Trace {
   show(quantity) {
     this.quantity = quantity;
     this._unit = unitOf(quantity, 0);
-    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
+    this._points.length = 0;
   }
 
   /** A value in the unit of the axis. @param {number} value */
