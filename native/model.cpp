@@ -60,8 +60,8 @@ const Meaning MEANINGS[] = {
 };
 constexpr int N_MEANINGS = sizeof(MEANINGS) / sizeof(*MEANINGS);
 
-// No tree has a number of this magnitude, in SI.
-constexpr double LARGEST = 1e18;
+// No tree has a number of this magnitude, in SI, nor single precision a greater one.
+constexpr double LARGEST = 1e38;
 
 // Numbers of coordinates and key rotations beyond which a file is none of a tree.
 constexpr int64_t MOST_COORDINATES = 1 << 16, MOST_SEGMENTS = 1 << 26;

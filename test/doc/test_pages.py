@@ -160,6 +160,8 @@ LAUNCHED = re.compile(r'sway\.launch\.py(.*)|launch_arguments=\{(.*?)\}')
 def test_its_launch_arguments_are_arguments(page: Path) -> None:
     declared = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
     known = set(re.findall(r"^    \(\s*'(\w+)',\s*'", declared, re.MULTILINE))
+    of_parameters = declared.partition('OF_PARAMETERS = {')[2].partition('}')[0]
+    known |= set(re.findall(r"^    '(\w+)': \(", of_parameters, re.MULTILINE))
     assert {'tree', 'pose'} <= known
     for typed, included in LAUNCHED.findall(page.read_text(encoding='utf-8')):
         given = {*re.findall(r'(\w+):=', typed), *re.findall(r'"(\w+)":', included)}

@@ -17,7 +17,7 @@ ROWS = {
     'dropout beyond the time-out': [
         (HERE, 'test_dropout_beyond_the_time_out_decays_and_the_first_sample_resumes'),
         ('nodes/test_solver.py', 'test_a_dropout_decays_to_rest_while_poses_go_on'),
-        ('nodes/test_wind.py', 'test_a_silent_sensor_goes_from_warn_to_stale'),
+        ('nodes/test_wind.py', 'test_a_silent_sensor_goes_from_warn_to_error'),
     ],
     'NaN, inf, 999.99, 1e300': [
         (HERE, 'test_what_is_no_wind_is_refused_and_counted_by_cause'),

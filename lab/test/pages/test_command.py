@@ -52,7 +52,7 @@ def test_the_table_of_a_node_has_every_parameter() -> None:
     rows = parameters_table(NODE_PARAMETERS['solver']).splitlines()
     assert len(rows) == len(NODE_PARAMETERS['solver']) + 2
     assert len({row.replace('\\|', '').count('|') for row in rows}) == 1
-    assert any('| `rate` | `60.0` | Hz | 1 .. 1000 |' in row for row in rows)
+    assert any('| `rate` | `60.0` | Hz | 2 .. 1000 |' in row for row in rows)
 
 
 def test_the_table_of_topics_has_every_one() -> None:

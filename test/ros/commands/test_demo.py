@@ -132,7 +132,7 @@ def test_ctrl_c_ends_it_with_a_summary(
     [
         (['sapling'], {}, "no tree 'sapling'; give a file, or one of"),
         (['--wind', '/no/such.csv'], {}, '/no/such.csv: no such file'),
-        (['--rate', '0'], {}, "parameter 'rate': 0 is out of range; give 1 .. 1000"),
+        (['--rate', '0'], {}, "parameter 'rate': 0 is out of range; give 2 .. 1000"),
         ([], {'ROS_DOMAIN_ID': '900'}, 'ROS_DOMAIN_ID=900'),
     ],
 )

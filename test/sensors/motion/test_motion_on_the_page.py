@@ -73,7 +73,7 @@ def truth() -> Truth:
 class Sensor:
     """The part of a live sensor that a feed reads, on a clock of its own."""
 
-    name, problem = 'phone', ''
+    name, problem, note = 'phone', '', ''
 
     def __init__(self) -> None:
         self.now = BEGAN

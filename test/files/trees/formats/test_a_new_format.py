@@ -53,7 +53,7 @@ def test_one_file_is_all_it_takes(tmp_path):
         target = copy / source.relative_to(package)
         if source.is_dir():
             target.mkdir(parents=True, exist_ok=True)
-        elif source.suffix in ('.py', '.json', '.yaml', '.csv'):
+        elif source.suffix in ('.py', '.json', '.yaml', '.csv', '.so'):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.symlink_to(source)
     (copy / 'files/trees/formats/poles.py').write_text(MODULE)
