@@ -169,7 +169,7 @@ def test_a_worker_that_lies_or_fails_is_told(apart: SeparateCluster) -> None:
         work = [('piece 1', ('x',))]
         with pytest.raises(TransportError, match='piece 1: a worker returned a str that is no'):
             list(run_all(distributed, client, str, work, lambda result, _: result == 'y'))
-        with pytest.raises(TransportError, match='piece 2: a worker failed .ValueError'):
+        with pytest.raises(TransportError, match=r'piece 2: a worker failed .ValueError'):
             list(run_all(distributed, client, int, [('piece 2', ('x',))]))
 
 
