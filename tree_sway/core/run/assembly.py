@@ -70,8 +70,14 @@ def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Osc
             from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
 
             isolated = NumpyBranchOscillators
-        given = (model.inertia, model.own_damping, model.stiffness, model.weight)
-        return isolated(branches, *(array.copy() for array in given), model.drag_law)
+        return isolated(
+            branches,
+            model.inertia.copy(),
+            model.own_damping.copy(),
+            model.stiffness.copy(),
+            model.weight.copy(),
+            model.drag_law,
+        )
     name = model.settings.model
     if isinstance(name, str):
         from tree_sway.installed_models import maker_of
