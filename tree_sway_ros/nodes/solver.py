@@ -212,7 +212,7 @@ class SolverNode(TreeSwayNode):
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._topic = self.resolve_topic_name(WIND_FILTERED.name)
-        self._hears_wind: bool = False
+        self._hears_wind = False
         self.subscription(CAMERA, self._see)
         self._imu: ImuIntake | None = None
         if isinstance(self.simulator, ObservedTree):

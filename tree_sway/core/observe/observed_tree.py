@@ -206,7 +206,7 @@ class ObservedTree(SwaySimulator):
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
-        self.observer = Observer(
+        self.observer: Observer = Observer(
             self,
             tracks,
             1.0 / rate,
