@@ -135,9 +135,10 @@ def choose_compiler(compiler):
     options = ['-dynamiclib'] if sys.platform == 'darwin' else ['-shared']
     if sys.platform == 'linux':
         options.append('-Wl,--as-needed')  # nothing of the run-time library of C++ is needed
-    compiler.set_executables(
-        compiler_so=named, compiler_so_cxx=named, linker_so=[*(linker or named), *options]
-    )
+    chosen = {'compiler_so': named, 'compiler_so_cxx': named}
+    chosen['linker_so'] = [*(linker or named), *options]
+    known = compiler.executables  # compiler_so_cxx is new in setuptools 73
+    compiler.set_executables(**{name: chosen[name] for name in chosen if name in known})
 
 
 commands = {'build_ext': BuildNative}

@@ -86,6 +86,8 @@ class SolverNode(TreeSwayNode):
     It answers questions for the wind at a place, and takes pushes, pulls and motion sensors.
     """
 
+    _hears_wind = False
+
     def configure(self) -> None:
         """Open the tree, reduce it and prepare its kernels."""
         began = time.monotonic()

@@ -14,6 +14,7 @@ from tree_sway_lab.validation.trial import tried
 from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, true_tips, WOOD
 from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
+from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.settings import Settings
@@ -265,7 +266,7 @@ def test_a_long_step_is_taken_in_parts():
         for _ in range(4):
             apart.step((6.0, 2.0, 0.0), LONGEST_PART)
     np.testing.assert_allclose(at_once.place(), apart.place(), atol=1e-9)
-    at_once.step((6.0, 2.0, 0.0), 1e6)
+    at_once.step((6.0, 2.0, 0.0), LONGEST_STEP)
     assert np.isfinite(at_once.place()).all()
 
 

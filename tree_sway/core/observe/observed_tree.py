@@ -45,7 +45,7 @@ from tree_sway.core.observe.sensor_place import place_on, tip_slopes
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.sway_watch import SwayChange
 from tree_sway.core.observe.tree_fit import TreeFit
-from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.run.simulator import RESTARTED, SwaySimulator, WIND_REFUSED
 from tree_sway.core.setup.prepare import prepared
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -184,7 +184,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
-        self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
         self._learned = np.zeros(2)
         self._followed = 0.0
         self._tips: Floats | None = None
@@ -302,15 +302,19 @@ class ObservedTree(SwaySimulator):
         eta, rate, _ = swing
         eta -= added[0]
         rate -= added[1]
-        if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
-            x, y, z = self.late_wind.push(x, y, z, dt)
-            self._last_wind = x, y, z
-            by_delay = self._crown.push(x, y, z, dt)
-            apart = (self._share @ by_delay).tolist()
-            np.subtract(by_delay, apart, out=self._apart)
-            status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
-        else:
-            status = super().step((x, y, z), dt)
+        refused = not is_wind(x, y, z, self._max_wind)
+        if refused:  # the last wind goes on
+            self.counts.refused += 1
+            x, y, z = self._held_wind
+        self._held_wind = x, y, z
+        x, y, z = self.late_wind.push(x, y, z, dt)
+        self._last_wind = x, y, z
+        by_delay = self._crown.push(x, y, z, dt)
+        apart = (self._share @ by_delay).tolist()
+        np.subtract(by_delay, apart, out=self._apart)
+        status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
+        if refused:
+            status |= WIND_REFUSED
         if status & RESTARTED:
             added[:] = 0.0
             self._dragged.reset()
@@ -416,7 +420,7 @@ class ObservedTree(SwaySimulator):
         if self.members is not None:
             self.members.reset()
         self.now, self._given = 0.0, None
-        self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
         for record in self._records.values():
             record.next = 0
 

@@ -339,6 +339,7 @@ def _without_gain(damping: Floats) -> Floats:
 def harmonics_at(directions: Floats) -> Floats:
     """Harmonics of unit vectors (k, 3), (k, h)."""
     out = np.zeros((N_HARMONICS, len(directions)))
-    fill_harmonics(*directions.T, out)
+    x, y, z = directions.T
+    fill_harmonics(x, y, z, out)
     return out.T
 
