@@ -174,7 +174,7 @@ class ObservedTree(SwaySimulator):
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
-        self._apart = np.zeros((N_DELAYS, 3))
+        self._apart, self._whole = np.zeros((N_DELAYS, 3)), np.zeros(3)
         oscillators: Any = self._bank.oscillators
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
         n = self.observer.count
@@ -310,9 +310,10 @@ class ObservedTree(SwaySimulator):
         x, y, z = self.late_wind.push(x, y, z, dt)
         self._last_wind = x, y, z
         by_delay = self._crown.push(x, y, z, dt)
-        apart = (self._share @ by_delay).tolist()
-        np.subtract(by_delay, apart, out=self._apart)
-        status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
+        whole = np.dot(self._share, by_delay, out=self._whole)
+        np.subtract(by_delay, whole, out=self._apart)
+        whole += self._last_wind
+        status = super().step(whole, dt)
         if refused:
             status |= WIND_REFUSED
         if status & RESTARTED:
