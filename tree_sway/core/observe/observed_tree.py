@@ -173,6 +173,7 @@ class ObservedTree(SwaySimulator):
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
+        self._about_mean = np.eye(N_DELAYS) - delays.share  # takes the mean away
         self._crown = CrownWind(delays.spread, coherence)
         self._apart, self._whole = np.zeros((N_DELAYS, 3)), np.zeros(3)
         oscillators: Any = self._bank.oscillators
@@ -311,7 +312,7 @@ class ObservedTree(SwaySimulator):
         self._last_wind = x, y, z
         by_delay = self._crown.push(x, y, z, dt)
         whole = np.dot(self._share, by_delay, out=self._whole)
-        np.subtract(by_delay, whole, out=self._apart)
+        np.dot(self._about_mean, by_delay, out=self._apart)
         whole += self._last_wind
         status = super().step(whole, dt)
         if refused:
