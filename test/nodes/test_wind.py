@@ -326,8 +326,9 @@ def test_of_two_anemometers_on_one_topic_one_is_used(compose, observer, statuses
     def said():
         return getattr(statuses('wind: wind'), 'message', '')
 
-    observer.until(lambda: 'samples of others were refused' in said(), 'the publishers')
-    assert '2 publishers: /east/anemometer, /west/anemometer; one is used' in said()
+    named = '2 publishers: /east/anemometer, /west/anemometer; one is used'
+    observer.until(lambda: named in said(), 'both names')
+    assert 'samples of others were refused' in said()
     assert statuses('wind: wind').level[0] == WARN
     n = len(winds)
     observer.until(lambda: len(winds) > n + 20, 'wind')
@@ -385,3 +386,17 @@ def test_in_a_replay_a_driver_of_best_effort_is_heard(compose, observer, tree_fi
         each for each in nodes[node].subscriptions if each.topic_name == f'/{topic.name}'
     ]
     assert subscription.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
+
+
+def test_a_publisher_whose_node_is_not_found_yet_says_so(compose, monkeypatch):
+    """The name that rmw gives it is nothing a person could look for."""
+    node = compose(wind={})['wind']
+    kind = 'geometry_msgs/msg/Vector3Stamped'
+    names = (('/east', 'mast'), ('_NODE_NAMESPACE_UNKNOWN_', '_NODE_NAME_UNKNOWN_'))
+    found = [
+        SimpleNamespace(node_namespace=space, node_name=name, topic_type=kind)
+        for space, name in names
+    ]
+    monkeypatch.setattr(node, 'get_publishers_info_by_topic', lambda _topic: found)
+    said = node.publishers_of('wind', 'geometry_msgs/Vector3Stamped')
+    assert said == ['/east/mast', 'a node not found yet']

@@ -36,6 +36,11 @@ clock come by different ways, and wait for a busy process.
 
 """
 
+_NOT_FOUND = '_NODE_NAME_UNKNOWN_'
+"""What rmw calls the node of a publisher that it found first."""
+
+_NAMELESS = 'a node not found yet'
+
 _ENTITIES = {
     'publishers': 'destroy_publisher',
     'subscriptions': 'destroy_subscription',
@@ -243,9 +248,15 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return {name: round(limit * factor) for name, limit in _REPLAY_LIMITS.items()}
 
     def publishers_of(self, topic: str, type_name: str) -> list[str]:
-        """Return the full names of the nodes that publish a type ``package/Name`` on a topic."""
+        """
+        Return the full names of the nodes that publish a type ``package/Name`` on a topic.
+
+        A publisher may be found before its node is; until then its name says that.
+        """
         return [
-            f'{each.node_namespace.rstrip("/")}/{each.node_name}'
+            _NAMELESS
+            if each.node_name == _NOT_FOUND
+            else f'{each.node_namespace.rstrip("/")}/{each.node_name}'
             for each in self.get_publishers_info_by_topic(topic)
             if each.topic_type.replace('/msg/', '/') == type_name
         ]
