@@ -9,7 +9,7 @@ import tracemalloc
 
 import pytest
 
-from tree_sway.cache import kernel_cache
+from tree_sway.cache import source
 from tree_sway.errors import FormatError, ParameterError, SpeciesError
 from tree_sway.studies import plan
 from tree_sway.studies.compute import _wind
@@ -71,7 +71,7 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
         (root / 'studies/compute.py').write_text('from tree_sway.core.growth import oak\n')
         (root / name).write_text(text)
         monkeypatch.setattr(plan, 'ROOT', root)
-        monkeypatch.setattr(kernel_cache, 'ROOT', root)
+        monkeypatch.setattr(source, 'ROOT', root)
         names.add(read_study(study('trees: [goldcrest]\nwinds: [{speed: 3}]'))[0].name)
     assert len(names) == 3
 

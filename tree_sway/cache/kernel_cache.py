@@ -23,11 +23,9 @@ import re
 import sys
 from typing import Any
 
+from tree_sway.cache.folder import cache_folder, complain, read_own, write_own
 from tree_sway.cache.kernel_claim import KernelClaim
-from tree_sway.cache.kernel_folder import complain, kernel_folder, read_own, write_own
-
-ROOT = Path(__file__).resolve().parent.parent
-"""Folder of the package."""
+from tree_sway.cache.source import ROOT, source_digest
 
 PLAIN_VARIABLE = 'TREE_SWAY_NO_NUMBA'
 """Environment variable that turns the compiler off, if it is neither empty nor 0."""
@@ -99,7 +97,7 @@ class KernelCache:
     @property
     def cache_path(self) -> str:
         """Folder of the files, empty without one."""
-        return str(kernel_folder() or '')
+        return str(cache_folder() or '')
 
     def enable(self) -> None:
         """Enable reading and writing."""
@@ -148,19 +146,9 @@ class KernelCache:
                 self._claims.pop(path).release()
 
     def _path(self, sig: Any, codegen: Any) -> Path | None:
-        folder = kernel_folder() if self._enabled else None
+        folder = cache_folder() if self._enabled else None
         if folder is None:
             return None
         key = f'{self._key}\0{sig}\0{codegen.magic_tuple()}'.encode()
         name = re.sub(r'[^\w.]', '_', self._name)
         return folder / f'{name}-{hashlib.blake2b(key, digest_size=16).hexdigest()}.kernel'
-
-
-@cache
-def source_digest(folder: Path) -> str:
-    """Digest of all modules and tables of a folder; empty without files, as in an archive."""
-    digest = hashlib.blake2b(digest_size=16)
-    paths = sorted(path for path in folder.rglob('*') if path.suffix in ('.py', '.csv'))
-    for path in paths:
-        digest.update(path.relative_to(folder).as_posix().encode() + b'\0' + path.read_bytes())
-    return digest.hexdigest() if paths else ''

@@ -3,7 +3,7 @@
 """
 Prepared models of trees on disk, so that a solver restarts faster.
 
-They are beside the compiled kernels, in numpy's own format, which is read without pickles. A file
+They are in numpy's own format, which is read without pickles. A file
 is found by a digest of the tree, its species and settings, of the source of the core, of the
 versions of numpy and scipy, and of the machine; an unreadable file is made again, and failures to
 write are ignored.
@@ -15,7 +15,6 @@ from collections.abc import Mapping
 from contextlib import suppress
 import hashlib
 import io
-import os
 from pathlib import Path
 import platform
 from typing import Any
@@ -23,8 +22,8 @@ from typing import Any
 import numpy as np
 import scipy
 
-from tree_sway.cache.kernel_cache import ROOT, source_digest
-from tree_sway.cache.kernel_folder import kernel_folder, write_own
+from tree_sway.cache.folder import cache_folder, read_own, write_own
+from tree_sway.cache.source import ROOT, source_digest
 
 MOST = 32
 """Largest number of models on disk; those not read for longest are removed first."""
@@ -45,7 +44,7 @@ class ModelFiles:
     Parameters
     ----------
     folder
-        Folder of the files; that of the kernels if None.
+        Folder of the files; that of `cache_folder` if None.
     most
         Largest number of models in it.
 
@@ -57,25 +56,23 @@ class ModelFiles:
 
     def read(self, digest: str) -> dict[str, Any] | None:
         """Return the arrays by name that were written under a digest; None if there are none."""
-        if (folder := self.folder or kernel_folder()) is None:
+        if (folder := self.folder or cache_folder()) is None:
             return None
         key = _key(digest)
         try:
-            path = folder / f'{key}{_SUFFIX}'
-            with np.load(path) as file:
+            content = read_own(folder / f'{key}{_SUFFIX}')
+            with np.load(io.BytesIO(content)) as file:
                 arrays = dict(file)
             if str(arrays.pop('key')) != key:
                 return None
-        except Exception:  # any error of numpy for a damaged file
+        except Exception:  # of the system, or any of numpy for a damaged file
             return None
-        with suppress(OSError):
-            os.utime(path)  # it is in use
         return arrays
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
         """Write arrays atomically, and remove those not read for longest."""
         size = sum(each.nbytes for each in arrays.values())
-        if (folder := self.folder or kernel_folder()) is None or size > LARGEST:
+        if (folder := self.folder or cache_folder()) is None or size > LARGEST:
             return
         key = _key(digest)
         content = io.BytesIO()

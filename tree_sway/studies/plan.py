@@ -20,7 +20,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from tree_sway.cache.kernel_cache import ROOT, source_digest
+from tree_sway.cache.source import ROOT, source_digest
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.simulate import refuse_too_many_steps
 from tree_sway.errors import FormatError, inside, nearest, ParameterError

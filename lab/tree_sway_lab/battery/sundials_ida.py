@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
 from tree_sway.errors import MissingDependencyError
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.chain import PlanarChain
 from tree_sway_lab.methods.dense import solve
 from tree_sway_lab.methods.multiplier_form import constraint, forces, index1, jacobian, place

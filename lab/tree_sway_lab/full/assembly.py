@@ -5,23 +5,12 @@
 from __future__ import annotations
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.full.bank import FullBank
 
 
 def full_bank(model: SwayModel, branches: Records) -> FullBank:
-    """
-    Make the oscillators of all coordinates of a tree.
-
-    A `MissingDependencyError` tells why there are no compiled kernels.
-    """
-    if WHY_PLAIN:
-        raise MissingDependencyError(
-            f"the model 'full' needs compiled kernels, and {WHY_PLAIN}",
-            cure='install numba 0.59 or later',
-        )
+    """Make the oscillators of all coordinates of a tree."""
     if model.is_limp:
         from tree_sway_lab.full.limp_bank import LimpFullBank
 

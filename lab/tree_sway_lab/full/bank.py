@@ -28,7 +28,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.load_layouts import Loads, WORK, Works
 from tree_sway.core.model.load_records import load_records
@@ -39,6 +38,7 @@ from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import FARTHEST, middle_of_step, ModalCoordinates
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
+from tree_sway_lab.kernel import entry_of, fused, part
 
 MOST_TRIALS = 20
 """Largest number of iterations for the load of a step."""

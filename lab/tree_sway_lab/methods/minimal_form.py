@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.dense import solve
 
 Array = NDArray[Any]

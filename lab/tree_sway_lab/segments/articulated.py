@@ -17,10 +17,8 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_fill, one_of_each, refuse_time_step
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies
 from tree_sway_lab.segments.articulated_kernel import articulation_of, motion_of
 from tree_sway_lab.segments.articulated_modes import (
@@ -102,11 +100,6 @@ class ArticulatedTree:
         leaf_area: Floats | None = None,
         root_stiffness: float = math.inf,
     ) -> None:
-        if WHY_PLAIN:
-            raise MissingDependencyError(
-                f'a tree of segments needs compiled kernels, and {WHY_PLAIN}',
-                cure='install numba 0.59 or later',
-            )
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)

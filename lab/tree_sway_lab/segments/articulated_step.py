@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.segments.articulated_bodies import Bodies
 from tree_sway_lab.segments.articulated_kernel import (
     accelerate,

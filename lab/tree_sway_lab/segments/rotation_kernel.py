@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 
 Vector = tuple[float, float, float]
 Quaternion = Floats | tuple[float, float, float, float]

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.kernel import kernel
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.battery.row import fails, holds, Row
+from tree_sway_lab.kernel import kernel
 
 TITLE = 'coefficients and clock'
 RATIOS = (0, 1e-8, 1e-3, 0.02, 0.05, 0.5, 0.999, 1, 1.0000001, 1.001, 1.05, 1.2, 2, 5, 50, 1000)

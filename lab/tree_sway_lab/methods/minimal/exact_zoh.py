@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.chain import PlanarChain
 from tree_sway_lab.methods.method import MinimalMethod
 from tree_sway_lab.methods.minimal.held_moment import apply, rest_moment

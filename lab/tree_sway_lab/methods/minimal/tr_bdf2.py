@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.method import MinimalMethod
 from tree_sway_lab.methods.minimal.newton import solve_stage
 from tree_sway_lab.methods.minimal_form import acceleration

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.method import MultiplierMethod
 from tree_sway_lab.methods.multiplier.index1_steps import euler
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.multiplier_form import index1
 
 Array = NDArray[Any]

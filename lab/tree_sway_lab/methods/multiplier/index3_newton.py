@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.dense import solve
 from tree_sway_lab.methods.multiplier_form import (
     add_joints,

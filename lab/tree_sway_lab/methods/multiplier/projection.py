@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import kernel
+from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.chain import PlanarChain
 from tree_sway_lab.methods.method import MultiplierMethod
 from tree_sway_lab.methods.multiplier.index1_steps import runge_kutta

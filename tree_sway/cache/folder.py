@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The folder of compiled kernels, writable only by its user.
+The folder of prepared models, writable only by its user.
 
-A kernel is a pickle: a program that can write one there runs code as the user who reads it. So the
-folder and all above it belong to the user or to root, others may not write into them (except /tmp,
-where users cannot remove files of others), and files are opened without following links.
+Who can write a file there decides how the trees of its reader move. So the folder and all above it
+belong to the user or to root, others may not write into them (except /tmp, where users cannot
+remove files of others), and files are opened without following links.
 """
 
 from __future__ import annotations
@@ -20,21 +20,18 @@ import time
 import warnings
 
 FOLDER_VARIABLE = 'TREE_SWAY_CACHE'
-"""Environment variable for a different folder of compiled kernels."""
-
-UNUSED = 30 * 86_400.0
-"""Time without a read after which a kernel is removed [s]."""
+"""Environment variable for a different folder of prepared models."""
 
 _PART_LEFT = 3600.0
-"""Age after which an unfinished file or a claim is removed [s]."""
+"""Age after which an unfinished file is removed [s]."""
 
 _BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 @cache
-def kernel_folder() -> Path | None:
-    """Return the folder of kernels: the given one, the user's, a temporary one; or None."""
-    asked = os.environ.get(FOLDER_VARIABLE) or os.environ.get('NUMBA_CACHE_DIR')
+def cache_folder() -> Path | None:
+    """Return the folder: the given one, the user's, a temporary one; or None."""
+    asked = os.environ.get(FOLDER_VARIABLE)
     home = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
     own = f'tree_sway-{os.getuid()}' if hasattr(os, 'getuid') else 'tree_sway'
     places = [Path(asked)] if asked else []
@@ -48,7 +45,7 @@ def kernel_folder() -> Path | None:
                 if not folder.is_dir():
                     folder.mkdir(mode=0o700, exist_ok=True)
             if unsafe := why_unsafe(place):
-                complain(f'compiled kernels are not stored in {place}: {unsafe}')
+                complain(f'prepared models are not stored in {place}: {unsafe}')
                 continue
             with tempfile.TemporaryFile(dir=place) as probe:
                 probe.write(b'\0' * 4096)
@@ -56,14 +53,12 @@ def kernel_folder() -> Path | None:
             if asked and candidate is places[0]:
                 complain(f'nothing is stored in {candidate}, which was given: {error}')
             continue
-        # Kernels that are no longer read, and what processes left that were killed.
-        for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT), ('claim', _PART_LEFT)):
-            for path in place.glob(f'*.{suffix}'):
-                with suppress(OSError):
-                    if time.time() - path.lstat().st_mtime > age:
-                        path.unlink()
+        for path in place.glob('*.part'):  # what processes left that were killed
+            with suppress(OSError):
+                if time.time() - path.lstat().st_mtime > _PART_LEFT:
+                    path.unlink()
         return place
-    complain('no folder for compiled kernels can be written; they are compiled in every process')
+    complain('no folder for prepared models can be written; they are made in every process')
     return None
 
 
@@ -98,7 +93,7 @@ def read_own(path: Path) -> bytes:
         ):
             raise PermissionError(f'others may have written {path}')
         with suppress(OSError):
-            os.utime(file.fileno())  # it is in use: see `UNUSED`
+            os.utime(file.fileno())  # it is in use
         return file.read()
 
 

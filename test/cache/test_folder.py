@@ -1,22 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Nobody but the user puts a kernel where it is read: real folders, modes and links."""
+"""Nobody but the user puts a file where it is read: real folders, modes and links."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-import pickle
-import subprocess
-import sys
 import tempfile
 import time
 
 import pytest
 
-from tree_sway.cache import kernel_folder as kernel_folder_module
-from tree_sway.cache import kernel_folder as module
-from tree_sway.cache.kernel_folder import kernel_folder, read_own, UNUSED, why_unsafe, write_own
+from tree_sway.cache import folder as module
+from tree_sway.cache.folder import cache_folder, read_own, why_unsafe, write_own
 
 pytestmark = pytest.mark.skipif(not hasattr(os, 'getuid'), reason='modes are those of POSIX')
 
@@ -26,7 +22,7 @@ def place(tmp_path: Path) -> Path:
     """Return a folder that is safe by itself and by all above it."""
     if why_unsafe(tmp_path):
         pytest.skip(why_unsafe(tmp_path))
-    folder = tmp_path / 'kernels'
+    folder = tmp_path / 'models'
     folder.mkdir(mode=0o700)
     return folder
 
@@ -35,11 +31,11 @@ def chosen(asked: Path, monkeypatch: pytest.MonkeyPatch) -> Path | None:
     """Return the folder that a program takes which is asked to take a given one."""
     monkeypatch.setenv('TREE_SWAY_CACHE', str(asked))
     monkeypatch.setattr(module, '_said', set())
-    kernel_folder.cache_clear()
+    cache_folder.cache_clear()
     try:
-        return kernel_folder()
+        return cache_folder()
     finally:
-        kernel_folder.cache_clear()
+        cache_folder.cache_clear()
 
 
 @pytest.mark.parametrize('mode', [0o700, 0o755, 0o500])
@@ -99,11 +95,11 @@ def test_missing_folders_are_made_for_the_user_alone(
 
 
 def test_a_file_is_read_unless_others_may_have_written_it(place: Path) -> None:
-    path = place / 'one.kernel'
-    write_own(path, b'code')
+    path = place / 'one.npz'
+    write_own(path, b'model')
     assert path.stat().st_mode & 0o777 == 0o600
-    assert read_own(path) == b'code'
-    link = place / 'link.kernel'
+    assert read_own(path) == b'model'
+    link = place / 'link.npz'
     link.symlink_to(path)
     with pytest.raises(OSError, match='link'):
         read_own(link)
@@ -124,8 +120,8 @@ def test_a_machine_that_is_read_only_has_none(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(tempfile, 'gettempdir', nowhere)
     monkeypatch.setenv('XDG_CACHE_HOME', '/proc/none')
-    with pytest.warns(RuntimeWarning, match='no folder for compiled kernels can be written'):
-        assert chosen(Path('/proc/none/kernels'), monkeypatch) is None
+    with pytest.warns(RuntimeWarning, match='no folder for prepared models can be written'):
+        assert chosen(Path('/proc/none/models'), monkeypatch) is None
 
 
 @pytest.mark.parametrize('kind', ['file', 'circle', 'long', 'nowhere'])
@@ -140,51 +136,21 @@ def test_a_given_folder_that_cannot_be_used_is_told_and_replaced(
     elif kind == 'long':
         given = place / ('a' * 300)
     else:
-        given = Path('/proc/none/kernels')
+        given = Path('/proc/none/models')
     monkeypatch.setenv('XDG_CACHE_HOME', str(place))
-    monkeypatch.setattr(kernel_folder_module, '_said', set())
+    monkeypatch.setattr(module, '_said', set())
     with pytest.warns(RuntimeWarning, match='which was given') as told:
         assert chosen(given, monkeypatch) == place / 'tree_sway'
     assert len(told) == 1
 
 
-def test_kernels_that_nobody_reads_are_removed(
+def test_what_a_killed_process_left_is_removed(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    old = time.time() - UNUSED - 60.0
-    for name in ('old.kernel', 'used.kernel', 'left.part', 'left.claim', 'other.txt'):
+    old = time.time() - 3660.0
+    for name in ('left.part', 'other.txt'):
         write_own(place / name, b'')
         os.utime(place / name, (old, old))
-    read_own(place / 'used.kernel')
+    write_own(place / 'new.part', b'')
     assert chosen(place, monkeypatch) == place
-    assert {each.name for each in place.iterdir()} == {'used.kernel', 'other.txt'}
-
-
-def test_what_others_put_there_is_not_run(place: Path) -> None:
-    """A pickle in a shared folder, under the name of a kernel that the program asks for."""
-    pytest.importorskip('numba', reason='there is no cache of kernels without numba')
-    evidence = place.parent / 'ran'
-
-    class Trap:
-        def __reduce__(self) -> tuple[object, tuple[str]]:
-            return os.mkdir, (str(evidence),)
-
-    code = (
-        'from pathlib import Path; import sys, warnings; warnings.simplefilter("ignore")\n'
-        'from tree_sway.cache import kernel_cache, kernel_folder\n'
-        'class Of(kernel_cache.KernelCache):\n'
-        '    def __init__(self): pass\n'
-        '    def _path(self, *_): return Path(sys.argv[1])\n'
-        'class Target:\n'
-        '    codegen = staticmethod(lambda: None)\n'
-        'kernel_cache.import_module = lambda name: __import__("unittest.mock").mock.MagicMock()\n'
-        'print(Of().load_overload(None, Target()))\n'
-    )
-    trap = place / 'trap.kernel'
-    trap.write_bytes(pickle.dumps(Trap()))
-    trap.chmod(0o666)
-    done = subprocess.run(
-        [sys.executable, '-c', code, str(trap)], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == 'None'
-    assert not evidence.exists()
+    assert {each.name for each in place.iterdir()} == {'new.part', 'other.txt'}
