@@ -1,5 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import time
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -75,13 +78,24 @@ def world(compose, observer, tree_file):
 def test_wind_whose_publisher_is_yet_to_be_found_is_waited_for(
     compose, observer, tree_file, monkeypatch
 ):
+    """However long that takes: for its first sample the solver waits from then on."""
+    passed, steady = [0.0], solver.time.monotonic
+    later = {'monotonic': lambda: steady() + passed[0]}
+    monkeypatch.setattr(solver, 'time', SimpleNamespace(**{**vars(time), **later}))
     monkeypatch.setattr(solver, '_PATIENCE', 1e3)
     world = World(compose, observer, tree_file)
     observer.until(lambda: world.set(START) or world.frames, 'the first frame')
     world.run(0.3)
+    found, node = [], world.nodes['solver']
+    count = node.count_publishers
+    monkeypatch.setattr(
+        node, 'count_publishers', lambda topic: found.append(count(topic)) or found[-1]
+    )
+    passed[0] += 100.0
     world.begin_wind()
-    for passed in range(0, 600_000_000, 50_000_000):
-        world.say(START + passed, (6.0, 0.0, 0.0))
+    observer.until(lambda: sum(found) > 2, 'the solver, which knows the publisher and waits')
+    for after in range(0, 600_000_000, 50_000_000):
+        world.say(START + after, (6.0, 0.0, 0.0))
     run = world.nodes['solver']._run
     observer.until(lambda: run.counts.accepted == 12, 'the samples')
     observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, 'the newest frame')

@@ -67,8 +67,8 @@ _PUSH_LASTS = 0.5
 
 _PATIENCE, _PATIENCE_AT_FIRST = 3.0, 10.0
 """
-Times [s] of the machine for which a replay waits for a sample or a publisher, and for the first
-sample of a topic that has a publisher.
+Times [s] of the machine for which a replay waits for a sample or a publisher, and from when a
+publisher is found for its first sample.
 
 """
 
@@ -377,7 +377,8 @@ class SolverNode(TreeSwayNode):
 
     def _await_samples(self, to: int) -> None:
         """Wait for the samples that act before a time in [ns], once for each that is lost."""
-        begin = time.monotonic()
+        end = time.monotonic() + _PATIENCE
+        found: set[str] = set()
         clock = self.get_clock()
         while not self.pacer.is_stopping and clock.now().nanoseconds >= to:  # or was set back
             self._arrived.clear()
@@ -385,9 +386,11 @@ class SolverNode(TreeSwayNode):
             if lacking <= self._missed:
                 return
             unheard = {topic for topic, newest in lacking - self._missed if newest == UNHEARD}
-            is_first = any(self.count_publishers(topic) for topic in unheard)
-            left = begin + (_PATIENCE_AT_FIRST if is_first else _PATIENCE) - time.monotonic()
-            if left <= 0.0:
+            published = {topic for topic in unheard if self.count_publishers(topic)}
+            if published - found:
+                found |= published
+                end = time.monotonic() + _PATIENCE_AT_FIRST
+            if (left := end - time.monotonic()) <= 0.0:
                 self._missed = lacking
                 return
             self._arrived.wait(min(left, _STOP_CHECK))
