@@ -16,7 +16,10 @@ from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 
 NATIVE = Path(__file__).parents[3] / 'native'
-HEADER = re.sub(r'/\*.*?\*/', '', (NATIVE / 'sway.h').read_text(encoding='utf-8'), flags=re.S)
+HEADER, LIBRARY_HEADER = (
+    re.sub(r'/\*.*?\*/', '', (NATIVE / name).read_text(encoding='utf-8'), flags=re.S)
+    for name in ('sway.h', 'library.h')
+)
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
 
@@ -33,10 +36,10 @@ def kind(declared: str) -> object:
 
 
 def declared() -> dict[str, tuple[object, list[object]]]:
-    """Return result and arguments of every function of the header."""
+    """Return result and arguments of every function of the headers."""
     found = {}
     pattern = r'SWAY_API\s+([\w\s*]+?)(\bsway_\w+)\(([^)]*)\)'
-    for result, name, given in re.findall(pattern, HEADER):
+    for result, name, given in re.findall(pattern, HEADER + LIBRARY_HEADER):
         arguments = [] if given.strip() == 'void' else given.split(',')
         found[name] = kind(result), [kind(each) for each in arguments]
     return found
