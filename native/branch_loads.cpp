@@ -193,4 +193,17 @@ void sway_load_slopes(const sway_branches *tree, const sway_branch_load *loads,
                       double *damping) {
   sway::frame_of_machine().load_slopes(*tree, loads, shapes, columns, scratch, turning, damping);
 }
+
+int64_t sway_step_branches(sway_branch_block *blocks, size_t count, double *rotations,
+                           double *rates, double x, double y, double z, double drag_density) {
+  const double wind[3] = {x, y, z};
+  return sway::frame_of_machine().step_branches(blocks, count, rotations, rates, wind,
+                                                drag_density);
+}
+
+void sway_rest_branches(sway_branch_block *blocks, size_t count, double x, double y, double z,
+                        double drag_density, const double *stiffness, double *rotations) {
+  const double wind[3] = {x, y, z};
+  sway::frame_of_machine().rest_branches(blocks, count, wind, drag_density, stiffness, rotations);
+}
 }

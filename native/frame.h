@@ -68,6 +68,11 @@ struct Frame {
   void (*load_slopes)(const sway_branches &tree, const sway_branch_load *loads,
                       const double *shapes, size_t columns, double *scratch, double *turning,
                       double *damping);
+  // Step the model `branch` (`sway_step_branches`).
+  int64_t (*step_branches)(sway_branch_block *blocks, size_t count, double *rotations,
+                           double *rates, const double wind[3], double drag_density);
+  void (*rest_branches)(sway_branch_block *blocks, size_t count, const double wind[3],
+                        double drag_density, const double *stiffness, double *rotations);
 };
 
 // The work of a frame by the best instructions that this machine has.

@@ -68,6 +68,42 @@ SWAY_API void sway_load_slopes(const sway_branches *tree, const sway_branch_load
                                const double *shapes, size_t columns, double *scratch,
                                double *turning, double *damping);
 
+/* Sixteen branches of the model `branch`; a branch that is not there has zeros. */
+typedef struct sway_branch_block {
+  double speed[16];               /* wind at it over that of the tree */
+  double area[16];                /* drag area [m^2] */
+  double spread[16];              /* variance of the motion of its pieces [m^2] */
+  double projector[6][16];        /* mean of 1 - t t^T: xx yy zz xy xz yz */
+  double damping_mode[2][3][16];  /* by its key rotations: motion that the drag damps [m] */
+  double load_rotation[2][3][16]; /* rotation of its loaded pieces */
+  double load_mode[2][3][16];     /* motion that the force does work on [m] */
+  double chord_lever[3][16];      /* direction of the chord times the lever of the load [m] */
+  /* Set with the time step: */
+  double compliance[16]; /* velocity half a step after a unit of force [s/kg] */
+  double whole[8][16];   /* coefficients of the propagator of a step */
+  double half[6][16];    /* of half a step under a constant load */
+  double guard[3][16];   /* inertia of the gyroscopic term, limits of load and moment */
+  /* Set with the wind: its wind less that of the tree [m/s] */
+  double gust[3][16];
+  /* State: */
+  double drag_impulse[3][16]; /* change of the relative wind by the force, over compliance [N] */
+  double load[3][16];         /* load along the chord and on its key rotations [N m] */
+  double force[3][16];        /* of the wind [N] */
+} sway_branch_block;
+
+/* Step `count` branches in the wind x y z [m/s] of a drag density [kg/m^3], mean over the step:
+ * key rotations [rad] and their rates [rad/s] (count, 2). Returns how many loads were clamped, or
+ * -1 if the motion is no longer finite. */
+SWAY_API int64_t sway_step_branches(sway_branch_block *blocks, size_t count, double *rotations,
+                                    double *rates, double x, double y, double z,
+                                    double drag_density);
+
+/* The key rotations (count, 2) of branches of a stiffness [N m] (count) at rest in a wind, as near as
+ * some turns come. The compliance of the blocks is 0. */
+SWAY_API void sway_rest_branches(sway_branch_block *blocks, size_t count, double x, double y,
+                                 double z, double drag_density, const double *stiffness,
+                                 double *rotations);
+
 #ifdef __cplusplus
 }
 #endif

@@ -31,7 +31,10 @@ def kind(declared: str) -> object:
         return 'text'
     if '*' in words or '[' in words:
         return ctypes.c_void_p
-    named = {'int': ctypes.c_int, 'size_t': ctypes.c_size_t, 'double': ctypes.c_double}
+    named = {
+        'int': ctypes.c_int, 'int64_t': ctypes.c_int64, 'size_t': ctypes.c_size_t,
+        'double': ctypes.c_double,
+    }  # fmt: skip
     return named.get(words.split()[0]) if words.split()[0] != 'void' else None
 
 

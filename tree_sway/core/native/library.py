@@ -66,6 +66,13 @@ SIGNATURES |= {
     'sway_load_slopes': (
         None, (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
+    'sway_step_branches': (
+        ctypes.c_int64,
+        (_pointer, _size, _pointer, _pointer, _number, _number, _number, _number),
+    ),
+    'sway_rest_branches': (
+        None, (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
+    ),
 }
 """And of ``native/library.h``: loads of winds on branches."""
 

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tree_sway_lab.full import branch_loads
+from tree_sway_lab.full.load_records import load_records
+from tree_sway_lab.full.rotation import turned
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.kernel import fused
-from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.numpy_rotation import cross_matrix
-from tree_sway.core.rotation import turned
 from tree_sway.core.run.assembly import bank_of
-from tree_sway.core.setup import branch_loads
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
