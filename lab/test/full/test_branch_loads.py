@@ -9,14 +9,13 @@ import pytest
 from tree_sway_lab.full import branch_loads
 from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.full.rotation import turned
-from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.kernel import fused
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.native.branch_loads import BranchLoads
 from tree_sway.core.numpy_rotation import cross_matrix
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 
 # Parts of kernels, each made one for itself.
@@ -112,28 +111,6 @@ def test_a_turned_branch_faces_the_wind_as_it_is_turned(stem):
     assert tree.work['force'][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
-def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
-    tree = crooked_tree(4)
-    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).with_subtrees
-    for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
-        true, fitted, centred = np.zeros((3, len(reduced.branches), 3))
-        for b, (model, record) in enumerate(zip(reduced.models, reduced.branches, strict=True)):
-            tangent = model.beam.tangent
-            across = wind - (tangent @ wind)[:, None] * tangent
-            piece = np.linalg.norm(across, axis=1)[:, None] * across
-            force = (model.drag_area * model.beam.weight)[..., None] * piece[:, None]
-            true[b] = np.cross(model.beam.point, force).sum(axis=(0, 1))
-            projector = record['projector'][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
-            drag = np.sqrt(wind @ projector @ wind) * (projector @ wind)
-            drag *= record['area'] * record['speed'] ** 2
-            fitted[b] = record['coupling'] @ drag
-            centred[b] = np.cross(record['centre'], force.sum(axis=(0, 1)))
-        error = np.linalg.norm(fitted - true) / np.linalg.norm(true)
-        assert error < 0.01
-        # Nearer than the true force would be, were it to act at one place in all winds.
-        assert error < np.linalg.norm(centred - true) / np.linalg.norm(true)
-
-
 class _Bent:
     """A tree bent by its key rotations, its loads on rods that turn with what they hang on."""
 
@@ -155,6 +132,25 @@ class _Bent:
 
 def _turned(rotation, vector):
     return np.array(turned.py_func(*rotation, *vector))
+
+
+def test_the_native_core_finds_the_same_loads(loaded):
+    """Two programs of one law."""
+    rng = np.random.default_rng(5)
+    x, v = 0.3 * rng.normal(size=(2, loaded.n))
+    wind = rng.normal(size=3)
+    own = np.zeros(loaded.n)
+    loaded.loads['drag_impulse'] = loaded.loads['compliance'] = 0.0
+    branch_loads.wind_moments(
+        loaded.branches, loaded.work, loaded.loads, x, v, own, *wind, 1.0
+    )
+    native = BranchLoads(loaded.branches)
+    found = native.moments(x[None], v[None], wind[None])[0]
+    assert found == pytest.approx(own, rel=1e-9, abs=1e-12 * np.abs(own).max())
+    for name in ('velocity', 'orientation', 'rotation', 'displacement', 'arm', 'force', 'wrench'):
+        assert native.loads[name][1:] == pytest.approx(
+            loaded.work[name][1:], rel=1e-9, abs=1e-12
+        ), name
 
 
 @pytest.mark.parametrize('bend', [0.0, 0.5, 2.0])

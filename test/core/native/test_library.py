@@ -5,12 +5,15 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from pathlib import Path
 import re
 
 import pytest
 
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
+from tree_sway.core.native.branch_blocks import BRANCH_BLOCK
+from tree_sway.core.native.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
@@ -66,6 +69,20 @@ def test_version_and_structures_are_those_of_the_header() -> None:
     body = HEADER.partition('struct sway_tree {')[2].partition('}')[0]
     assert list(_TREE.names or ()) == re.findall(r'\b(\w+)(?:\[3\])?;', body)
     assert _TREE.itemsize == 8 * 7
+
+
+def test_structures_of_branches_are_those_of_the_header() -> None:
+    number = r'(?:int64_t|double) \*?(\w+)((?:\[\d+\])*);'
+    for name, layout in (('branch_load', BRANCH_LOAD), ('branch_block', BRANCH_BLOCK)):
+        body = LIBRARY_HEADER.partition(f'struct sway_{name} {{')[2].partition('}')[0]
+        fields = re.findall(number, body)
+        assert [field for field, _ in fields] == list(layout.names or ())
+        sizes = [math.prod(map(int, re.findall(r'\d+', size))) for _, size in fields]
+        assert sizes == [layout[field].itemsize // 8 for field, _ in fields]
+    body = LIBRARY_HEADER.partition('struct sway_branches {')[2].partition('}')[0]
+    assert [field for field, _ in re.findall(number, body)] == [
+        field for field, _ in Branches._fields_
+    ]
 
 
 def test_the_list_of_arrays_is_that_of_the_model() -> None:
