@@ -18,6 +18,8 @@
 // frame of the tree unless it is said. Maps of rotation vectors are taken to second order.
 #pragma once
 
+#include <string.h>
+
 #include "library.h"
 #include "turn.h"
 
@@ -110,14 +112,6 @@ INLINE Lanes3 along(const double *row, size_t columns, int64_t count, const doub
   return sum;
 }
 
-// Add the power of a force and a couple per unit of modes to the rows of key rotations.
-INLINE void add_power(double *row, size_t columns, int64_t count, const double *mode,
-                      const Lanes3 &force) {
-  for (int64_t c = 0; c < count; c++)
-    store(row + c * columns,
-          load(row + c * columns) + dot(lanes_of(read(mode + 3 * c)), force));
-}
-
 // w + t x w / 2 + t x (t x w) / 6, and transposed.
 INLINE Lanes3 spin_by(const Lanes3 &rotation, const Lanes3 &rate) {
   const Lanes3 first = cross(rotation, rate);
@@ -143,6 +137,7 @@ INLINE void move_outward(const sway_branches &tree, const sway_branch_load *load
     const Lanes3 spin = own.parent_frame * spin_by(lanes_of(read(loads[b].rotation)), rotation);
     Moved &to = moved[b];
     const Moved &on = moved[parent];
+    to.force = to.moment = to.damping = to.damping_moment = Lanes3{};
     to.shift = shift;
     to.rotation = rotation;
     to.spin = on.spin + spin;
@@ -150,47 +145,46 @@ INLINE void move_outward(const sway_branches &tree, const sway_branch_load *load
   }
 }
 
-// The changes of the wind load of each branch, on its own key rotations and as wrenches.
-INLINE void load_own(const sway_branches &tree, const sway_branch_load *loads,
-                     const double *shapes, size_t columns, const Held *held, Moved *moved,
+// Add the changes of the wind load of a branch to its own key rotations, and to its wrenches.
+INLINE void load_own(const sway_branches &tree, int64_t b, const sway_branch_load &load_of,
+                     const double *shapes, size_t columns, const Held &own, Moved &to,
                      double *turning, double *damping) {
-  for (int64_t b = 0; b < tree.branches; b++) {
-    const Held &own = held[b];
-    Moved &to = moved[b];
-    const int64_t first = tree.coordinate[b] * columns, count = tree.n_coordinates[b];
-    const double *mode = tree.load_mode + 3 * tree.keys * b;
-    const Matrix coupling = read_matrix(tree.coupling + 9 * b);
-    // In the frame of the loaded pieces, about the base.
-    const Lanes3 place = lanes_of(own.place);
-    const Lanes3 velocity = transposed_times(own.own_frame, to.velocity + cross(to.spin, place));
-    const Lanes3 spin = transposed_times(own.own_frame, to.spin);
-    const Lanes3 rotation =
-        along(shapes + first, columns, count, tree.load_rotation + 3 * tree.keys * b, 3);
-    const Lanes3 turned = spin_by(lanes_of(-1.0 * read(loads[b].turn)), rotation) + spin;
-    const Lanes3 loaded = transposed_times(coupling, spin) + velocity +
-                          along(shapes + first, columns, count, mode, 3);
-    const Lanes3 constant = lanes_of(read(loads[b].own_force));
-    const Lanes3 by_turn = own.drag * cross(lanes_of(own.air), turned);
-    const Lanes3 force = by_turn - cross(constant, turned);
-    const Lanes3 couple = coupling * by_turn - cross(lanes_of(own.own_moment), turned) -
-                          cross(constant, velocity);
-    const Lanes3 by_rate = -1.0 * (own.drag * loaded);
-    to.force = own.own_frame * force;
-    to.moment = own.own_frame * couple + cross(place, to.force);
-    to.damping = own.own_frame * by_rate;
-    to.damping_moment = own.own_frame * (coupling * by_rate) + cross(place, to.damping);
-    for (int64_t c = 0; c < count; c++) {
-      double excess = 0.0;
-      if (c < 2) {
-        const V3 at = read(mode + 3 * c);
-        const V3 beyond = read(tree.damping_mode + 3 * (tree.keys * b + c)) - at;
-        excess = most(dot(at, own.drag * beyond), 0.0);
-      }
-      const int64_t row = first + c * columns;
-      const Lanes3 of_mode = lanes_of(read(mode + 3 * c));
-      store(turning + row, dot(of_mode, by_turn));
-      store(damping + row, dot(of_mode, by_rate) - excess * load(shapes + row));
+  const int64_t first = tree.coordinate[b] * columns, count = tree.n_coordinates[b];
+  const double *mode = tree.load_mode + 3 * tree.keys * b;
+  const Matrix coupling = read_matrix(tree.coupling + 9 * b);
+  // In the frame of the loaded pieces, about the base.
+  const Lanes3 place = lanes_of(own.place);
+  const Lanes3 velocity = transposed_times(own.own_frame, to.velocity + cross(to.spin, place));
+  const Lanes3 spin = transposed_times(own.own_frame, to.spin);
+  const Lanes3 rotation =
+      along(shapes + first, columns, count, tree.load_rotation + 3 * tree.keys * b, 3);
+  const Lanes3 turned = spin_by(lanes_of(-1.0 * read(load_of.turn)), rotation) + spin;
+  const Lanes3 loaded = transposed_times(coupling, spin) + velocity +
+                        along(shapes + first, columns, count, mode, 3);
+  const Lanes3 constant = lanes_of(read(load_of.own_force));
+  const Lanes3 by_turn = own.drag * cross(lanes_of(own.air), turned);
+  const Lanes3 force = by_turn - cross(constant, turned);
+  const Lanes3 couple = coupling * by_turn - cross(lanes_of(own.own_moment), turned) -
+                        cross(constant, velocity);
+  const Lanes3 by_rate = -1.0 * (own.drag * loaded);
+  const Lanes3 at_root = own.own_frame * force, by_rate_at_root = own.own_frame * by_rate;
+  to.force = to.force + at_root;
+  to.moment = to.moment + own.own_frame * couple + cross(place, at_root);
+  to.damping = to.damping + by_rate_at_root;
+  to.damping_moment =
+      to.damping_moment + own.own_frame * (coupling * by_rate) + cross(place, by_rate_at_root);
+  for (int64_t c = 0; c < count; c++) {
+    double excess = 0.0;
+    if (c < 2) {
+      const V3 at = read(mode + 3 * c);
+      const V3 beyond = read(tree.damping_mode + 3 * (tree.keys * b + c)) - at;
+      excess = most(dot(at, own.drag * beyond), 0.0);
     }
+    const int64_t row = first + c * columns;
+    const Lanes3 of_mode = lanes_of(read(mode + 3 * c));
+    store(turning + row, load(turning + row) + dot(of_mode, by_turn));
+    store(damping + row,
+          load(damping + row) + dot(of_mode, by_rate) - excess * load(shapes + row));
   }
 }
 
@@ -214,10 +208,13 @@ INLINE Lanes3 on_shift_of(const sway_branches &tree, int64_t b, const sway_branc
 }
 
 // Sum the wrenches over subtrees, and find what they do at the joints.
-INLINE void sum_inward(const sway_branches &tree, const sway_branch_load *loads, size_t columns,
-                       const Held *held, Moved *moved, double *turning, double *damping) {
-  for (int64_t b = tree.branches - 1; b > 0; b--) {
+INLINE void sum_inward(const sway_branches &tree, const sway_branch_load *loads,
+                       const double *shapes, size_t columns, const Held *held, Moved *moved,
+                       double *turning, double *damping) {
+  for (int64_t b = tree.branches - 1; b >= 0; b--) {
     const Held &own = held[b];
+    load_own(tree, b, loads[b], shapes, columns, own, moved[b], turning, damping);
+    if (b == 0) break;
     const Moved &from = moved[b];
     Moved &on = moved[tree.parent[b]];
     on.force = on.force + from.force;
@@ -267,10 +264,13 @@ static void load_slopes(const sway_branches &tree, const sway_branch_load *loads
   Moved *moved = reinterpret_cast<Moved *>(first / alignof(Moved) * alignof(Moved));
   Held *held = reinterpret_cast<Held *>(moved + tree.branches);
   hold(tree, loads, held);
+  int64_t n = 0;
+  for (int64_t b = 0; b < tree.branches; b++) n += tree.n_coordinates[b];
+  memset(turning, 0, n * columns * sizeof(double));
+  memset(damping, 0, n * columns * sizeof(double));
   for (size_t i = 0; i < columns; i += LANES) {
     move_outward(tree, loads, shapes + i, columns, held, moved);
-    load_own(tree, loads, shapes + i, columns, held, moved, turning + i, damping + i);
-    sum_inward(tree, loads, columns, held, moved, turning + i, damping + i);
+    sum_inward(tree, loads, shapes + i, columns, held, moved, turning + i, damping + i);
   }
 }
 

@@ -92,17 +92,17 @@ class BranchLoads:
         )  # fmt: skip
         return out
 
-    def slopes(self, shapes: Floats) -> tuple[Floats, Floats]:
+    def find_slopes(self, shapes: Floats, turning: Floats, damping: Floats) -> None:
         """
         Find the changes of the last moments by motion along shapes, and by its rates.
 
-        The tree was still; shapes are (N, c), c a multiple of 8, and so are the changes.
+        The tree was still; shapes are (N, c), c a multiple of 8, and so are the changes, which are
+        written. Memory is the caller's: to take it anew takes as long as to fill it.
         """
-        assert shapes.flags.c_contiguous
-        assert len(shapes) == self.n
-        turning, damping = np.empty((2, *shapes.shape))
+        for each in (shapes, turning, damping):
+            assert each.flags.c_contiguous
+            assert each.shape == (self.n, shapes.shape[1])
         LIBRARY.sway_load_slopes(
             ctypes.byref(self._branches), address(self.loads), address(shapes), shapes.shape[1],
             address(self._scratch), address(turning), address(damping),
         )  # fmt: skip
-        return turning, damping

@@ -35,8 +35,9 @@ class LoadSlopes:
         self._loads = loads
         self._shapes = shapes
         count, m = shapes.shape
-        self._padded = np.zeros((count, -(-m // _LANES) * _LANES))
-        self._padded[:, :m] = shapes
+        padded = np.zeros((3, count, -(-m // _LANES) * _LANES))
+        padded[0, :, :m] = shapes
+        self._padded, self._turning, self._damping = padded
 
     def __call__(self, x: Floats, wind: Floats) -> tuple[Floats, Floats]:
         """
@@ -46,8 +47,9 @@ class LoadSlopes:
         x, (N,), without motion, in a wind [m/s], (3,), of 1 kg/m^3.
         """
         self._loads.moments(x[None], None, wind[None])
+        self._loads.find_slopes(self._padded, self._turning, self._damping)
         m = self._shapes.shape[1]
         turning, damping = (
-            each[:, :m].T @ self._shapes for each in self._loads.slopes(self._padded)
+            each[:, :m].T @ self._shapes for each in (self._turning, self._damping)
         )
         return turning, damping
