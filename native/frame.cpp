@@ -4,12 +4,16 @@
 // The work of a frame for one target: SWAY_TARGET is its name, SWAY_FRAME that of its functions.
 #include "frame.h"
 
+#include "branch.h"
 #include "limbs.h"
+#include "load_slopes.h"
 #include "place.h"
 
 namespace sway {
 
 extern const Frame SWAY_FRAME;
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place, write_middles};
+const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place,
+                                 write_middles, load_slopes, step_branches,
+                                 rest_branches};
 
 }  // namespace sway

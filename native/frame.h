@@ -4,6 +4,7 @@
 // What a stand is made of, and the work of a frame, which is compiled once for each target.
 #pragma once
 
+#include "library.h"
 #include "model.h"
 
 namespace sway {
@@ -63,6 +64,15 @@ struct Frame {
   // Write the middles of the segments of poses, each times a factor, and their directions.
   void (*middles)(int64_t n, const double *poses, const double *factor, const double *half_length,
                   double *out, double *tangent);
+  // Write the changes of loads along shapes (`sway_load_slopes`).
+  void (*load_slopes)(const sway_branches &tree, const sway_branch_load *loads,
+                      const double *shapes, size_t columns, double *scratch, double *turning,
+                      double *damping);
+  // Step the model `branch` (`sway_step_branches`).
+  int64_t (*step_branches)(sway_branch_block *blocks, size_t count, double *rotations,
+                           double *rates, const double wind[3], double drag_density);
+  void (*rest_branches)(sway_branch_block *blocks, size_t count, const double wind[3],
+                        double drag_density, const double *stiffness, double *rotations);
 };
 
 // The work of a frame by the best instructions that this machine has.

@@ -14,6 +14,7 @@
 #include <immintrin.h>
 #define SWAY_LANES 8
 #elif defined(__AVX2__)
+#include <immintrin.h>
 #define SWAY_LANES 4
 #else
 #define SWAY_LANES 2
@@ -61,6 +62,17 @@ INLINE Vec least(Vec a, Vec b) { return a < b ? a : b; }
 INLINE Vec most(Vec a, Vec b) { return a > b ? a : b; }
 INLINE double least(double a, double b) { return a < b ? a : b; }
 INLINE double most(double a, double b) { return a > b ? a : b; }
+
+INLINE Vec root(Vec value) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Vec>(_mm512_maskz_sqrt_pd(0xff, reinterpret_cast<__m512d>(value)));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Vec>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(value)));
+#else
+  for (int lane = 0; lane < LANES; lane++) value[lane] = __builtin_sqrt(value[lane]);
+  return value;
+#endif
+}
 
 INLINE double sum(Vec value) {
   double total = 0.0;

@@ -6,15 +6,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from tree_sway.commands.arguments import what_was_written
 from tree_sway.core.observe.learned_tree import LearnedTree
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import FormatError, inside, ParameterError
 from tree_sway.files.trees.learned_file import LearnedFile, refuse_no_learned_file
+
+if TYPE_CHECKING:
+    from tree_sway.core.observe.observed_tree import ObservedTree
 
 
 def add_learn_argument(parser: argparse.ArgumentParser) -> None:
@@ -64,7 +67,7 @@ class Learning:
 
     def __init__(self, path: str | None) -> None:
         self._path = path
-        self._files = WeakKeyDictionary[ObservedTree, LearnedFile]()
+        self._files: WeakKeyDictionary[object, LearnedFile] = WeakKeyDictionary()
 
     def file_of(self, scene: Scene, in_leaf: bool | None) -> LearnedFile | None:
         """Open the file of what was learned about the tree of a scene; None without one."""
@@ -77,8 +80,11 @@ class Learning:
 
     def keep(self, simulator: Simulator) -> None:
         """Write what a simulator has learned, if anything is new; say if that is impossible."""
-        if not isinstance(simulator, ObservedTree) or simulator not in self._files:
+        if simulator not in self._files:
             return
+        from tree_sway.core.observe.observed_tree import ObservedTree
+
+        assert isinstance(simulator, ObservedTree)
         try:
             self._files[simulator].keep(simulator)
         except FormatError as error:
@@ -86,5 +92,9 @@ class Learning:
 
     def tell(self, simulator: Simulator) -> None:
         """Say what a simulator has learned, and where it is."""
-        if isinstance(simulator, ObservedTree) and (file := self._files.get(simulator)):
-            print(f'{file.path}: {simulator.learned or "nothing was learned"}')
+        if simulator not in self._files:
+            return
+        from tree_sway.core.observe.observed_tree import ObservedTree
+
+        assert isinstance(simulator, ObservedTree)
+        print(f'{self._files[simulator].path}: {simulator.learned or "nothing was learned"}')

@@ -29,15 +29,14 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density
-from tree_sway.core.model.load_layouts import Loads, WORK, Works
-from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.records import Branches, WIDTH
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.two_axis import LOAD_MAX
-from tree_sway.core.run.branchwise import Branchwise
+from tree_sway.core.oscillators.guards import LOAD_MAX
 from tree_sway.core.run.modal_coordinates import FARTHEST, middle_of_step, ModalCoordinates
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
-from tree_sway.core.setup.branch_loads import wind_moments
+from tree_sway_lab.full.branch_loads import wind_moments
+from tree_sway_lab.full.load_layouts import Loads, WORK, Works
+from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.kernel import entry_of, fused, part
 
 MOST_TRIALS = 20
@@ -118,8 +117,11 @@ class Air(NamedTuple):
     per_speed_squared: float
 
 
-class FullBank(Branchwise, ModalCoordinates):
+class FullBank(ModalCoordinates):
     """Oscillators of the coordinates of a tree, loaded branch by branch."""
+
+    n_outside = 0
+    """There is no table, so no step is outside."""
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""
@@ -202,6 +204,11 @@ class FullBank(Branchwise, ModalCoordinates):
         """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
         self.modal[0], self.modal[1] = self.projected(x, v)
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work['force']
+        return forces
 
     def reset(self) -> None:
         """Return to rest."""

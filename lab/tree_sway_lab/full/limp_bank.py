@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
+from tree_sway.core.model.records import WIDTH
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.limp_tree import LimpStep, SHORTEST_PART
-from tree_sway.core.setup.numpy_branch_loads import of_slots
 from tree_sway_lab.full.bank import FullBank
 
 
@@ -38,7 +38,8 @@ class LimpFullBank(LimpStep, FullBank):
         """Advance one step, as `FullBank.advance`."""
         density = self.density(wx, wy, wz)
         drag = self.segments
-        gust = of_slots(self.loads['gust'], len(self.branches))
+        block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
+        gust = self.loads['gust'][block, :, slot]
         drag.gust[:] = gust[drag.branch]
         outcome = self.step_at_pose(wx, wy, wz, density)
         on_segments = drag.root_mass[:, None] * drag.force.reshape(-1, 3)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch
+from tree_sway.core.oscillators.guards import LOAD_MAX
 from tree_sway_lab.kernel import fused
+from tree_sway_lab.methods.two_axis import fill_guards, step_branch
 
 
 def single_precision(coefficients: Floats) -> NDArray[np.float32]:

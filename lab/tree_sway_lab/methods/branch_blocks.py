@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from tree_sway.core.oscillators.two_axis import step_branch
 from tree_sway_lab.kernel import fused
 from tree_sway_lab.methods.branch_bank import single_precision
+from tree_sway_lab.methods.two_axis import step_branch
 
 WIDTH = 16
 ROWS = 18

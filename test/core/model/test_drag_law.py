@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import quad
 
 from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density
-from tree_sway.core.model.drag_law import drag as drag_and_slip
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.native.branch_blocks import BranchBlocks
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
@@ -24,8 +24,11 @@ DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2
 
 def drag(record, per_speed_squared, *wind, compliance=0.0):
     """Force alone, on a branch that does not turn."""
-    c = per_speed_squared * record['area']
-    return drag_and_slip(*record['projector'], c, compliance, *wind, 0.0)[:3]
+    blocks = BranchBlocks(np.array([record]))
+    blocks.put('speed', np.ones(1))
+    blocks.put('compliance', np.full(1, compliance))
+    blocks.step(*wind, per_speed_squared)
+    return blocks.forces()[0]
 
 
 def record_of(tree, **changes):

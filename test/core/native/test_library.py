@@ -5,18 +5,24 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from pathlib import Path
 import re
 
 import pytest
 
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
+from tree_sway.core.native.branch_blocks import BRANCH_BLOCK
+from tree_sway.core.native.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 
 NATIVE = Path(__file__).parents[3] / 'native'
-HEADER = re.sub(r'/\*.*?\*/', '', (NATIVE / 'sway.h').read_text(encoding='utf-8'), flags=re.S)
+HEADER, LIBRARY_HEADER = (
+    re.sub(r'/\*.*?\*/', '', (NATIVE / name).read_text(encoding='utf-8'), flags=re.S)
+    for name in ('sway.h', 'library.h')
+)
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
 
@@ -28,15 +34,18 @@ def kind(declared: str) -> object:
         return 'text'
     if '*' in words or '[' in words:
         return ctypes.c_void_p
-    named = {'int': ctypes.c_int, 'size_t': ctypes.c_size_t, 'double': ctypes.c_double}
+    named = {
+        'int': ctypes.c_int, 'int64_t': ctypes.c_int64, 'size_t': ctypes.c_size_t,
+        'double': ctypes.c_double,
+    }  # fmt: skip
     return named.get(words.split()[0]) if words.split()[0] != 'void' else None
 
 
 def declared() -> dict[str, tuple[object, list[object]]]:
-    """Return result and arguments of every function of the header."""
+    """Return result and arguments of every function of the headers."""
     found = {}
     pattern = r'SWAY_API\s+([\w\s*]+?)(\bsway_\w+)\(([^)]*)\)'
-    for result, name, given in re.findall(pattern, HEADER):
+    for result, name, given in re.findall(pattern, HEADER + LIBRARY_HEADER):
         arguments = [] if given.strip() == 'void' else given.split(',')
         found[name] = kind(result), [kind(each) for each in arguments]
     return found
@@ -60,6 +69,20 @@ def test_version_and_structures_are_those_of_the_header() -> None:
     body = HEADER.partition('struct sway_tree {')[2].partition('}')[0]
     assert list(_TREE.names or ()) == re.findall(r'\b(\w+)(?:\[3\])?;', body)
     assert _TREE.itemsize == 8 * 7
+
+
+def test_structures_of_branches_are_those_of_the_header() -> None:
+    number = r'(?:int64_t|double) \*?(\w+)((?:\[\d+\])*);'
+    for name, layout in (('branch_load', BRANCH_LOAD), ('branch_block', BRANCH_BLOCK)):
+        body = LIBRARY_HEADER.partition(f'struct sway_{name} {{')[2].partition('}')[0]
+        fields = re.findall(number, body)
+        assert [field for field, _ in fields] == list(layout.names or ())
+        sizes = [math.prod(map(int, re.findall(r'\d+', size))) for _, size in fields]
+        assert sizes == [layout[field].itemsize // 8 for field, _ in fields]
+    body = LIBRARY_HEADER.partition('struct sway_branches {')[2].partition('}')[0]
+    assert [field for field, _ in re.findall(number, body)] == [
+        field for field, _ in Branches._fields_
+    ]
 
 
 def test_the_list_of_arrays_is_that_of_the_model() -> None:

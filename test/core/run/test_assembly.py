@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from tree_sway.core.beams.field_counts import ROOMS
-from tree_sway.core.model.load_layouts import WORK
 from tree_sway.core.model.records import branch_layout, room_for_fields
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run import assembly
@@ -137,7 +136,6 @@ def test_records_have_room_for_all_that_a_step_needs(fork, stem, tree, rows):
     room = room_for_fields(bank.branches['n_coordinates'].max())
     assert room == rows
     assert bank.branches.dtype == branch_layout(room)
-    assert bank.oscillators.work.dtype == WORK
     assert (bank.branches['n_coordinates'] <= bank.branches['load_mode'].shape[1]).all()
     first = bank.branches['coordinate']
     assert np.array_equal(first[1:], np.cumsum(bank.branches['n_coordinates'])[:-1])

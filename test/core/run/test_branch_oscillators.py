@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.oscillators.two_axis import LOAD_MAX
+from tree_sway.core.oscillators.guards import LOAD_MAX
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named

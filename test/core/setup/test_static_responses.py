@@ -7,13 +7,11 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup import static_responses
 from tree_sway.core.setup.static_responses import WindMoments
 
 
-def test_the_load_in_each_of_many_poses_is_that_in_it_alone(fork, monkeypatch):
+def test_the_load_in_each_of_many_poses_is_that_in_it_alone(fork):
     (bank,) = make_simulator(fork(), model=4).banks
-    monkeypatch.setattr(static_responses, '_TOGETHER', 2 * len(bank.branches))
     moments = WindMoments(bank.branches)
     rng = np.random.default_rng(3)
     poses, winds = rng.normal(0.0, 0.1, (5, moments.n)), rng.normal(0.0, 5.0, (5, 3))

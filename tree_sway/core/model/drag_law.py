@@ -31,7 +31,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import part
 
 AIR_DENSITY = 1.225
 """Density of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
@@ -91,47 +90,9 @@ def crown_drag(
     return DragLaw(leafy, exponent, steady), added
 
 
-@part
 def drag_density(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
     """Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3], U in [m/s]."""
     if exponent == 0.0:
         return 0.5 * AIR_DENSITY * (coefficient + steady)
     streamlined = min(max(speed, STREAMLINING_FROM), STREAMLINING_TO)
     return 0.5 * AIR_DENSITY * (coefficient * math.pow(streamlined, -exponent) + steady)
-
-
-@part
-def drag(
-    pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
-    c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """
-    Return the force on a branch.
-
-    Parameters
-    ----------
-    pxx, pyy, pzz, pxy, pxz, pyz
-        Projector of the branch.
-    c
-        `drag_density` times the area of the branch in [kg/m].
-    compliance
-        Velocity half a step after a unit of force in [s/kg].
-    ux, uy, uz
-        Air velocity in the branch's own frame, relative to the motion of the branch without this
-        force, in [m/s].
-    spread
-        Variance of the velocity of the pieces about that of the load centre in [m^2/s^2].
-
-    Returns
-    -------
-    tuple
-        Force in the same frame in [N], and force per air velocity in [N s/m].
-
-    """
-    nx = pxx * ux + pxy * uy + pxz * uz
-    ny = pxy * ux + pyy * uy + pyz * uz
-    nz = pxz * ux + pyz * uy + pzz * uz
-    free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0) + spread)
-    relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * compliance * c * free))
-    f = c * free * relative_over_free * relative_over_free
-    return f * nx, f * ny, f * nz, f

@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The library of the native core: ``native/sway.h`` says what each function does.
+The library of the native core.
 
-A test compares the signatures with the header.
+``native/sway.h`` and ``native/library.h`` say what each function does; a test compares the
+signatures with them.
 """
 
 from __future__ import annotations
@@ -56,7 +57,24 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
 }
-"""Result and arguments of every function."""
+"""Result and arguments of every function of ``native/sway.h``."""
+
+SIGNATURES |= {
+    'sway_wind_moments': (
+        None, (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
+    ),
+    'sway_load_slopes': (
+        None, (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
+    ),
+    'sway_step_branches': (
+        ctypes.c_int64,
+        (_pointer, _size, _pointer, _pointer, _number, _number, _number, _number),
+    ),
+    'sway_rest_branches': (
+        None, (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
+    ),
+}
+"""And of ``native/library.h``: loads of winds on branches."""
 
 
 def _opened() -> ctypes.CDLL:

@@ -62,15 +62,9 @@ def bank_of(model: SwayModel) -> Bank:
 def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Oscillators:
     """Make the oscillators of the law of a model."""
     if model.is_isolated:
-        from tree_sway.core.kernel import WHY_PLAIN
         from tree_sway.core.run.branch_oscillators import BranchOscillators
 
-        isolated: type[BranchOscillators] = BranchOscillators
-        if WHY_PLAIN:
-            from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
-
-            isolated = NumpyBranchOscillators
-        return isolated(
+        return BranchOscillators(
             branches,
             model.inertia.copy(),
             model.own_damping.copy(),

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from tree_sway.core.model.records import WIDTH
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.setup.numpy_branch_loads import into_slots
 from tree_sway.core.wind.crown_wind import CrownWind
 
 
@@ -27,4 +29,5 @@ class CrownGusts:
     def push(self, x: float, y: float, z: float, dt: float) -> None:
         """Give each branch its wind in a step of dt [s] with a mean wind [m/s]."""
         apart = self.wind.push(x, y, z, dt)
-        into_slots(apart[self._delay], self._gust)
+        block, slot = np.divmod(np.arange(len(self._delay)), WIDTH)
+        self._gust[block, :, slot] = apart[self._delay]

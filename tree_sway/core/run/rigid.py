@@ -7,19 +7,23 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.load_records import load_records
+from tree_sway.core.model.records import WIDTH
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
 
-class RigidBank(Branchwise, ModalCoordinates):
+class RigidBank(ModalCoordinates):
     """A tree without coordinates; it is bent by pushes alone, as its branches are."""
+
+    n_outside = 0
+    """There is no table, so no step is outside."""
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make the arrays of a tree at rest."""
         super().__init__(branches, model)
-        self.loads = load_records(self.branches)
+        blocks = -(-len(branches) // WIDTH)
+        self.loads: Records = np.zeros(blocks, [('gust', 'f8', (3, WIDTH))])
+        """The wind of each branch, which no branch feels."""
         self.swing = tuple(np.zeros((3, 0)))
         """Displacement, rate and force of each coordinate, (0,)."""
         self._rest = np.zeros(len(self.shapes))

@@ -9,7 +9,7 @@ from copy import deepcopy
 from dataclasses import replace
 import itertools
 import operator
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,6 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import LONGEST_STEP, refuse_other_kind, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import Counts, SwaySimulator
 from tree_sway.core.scene.make import simulator_of, solved
 from tree_sway.core.scene.run import Run
@@ -34,6 +33,9 @@ from tree_sway.core.wind.interpolated import interpolated_means
 from tree_sway.core.wind.limits import FASTEST_WIND, shorter_than
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.core.observe.observed_tree import ObservedTree
 
 MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
@@ -147,9 +149,13 @@ class Rig:
             refuse_other_kind('motion', each, PlacedMotion, 'give a list of PlacedMotion')
         self.motion = motion
         self.simulator: SwaySimulator
+        self.observed: ObservedTree | None = None
+        """The same simulator, if it follows sensors or has a band."""
         if motion or band:
+            from tree_sway.core.observe.observed_tree import ObservedTree
+
             places = {each.name: each.at for each in motion}
-            self.simulator = ObservedTree(
+            self.simulator = self.observed = ObservedTree(
                 tree, settings=chosen, at=places, cache=cache, has_band=band
             )
         else:
@@ -167,11 +173,12 @@ class Rig:
         """Sway the tree in a wind from rest, as `simulate`."""
         tree = self.tree
         simulator = self.simulator
+        observed = self.observed
         chosen = _chosen(self.tree, branches)
-        if isinstance(simulator, ObservedTree):
-            simulator.set_rate(rate)
+        if observed is not None:
+            observed.set_rate(rate)
             for each in self.motion:
-                simulator.replay(
+                observed.replay(
                     each.name,
                     each.time,
                     acceleration=each.acceleration,
@@ -194,9 +201,9 @@ class Rig:
             rotations = simulator.rotations()
             moment = rotations[: len(per_rotation)] @ per_rotation
             rows.append((mean, tips, moment, gauge.read(rotations, moment)[chosen]))
-            if isinstance(simulator, ObservedTree) and simulator.members is not None:
-                load = simulator.load_band(per_rotation)
-                bands.append((tips + simulator.band(chosen.tolist()), moment + load))
+            if observed is not None and observed.members is not None:
+                load = observed.load_band(per_rotation)
+                bands.append((tips + observed.band(chosen.tolist()), moment + load))
 
         steps_per_second = within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz')
         count, steps = _steps(simulator, wind, steps_per_second, measure)
@@ -220,11 +227,11 @@ class Rig:
                 *filter(None, [short]),
                 *_doubts(simulator, before),
                 *_other_times(self.motion, count / rate),
-                *_said_by_sensors(simulator),
+                *_said_by_sensors(observed),
             ),
             tip_band,
             moment_band,
-            learned=simulator.learned if isinstance(simulator, ObservedTree) else None,
+            learned=None if observed is None else observed.learned,
         )  # fmt: skip
 
     def strength_curve(
@@ -276,9 +283,9 @@ def _other_times(motion: Sequence[PlacedMotion], seconds: float) -> Iterator[str
             )
 
 
-def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
+def _said_by_sensors(simulator: ObservedTree | None) -> tuple[str, ...]:
     """Report which sensors moved the tree, and what they told, one sentence each."""
-    if not isinstance(simulator, ObservedTree):
+    if simulator is None:
         return ()
     found = list(simulator.problems)
     for track in simulator.observer.tracks:

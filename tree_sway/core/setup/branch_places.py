@@ -17,11 +17,9 @@ from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.shape_fields import across
 from tree_sway.core.model.places import Places
 from tree_sway.core.model.records import room_for_fields
-from tree_sway.core.rotation import rotated
+from tree_sway.core.numpy_rotation import quaternion_rotated
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.tree.tree import Tree
-
-_rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:
@@ -63,10 +61,10 @@ def _next_nodes(tree: Tree) -> Floats:
 def _offsets(tree: Tree, base_segment: Ints) -> Floats:
     """Return each base from the start of its base segment, in that segment's frame, (b, 3)."""
     base = tree.start[tree.branch_first[:-1]]
-    w, x, y, z = tree.rest_frame[base_segment].T
-    in_frame = _rotated(w, -x, -y, -z, *(base - tree.start[base_segment]).T)
+    back = tree.rest_frame[base_segment] * [1.0, -1.0, -1.0, -1.0]
+    in_frame = quaternion_rotated(back, base - tree.start[base_segment])
     is_joined = base_segment[:, None] >= 0
-    return np.where(is_joined, np.stack(in_frame, axis=1), 0.0)
+    return np.where(is_joined, in_frame, 0.0)
 
 
 def _segment_turns(

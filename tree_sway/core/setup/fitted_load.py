@@ -18,8 +18,8 @@ from tree_sway.core.beams.beam import stacked
 from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.beams.wind_on_branch import exposure
 from tree_sway.core.numpy_rotation import cross, cross_matrix
-from tree_sway.core.setup.numpy_branch_loads import symmetric_matrices
 from tree_sway.core.setup.slanting_winds import SlantingWinds
+from tree_sway.core.setup.tree_motion import projectors
 
 _STRAIGHT = 0.03
 """Smallest share of the wind along a branch that is distinguished from 0."""
@@ -199,7 +199,7 @@ def _fit_crooked(model: BranchModel, share: Floats, record: np.void) -> None:
     slanting = SlantingWinds(model.beam.chord)
     winds = slanting.winds
     record['projector'] = _nearest_projector(slanting, tangent, share)
-    projector = symmetric_matrices(record['projector'])
+    projector = projectors(record['projector'])
     across = winds @ projector
     square = (winds * across).sum(axis=1)
     speed = np.sqrt(np.maximum(square, 0.0))

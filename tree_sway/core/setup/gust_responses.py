@@ -17,9 +17,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.setup.modes import Modes
-from tree_sway.core.setup.numpy_branch_loads import symmetric_matrices
 from tree_sway.core.setup.static_responses import direction
-from tree_sway.core.setup.tree_motion import base_motion, own_motion
+from tree_sway.core.setup.tree_motion import base_motion, own_motion, projectors
 
 _SPEEDS = (3.0, 12.0)
 _AZIMUTHS = (0.3, 0.3 + np.pi / 2.0)
@@ -103,7 +102,7 @@ def drag_slopes(branches: Records, ahead: Floats) -> Floats:
 
     Of the force ``A |u| P u``, with ``|u|^2 = u . P u``, it is ``A (|u| P + P u (P u)^T / |u|)``.
     """
-    projector = symmetric_matrices(branches['projector'])
+    projector = projectors(branches['projector'])
     across = projector @ ahead
     square = np.maximum(across @ ahead, 1e-12)
     speed = np.sqrt(square)[:, None, None]

@@ -18,7 +18,7 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.two_axis import LOAD_MAX
+from tree_sway.core.oscillators.guards import LOAD_MAX
 from tree_sway.core.setup.bent_inertia import inertia_slopes
 from tree_sway.core.setup.leaning_responses import leaning_responses
 from tree_sway.core.setup.load_table import fit_harmonics, load_table

@@ -151,3 +151,9 @@ def displacement_at(motion: Numbers, points: Floats) -> Numbers:
     for i, j, k in CYCLES:
         moved[:, i] += spin[:, j] * arm[:, k] - spin[:, k] * arm[:, j]
     return moved
+
+
+def projectors(entries: Floats) -> Floats:
+    """Return matrices (..., 3, 3) of their entries xx, yy, zz, xy, xz, yz, (..., 6)."""
+    row_by_row = entries[..., [0, 3, 4, 3, 1, 5, 4, 5, 2]]
+    return row_by_row.reshape(*entries.shape[:-1], 3, 3)

@@ -12,9 +12,8 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.numpy_two_axis import two_axis_moment, within_guard
+from tree_sway.core.native.branch_blocks import BranchBlocks
 from tree_sway.core.setup.gust_responses import drag_slopes
-from tree_sway.core.setup.numpy_branch_loads import Bases, NumpyPasses
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.stream_basis import basis_of_responses
 
@@ -22,12 +21,6 @@ _SPEEDS = (3.0, 9.0, 20.0, 36.0)
 _AZIMUTHS = np.arange(16) * np.pi / 8.0
 _EVERY = 3
 """Azimuths of steady winds from one with gusts to the next."""
-
-_TURNS = 30
-"""Iterations for an equilibrium."""
-
-_SHARE = 0.4
-"""Share of the way to the equilibrium that an iteration goes."""
 
 _COUNT = 10
 """Number of frequencies of gusts."""
@@ -69,7 +62,7 @@ def uncoupled_responses(
         steady winds in [rad], (2 b, any).
 
     """
-    passes = NumpyPasses(branches)
+    blocks = BranchBlocks(branches)
     oscillators = _Oscillators(inertia, damping, stiffness)
     ways = np.zeros((len(_AZIMUTHS), 3))
     ways[:, 0] = np.cos(_AZIMUTHS)
@@ -79,7 +72,7 @@ def uncoupled_responses(
     all_gusts = []
     for speed in _SPEEDS:
         density = drag_density(speed, *law)
-        steady = np.array([_equilibrium(passes, stiffness, speed * way, density) for way in ways])
+        steady = np.array([blocks.equilibrium(stiffness, speed * way, density) for way in ways])
         gusts = np.vstack(
             [_gust_response(branches, oscillators, way, density * speed) for way in with_gusts]
         )
@@ -138,23 +131,6 @@ def _gust_response(
     response = gusts[:, None, None, None] * by_wind / system[..., None]
     rows = np.moveaxis(response, 3, 1).reshape(-1, 2 * len(branches))
     return np.vstack([rows.real, rows.imag])
-
-
-def _equilibrium(passes: NumpyPasses, stiffness: Floats, wind: Floats, density: float) -> Floats:
-    """Find the key rotations (2 b,) of branches at rest in a wind [m/s], (3,)."""
-    n = len(stiffness)
-    x = np.zeros((n, 2))
-    still = np.zeros((n, 2))
-    none = np.zeros(n)
-    at_rest = Bases.at_rest(n)
-    for _ in range(_TURNS):
-        impulse = np.zeros((n, 3))
-        force = passes.wind_forces(at_rest, x, still, wind, density, none, impulse)
-        load = passes.own_loads(passes.at_bases(x, force))
-        moment = two_axis_moment(x, still, load, none, np.inf)
-        sprung = moment / stiffness[:, None]
-        x = within_guard(x + _SHARE * (sprung - x))
-    return np.asarray(x.ravel())
 
 
 def _of_size(rows: Floats, size: float) -> Floats:

@@ -5,12 +5,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.observe.learned_tree import LearnedTree
-from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import Tree
@@ -20,6 +19,10 @@ from tree_sway.files.paths import path_of
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.tree_yaml import read_yaml_tree
 from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
+
+if TYPE_CHECKING:
+    from tree_sway.core.observe.observed_tree import ObservedTree
+    from tree_sway.core.observe.tree_fit import TreeFit
 
 _SUFFIXES = ('.yaml', '.yml')
 

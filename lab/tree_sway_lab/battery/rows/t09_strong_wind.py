@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from tree_sway.core.oscillators.two_axis import limit_load
 from tree_sway_lab.battery.branch_runs import Branch
 from tree_sway_lab.battery.row import holds, Row
+from tree_sway_lab.methods.two_axis import limit_load
 
 TITLE = 'strong wind from the side'
 SIZES = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4)

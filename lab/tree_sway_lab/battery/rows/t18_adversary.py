@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.oscillators.two_axis import step_branch
 from tree_sway.core.scene.make import make_simulator
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.branch_bank import guards, single_precision
 from tree_sway_lab.methods.minimal import rk4, semi_implicit_euler, verlet
+from tree_sway_lab.methods.two_axis import step_branch
 from tree_sway_lab.model_names import settings_called
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 from tree_sway_lab.validation.truth import WOOD

@@ -33,12 +33,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import fused, part
+from tree_sway_lab.kernel import fused, part
 
 Floats = NDArray[np.float64]
 
 T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = 0.3
-LOAD_MAX = 3.0  # largest load over stiffness at w h = 1, |W| / k1 [rad]
 LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at long and at short steps
 MOMENT_MARGIN = 1.5  # the whole moment is clamped to this number of times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out

@@ -3,7 +3,7 @@
 """
 Memory of the wind load on every branch: a record of work each, and one of load for sixteen.
 
-Models that sum the load over the branches use them; a table of winds has no need of them.
+The model `full` sums the load over the branches.
 """
 
 from __future__ import annotations
@@ -46,7 +46,6 @@ class Load:
     damping_mode: Annotated[Floats, 'rows', 3, WIDTH]
     load_rotation: Annotated[Floats, 'rows', 3, WIDTH]
     load_mode: Annotated[Floats, 'rows', 3, WIDTH]
-    chord_lever: Annotated[Floats, 3, WIDTH]  # chord direction times lever
     coupling: Annotated[Floats, 3, 3, WIDTH]  # moment about the base per force [m]
     # Set with the time step:
     compliance: Annotated[Floats, WIDTH]  # velocity half a step after a unit of force [s/kg]
@@ -63,23 +62,11 @@ class Load:
     own_force: Annotated[Floats, 3, WIDTH]  # force in the turned frame of the branch [N]
     force: Annotated[Floats, 3, WIDTH]  # force in the frame of the base [N]
     moment: Annotated[Floats, 3, WIDTH]  # moment about the base in its frame [N m]
-    load: Annotated[Floats, 'loads', WIDTH]  # load along b, then on each coordinate [N m]
-
-
-class Oscillators(Load):
-    """Oscillators of sixteen consecutive branches, and the wind load on them."""
-
-    now_x: Annotated[Floats, 2, WIDTH]
-    now_v: Annotated[Floats, 2, WIDTH]
-    whole: Annotated[Floats, 8, WIDTH]  # rows of the propagator of a step
-    # Rows of the propagator of half a step under a constant load:
-    half: Annotated[Floats, 6, WIDTH]
-    guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.fill_guards`
+    load: Annotated[Floats, 'rows', WIDTH]  # load on each coordinate [N m]
 
 
 Works = RecordsOf[Work]
 Loads = RecordsOf[Load]
-Banks = RecordsOf[Oscillators]
 
 
 WORK = np.dtype(fields_of(Work))
@@ -88,7 +75,4 @@ WORK = np.dtype(fields_of(Work))
 @cache
 def load_layout(n_coordinates: int) -> np.dtype[np.void]:
     """Lay out `Load`, with room for a number of coordinates."""
-    return whole_lines(fields_of(Load, rows=n_coordinates, loads=1 + n_coordinates))
-
-
-OSCILLATORS = whole_lines(fields_of(Oscillators, rows=2, loads=3))
+    return whole_lines(fields_of(Load, rows=n_coordinates))

@@ -13,13 +13,13 @@ computed from, however far the tree is bent.
 
 from __future__ import annotations
 
+import math
+
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused, part
-from tree_sway.core.model.drag_law import drag
-from tree_sway.core.model.load_layouts import Load, Loads, Work, Works
 from tree_sway.core.model.records import Branch, Branches, WIDTH
-from tree_sway.core.rotation import product, quaternion, rotated
-from tree_sway.core.vector import (
+from tree_sway_lab.full.load_layouts import Load, Loads, Work, Works
+from tree_sway_lab.full.rotation import product, quaternion, rotated
+from tree_sway_lab.full.vector import (
     column,
     cross,
     dot,
@@ -34,6 +34,7 @@ from tree_sway.core.vector import (
     Vector,
     vector,
 )
+from tree_sway_lab.kernel import fused, part
 
 _SIXTH = 1.0 / 6.0
 
@@ -186,7 +187,7 @@ def _move_pieces(group: Load) -> None:
 def _drag_at(
     group: Load, j: int, per_speed_squared: float, air: Vector
 ) -> tuple[float, float, float, float]:
-    """Return the force on a branch in air, and the force per velocity, as `drag_law.drag`."""
+    """Return the force on a branch in air, and the force per velocity, as `drag`."""
     p = group.projector
     v = group.v
     c = per_speed_squared * group.area[j]
@@ -195,6 +196,43 @@ def _drag_at(
         p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
         c, group.compliance[j], air[0], air[1], air[2], spread,
     )  # fmt: skip
+
+
+@part
+def drag(
+    pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
+    c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """
+    Return the force on a branch.
+
+    Parameters
+    ----------
+    pxx, pyy, pzz, pxy, pxz, pyz
+        Projector of the branch.
+    c
+        `drag_density` times the area of the branch in [kg/m].
+    compliance
+        Velocity half a step after a unit of force in [s/kg].
+    ux, uy, uz
+        Air velocity in the branch's own frame, relative to the motion of the branch without this
+        force, in [m/s].
+    spread
+        Variance of the velocity of the pieces about that of the load centre in [m^2/s^2].
+
+    Returns
+    -------
+    tuple
+        Force in the same frame in [N], and force per air velocity in [N s/m].
+
+    """
+    nx = pxx * ux + pxy * uy + pxz * uz
+    ny = pxy * ux + pyy * uy + pyz * uz
+    nz = pxz * ux + pyz * uy + pzz * uz
+    free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0) + spread)
+    relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * compliance * c * free))
+    f = c * free * relative_over_free * relative_over_free
+    return f * nx, f * ny, f * nz, f
 
 
 @part
@@ -213,25 +251,6 @@ def _transposed_times(matrix: Floats, j: int, v: Vector) -> Vector:
     total = times(v[0], column(matrix[0], 0, j))
     total = plus_times(total, v[1], column(matrix[1], 0, j))
     return plus_times(total, v[2], column(matrix[2], 0, j))
-
-
-@part
-def own_loads(loads: Loads) -> None:
-    """
-    Turn the wind's own forces on branches into loads on their key rotations.
-
-    Forces act on the branch in its bent direction. Records are of `load_layout`, after
-    `wind_forces`.
-    """
-    for block in range(len(loads)):
-        group = loads[block]
-        mode = group.load_mode
-        load = group.load
-        for j in range(WIDTH):
-            force = column(group.force, 0, j)
-            load[0, j] = dot(column(group.chord_lever, 0, j), force)
-            load[1, j] = dot(column(mode[0], 0, j), force)
-            load[2, j] = dot(column(mode[1], 0, j), force)
 
 
 @part
@@ -282,7 +301,7 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
 def _begin(branch: Branch, own: Work, group: Load, j: int, moment: Floats) -> None:
     """Begin moments, wrench and force of a branch with the wind's own."""
     for c in range(branch.n_coordinates):
-        moment[branch.coordinate + c] = group.load[1 + c, j]
+        moment[branch.coordinate + c] = group.load[c, j]
     force = column(group.force, 0, j)
     q = own.orientation
     put(force, own.wrench, 0)
@@ -305,7 +324,7 @@ def _load_own(group: Load) -> None:
     for c in range(group.n_rows):
         for j in range(WIDTH):
             force = column(group.own_force, 0, j)
-            group.load[1 + c, j] = dot(column(mode[c], 0, j), force)
+            group.load[c, j] = dot(column(mode[c], 0, j), force)
     for j in range(WIDTH):
         couple = _times(group.coupling, j, column(group.own_force, 0, j))
         put_column(turned_by(column(group.rotation, 0, j), couple), group.moment, j)

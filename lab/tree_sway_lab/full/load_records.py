@@ -7,28 +7,24 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.load_layouts import load_layout
 from tree_sway.core.model.records import WIDTH, zeros_in_lines
 from tree_sway.core.numpy_rotation import cross
+from tree_sway_lab.full.load_layouts import load_layout
 
 
-def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
+def load_records(branches: Records) -> Records:
     """
     Lay the wind load of `Branch` records, (b,), out in sixteens, (ceil(b / 16),).
 
-    Records are at rest, without force, and of `load_layout` with the rows of the branches, or of a
-    layout with further fields, which are zero.
+    Records are at rest, without force, and of `load_layout` with the rows of the branches.
     """
-    if layout is None:
-        layout = load_layout(branches.dtype['load_mode'].shape[0])
+    layout = load_layout(branches.dtype['load_mode'].shape[0])
     records = zeros_in_lines(-(-len(branches) // WIDTH), layout)
     block, slot = np.divmod(np.arange(len(branches)), WIDTH)
     for name in ('speed', 'area', 'spread', 'projector'):
         records[name][block, ..., slot] = branches[name]
     for name in ('damping_mode', 'load_rotation', 'load_mode'):
-        rows = records.dtype[name].shape[0]
-        records[name][block, ..., slot] = branches[name][:, :rows]
-    records['chord_lever'][block, :, slot] = branches['lever'][:, None] * branches['frame'][:, 0]
+        records[name][block, ..., slot] = branches[name]
     at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
     records['coupling'][block, ..., slot] = branches['coupling'] - at_base
     np.maximum.at(records['n_rows'], block, branches['n_coordinates'])

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from tree_sway_lab.methods import two_axis
 from tree_sway_lab.methods.branch_bank import guards, step_bank
 
-from tree_sway.core.oscillators import two_axis
 from tree_sway.core.oscillators.propagator import propagator
 
 angle = st.floats(-1.6, 1.6)

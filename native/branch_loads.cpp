@@ -1,0 +1,209 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Outward pass of motion and inward pass of loads through the branches of a tree.
+//
+// Outward, from the stem to the twigs: the motion of each base follows from that of its parent, in
+// its own turned frame, and the wind's force on each branch from its relative velocity. Inward,
+// from the twigs to the stem: forces and moments are summed over subtrees.
+//
+// The passes are each other's transpose. The drag does work at the very velocities that it is
+// computed from, however far the tree is bent.
+#include <string.h>
+
+#include "frame.h"
+#include "library.h"
+#include "turn.h"
+
+namespace {
+
+typedef Vector<double> V3;
+
+// One of the branches: its rows of the arrays.
+struct Branch {
+  Branch(const sway_branches &tree, int64_t b)
+      : first(tree.coordinate[b]), count(tree.n_coordinates[b]), row(tree.keys * b) {}
+
+  // Sum a mode (b, k, width) by the amounts of its key rotations, three numbers from `at` on.
+  V3 moved(const double *mode, const double *amounts, int width = 3, int at = 0) const {
+    V3 sum = {0.0, 0.0, 0.0};
+    for (int64_t c = 0; c < count; c++)
+      sum = sum + amounts[first + c] * read(mode + (row + c) * width + at);
+    return sum;
+  }
+
+  int64_t first, count, row;
+};
+
+// Displacement and rotation vector of a base, or their rates, by its parent's key rotations.
+struct Joint {
+  V3 shift, rotation;
+};
+
+INLINE Joint joint_of(const sway_branches &tree, int64_t b, const double *amounts) {
+  Joint joint = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  const int64_t parent = tree.parent[b];
+  const int64_t first = tree.coordinate[parent], count = tree.n_coordinates[parent];
+  const double *twist = tree.twist + 6 * tree.keys * b;
+  for (int64_t c = 0; c < count; c++) {
+    joint.shift = joint.shift + amounts[first + c] * read(twist + 6 * c);
+    joint.rotation = joint.rotation + amounts[first + c] * read(twist + 6 * c + 3);
+  }
+  joint.shift = joint.shift + cross(joint.rotation, read(tree.base + 3 * b));
+  return joint;
+}
+
+constexpr double SIXTH = 1.0 / 6.0;
+
+// The angular velocity of a rotation vector t that changes by w per second, by series:
+// w + t x w / 2 + t x (t x w) / 6.
+INLINE V3 spin_of(const V3 &rotation, const V3 &rate) {
+  const V3 first = cross(rotation, rate);
+  return rate + 0.5 * first + SIXTH * cross(rotation, first);
+}
+
+// What a couple does per unit of a rotation vector: `spin_of` transposed.
+INLINE V3 spin_transposed(const V3 &rotation, const V3 &couple) {
+  const V3 first = cross(couple, rotation);
+  return couple + 0.5 * first + SIXTH * cross(first, rotation);
+}
+
+// The motion of all bases. A base keeps its distance from the parent's base, as the end of a rod:
+// where it is displaced by s across an arm a, it comes closer by |s|^2 / (2 |a|).
+void go_outward(const sway_branches &tree, const double *x, const double *v,
+                sway_branch_load *loads) {
+  memset(loads, 0, sizeof(*loads));
+  loads[0].orientation[0] = 1.0;
+  for (int64_t b = 1; b < tree.branches; b++) {
+    sway_branch_load &own = loads[b];
+    const sway_branch_load &on = loads[tree.parent[b]];
+    const V3 rest_arm = read(tree.arm + 3 * b);
+    const double per_arm = tree.per_arm[b];
+    const Joint joint = joint_of(tree, b, x);
+    const V3 arm = joint.shift + (1.0 - per_arm * dot(joint.shift, joint.shift)) * rest_arm;
+    write(own.displacement, joint.shift);
+    write(own.rotation, joint.rotation);
+    write(own.arm, arm);
+    const Quaternion<double> turned =
+        product({on.orientation[0], on.orientation[1], on.orientation[2], on.orientation[3]},
+                quaternion_of(joint.rotation));
+    own.orientation[0] = turned.w;
+    write(own.orientation + 1, {turned.x, turned.y, turned.z});
+    if (!v) {
+      memset(own.velocity, 0, sizeof(own.velocity));
+      continue;
+    }
+    // In the frame of the parent's base, then in that of the base itself.
+    const Joint rate = joint_of(tree, b, v);
+    const V3 parent_spin = read(on.velocity + 3);
+    const double shortening = 2.0 * per_arm * dot(joint.shift, rate.shift);
+    const V3 velocity =
+        read(on.velocity) + cross(parent_spin, arm) + rate.shift - shortening * rest_arm;
+    const V3 spin = parent_spin + spin_of(joint.rotation, rate.rotation);
+    write(own.velocity, turned_by(-1.0 * joint.rotation, velocity));
+    write(own.velocity + 3, turned_by(-1.0 * joint.rotation, spin));
+  }
+}
+
+// The force of the wind on a branch, |U_n| U_n times its area: U is the velocity of the air less
+// that of the base, of the branch itself and of its spin, and U_n the part across its pieces.
+void find_force(const sway_branches &tree, int64_t b, const double *x, const double *v,
+                const V3 &wind, sway_branch_load &own) {
+  const Branch branch(tree, b);
+  const double *q = own.orientation;
+  const V3 air = tree.speed[b] * rotated(Quaternion<double>{q[0], -q[1], -q[2], -q[3]}, wind);
+  const V3 turn = branch.moved(tree.load_rotation, x);
+  const V3 back = -1.0 * turn;
+  V3 u = turned_by(back, air - read(own.velocity));
+  double spread = 0.0;
+  if (v) {
+    const V3 spin = turned_by(back, read(own.velocity + 3));
+    const V3 by_spin = transposed_times(read_matrix(tree.coupling + 9 * b), spin);
+    u = u - branch.moved(tree.damping_mode, v) - by_spin;
+    for (int64_t c = 0; c < 2 && c < branch.count; c++)
+      spread += tree.spread[b] * v[branch.first + c] * v[branch.first + c];
+  }
+  const V3 across = times_symmetric(tree.projector + 6 * b, u);
+  const double speed = __builtin_sqrt(most(dot(u, across), 0.0) + spread);
+  write(own.air, air);
+  write(own.turn, turn);
+  write(own.own_force, tree.area[b] * speed * across);
+}
+
+// Begin moments, wrench and force of a branch with the wind's own.
+void begin(const sway_branches &tree, int64_t b, sway_branch_load &own, double *moments) {
+  const Branch branch(tree, b);
+  const V3 force = read(own.own_force), turn = read(own.turn);
+  for (int64_t c = 0; c < branch.count; c++)
+    moments[branch.first + c] = dot(read(tree.load_mode + 3 * (branch.row + c)), force);
+  const V3 couple = read_matrix(tree.coupling + 9 * b) * force;
+  const V3 at_base = turned_by(turn, force);
+  const double *q = own.orientation;
+  write(own.wrench, at_base);
+  write(own.wrench + 3, turned_by(turn, couple));
+  write(own.force, rotated(Quaternion<double>{q[0], q[1], q[2], q[3]}, at_base));
+}
+
+// Turn forces into moments on the key rotations of a tree as it is bent and turned. The load of a
+// branch rotates with it, and its force and moment act on the parent at the bent position of its
+// base: `go_outward` transposed.
+void go_inward(const sway_branches &tree, sway_branch_load *loads, double *moments) {
+  for (int64_t b = 0; b < tree.branches; b++) begin(tree, b, loads[b], moments);
+  for (int64_t b = tree.branches - 1; b > 0; b--) {
+    const sway_branch_load &own = loads[b];
+    const V3 rotation = read(own.rotation);
+    const V3 force = turned_by(rotation, read(own.wrench));
+    const V3 couple = turned_by(rotation, read(own.wrench + 3));
+    const int64_t parent = tree.parent[b];
+    double *total = loads[parent].wrench;
+    write(total, read(total) + force);
+    write(total + 3, read(total + 3) + couple + cross(read(own.arm), force));
+
+    // The shortening of the arm, the spin, and the motion of the base.
+    const double axial = 2.0 * tree.per_arm[b] * dot(read(tree.arm + 3 * b), force);
+    const V3 pull = force - axial * read(own.displacement);
+    const V3 turning = spin_transposed(rotation, couple) + cross(read(tree.base + 3 * b), pull);
+    const double *twist = tree.twist + 6 * tree.keys * b;
+    for (int64_t c = 0; c < tree.n_coordinates[parent]; c++)
+      moments[tree.coordinate[parent] + c] +=
+          dot(read(twist + 6 * c), pull) + dot(read(twist + 6 * c + 3), turning);
+  }
+}
+
+}  // namespace
+
+extern "C" {
+
+void sway_wind_moments(const sway_branches *tree, const double *x, const double *v,
+                       const double *winds, size_t count, sway_branch_load *loads,
+                       double *moments) {
+  int64_t n = 0;
+  for (int64_t b = 0; b < tree->branches; b++) n += tree->n_coordinates[b];
+  for (size_t pose = 0; pose < count; pose++) {
+    const double *at = x + n * pose, *rate = v ? v + n * pose : nullptr;
+    go_outward(*tree, at, rate, loads);
+    for (int64_t b = 0; b < tree->branches; b++)
+      find_force(*tree, b, at, rate, read(winds + 3 * pose), loads[b]);
+    go_inward(*tree, loads, moments + n * pose);
+  }
+}
+
+void sway_load_slopes(const sway_branches *tree, const sway_branch_load *loads,
+                      const double *shapes, size_t columns, double *scratch, double *turning,
+                      double *damping) {
+  sway::frame_of_machine().load_slopes(*tree, loads, shapes, columns, scratch, turning, damping);
+}
+
+int64_t sway_step_branches(sway_branch_block *blocks, size_t count, double *rotations,
+                           double *rates, double x, double y, double z, double drag_density) {
+  const double wind[3] = {x, y, z};
+  return sway::frame_of_machine().step_branches(blocks, count, rotations, rates, wind,
+                                                drag_density);
+}
+
+void sway_rest_branches(sway_branch_block *blocks, size_t count, double x, double y, double z,
+                        double drag_density, const double *stiffness, double *rotations) {
+  const double wind[3] = {x, y, z};
+  sway::frame_of_machine().rest_branches(blocks, count, wind, drag_density, stiffness, rotations);
+}
+}

@@ -1,0 +1,108 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Loads of winds on the branches of a tree that bends, by the native core."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Annotated
+
+import numpy as np
+
+from tree_sway.core.arrays import fields_of, Floats, Records
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.numpy_rotation import cross_matrix
+
+
+class BranchLoad:
+    """``sway_branch_load`` of the header: motion of a branch, and the load on it."""
+
+    velocity: Annotated[Floats, 6]
+    orientation: Annotated[Floats, 4]
+    rotation: Annotated[Floats, 3]
+    displacement: Annotated[Floats, 3]
+    arm: Annotated[Floats, 3]
+    turn: Annotated[Floats, 3]
+    air: Annotated[Floats, 3]
+    own_force: Annotated[Floats, 3]
+    force: Annotated[Floats, 3]
+    wrench: Annotated[Floats, 6]
+
+
+BRANCH_LOAD = np.dtype(fields_of(BranchLoad))
+
+_OF_RECORDS = (
+    'parent', 'coordinate', 'n_coordinates', 'twist', 'base', 'arm', 'per_arm', 'speed', 'area',
+    'spread', 'projector', 'coupling', 'load_mode', 'damping_mode', 'load_rotation',
+)  # fmt: skip
+
+
+class Branches(ctypes.Structure):
+    """``sway_branches`` of the header."""
+
+    _fields_ = (
+        ('branches', ctypes.c_int64),
+        ('keys', ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in _OF_RECORDS),
+    )
+
+
+class BranchLoads:
+    """
+    Loads of winds on the branches of a tree.
+
+    Parameters
+    ----------
+    branches
+        Records of `Branch`, parents before their children, (b,); they are copied.
+
+    """
+
+    def __init__(self, branches: Records) -> None:
+        own = {name: np.ascontiguousarray(branches[name]) for name in _OF_RECORDS}
+        own['coupling'] = own['coupling'] - cross_matrix(own['base'])
+        self._arrays = own
+        at = {name: address(array) for name, array in own.items()}
+        count, keys = own['twist'].shape[:2]
+        self._branches = Branches(branches=count, keys=keys, **at)
+        self._scratch = np.empty(256 * count + 8)
+        self.n = int(own['n_coordinates'].sum())
+        """Number of key rotations, N."""
+        self.loads: Records = np.zeros(count, BRANCH_LOAD)
+        """Records of `BranchLoad` of the last pose, (b,)."""
+
+    def moments(self, poses: Floats, rates: Floats | None, winds: Floats) -> Floats:
+        """
+        Find the moments of winds [m/s], (p, 3), of 1 kg/m^3 on the key rotations, (p, N).
+
+        The tree is in poses [rad], (p, N), and moves at rates [rad/s], (p, N), or is still.
+        """
+        x, v, wind = (
+            None if each is None else np.ascontiguousarray(each, dtype=np.float64)
+            for each in (poses, rates, winds)
+        )
+        assert x is not None
+        assert wind is not None
+        assert x.shape == (len(wind), self.n)
+        assert v is None or v.shape == x.shape
+        out = np.empty_like(x)
+        LIBRARY.sway_wind_moments(
+            ctypes.byref(self._branches), address(x), None if v is None else address(v),
+            address(wind), len(wind), address(self.loads), address(out),
+        )  # fmt: skip
+        return out
+
+    def find_slopes(self, shapes: Floats, turning: Floats, damping: Floats) -> None:
+        """
+        Find the changes of the last moments by motion along shapes, and by its rates.
+
+        The tree was still; shapes are (N, c), c a multiple of 8, and so are the changes, which are
+        written. Memory is the caller's: to take it anew takes as long as to fill it.
+        """
+        for each in (shapes, turning, damping):
+            assert each.flags.c_contiguous
+            assert each.shape == (self.n, shapes.shape[1])
+        LIBRARY.sway_load_slopes(
+            ctypes.byref(self._branches), address(self.loads), address(shapes), shapes.shape[1],
+            address(self._scratch), address(turning), address(damping),
+        )  # fmt: skip
