@@ -5,11 +5,13 @@
 #include "frame.h"
 
 #include "limbs.h"
+#include "limp.h"
 #include "place.h"
 
 namespace sway {
 
 extern const Frame SWAY_FRAME;
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place, write_middles};
+const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, step_at_pose, find_keys, place,
+                          find_place};
 
 }  // namespace sway
