@@ -65,7 +65,10 @@ if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
 
 NATIVE = 'tree_sway.core.native._sway'
-SOURCES = ('branch_loads', 'gusts', 'model', 'place_layout', 'propagate', 'stand', 'target')
+SOURCES = (
+    'branch_loads', 'gusts', 'limp_layout', 'model', 'place_layout', 'propagate', 'room', 'stand',
+    'target',
+)  # fmt: skip
 #: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
 TARGETS = {
     'x86_64': {

@@ -7,13 +7,13 @@
 #include "branch.h"
 #include "limbs.h"
 #include "load_slopes.h"
+#include "limp.h"
 #include "place.h"
 
 namespace sway {
 
 extern const Frame SWAY_FRAME;
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, find_keys, place,
-                                 write_middles, load_slopes, step_branches,
-                                 rest_branches};
+const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, step_at_pose,  find_keys,    place,
+                          find_place,  load_slopes,      step_branches, rest_branches};
 
 }  // namespace sway

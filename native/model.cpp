@@ -10,6 +10,7 @@
 #include "model.h"
 
 #include "gusts.h"
+#include "limp_layout.h"
 #include "place_layout.h"
 #include "text.h"
 
@@ -298,8 +299,10 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.branches = a.size[-SIZE_b];
   sizes.keys = a.size[-SIZE_N];
   sizes.coordinates = a.shapes || has_table(a) ? a.size[-SIZE_m] : 0;
-  sizes.delays = a.limb_harmonics && a.limb_spread && a.crown_coherence ? a.size[-SIZE_delays] : 0;
-  sizes.is_stepped = has_table(a);
+  const bool by_table = has_table(a), at_pose = has_pose(a);
+  const bool has_limbs = by_table ? a.limb_harmonics != nullptr : a.limb_delay && at_pose;
+  sizes.delays = has_limbs && a.limb_spread && a.crown_coherence ? a.size[-SIZE_delays] : 0;
+  sizes.is_stepped = by_table;
   model.rows = a.size[-SIZE_k];
   model.padded = (sizes.coordinates + 15) / 16 * 16;
   for (int axis = 0; axis < 3; axis++) {
@@ -308,7 +311,7 @@ void lay_out(sway_model &model, const Arrays &a) {
   }
   if (a.tree_start) lay_out_places(model, a);
   if (a.shapes) lay_out_shapes(model, a);
-  if (!sizes.is_stepped) return;
+  if (!by_table && !at_pose) return;
   const int64_t m = sizes.coordinates;
   double *stiffness = model.memory.take<double>(model.padded);
   double *damping = model.memory.take<double>(model.padded);
@@ -319,13 +322,15 @@ void lay_out(sway_model &model, const Arrays &a) {
     }
   model.stiffness = stiffness;
   model.own_damping = damping;
-  lay_out_table(model, a);
-  if (!sizes.delays) return;
-  model.limb_share = padded_rows(model.memory, a.limb_share, 1, sizes.delays, sizes.delays);
-  model.limb_harmonics = padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m,
-                                     model.padded);
-  model.limb_spread = *a.limb_spread;
-  model.crown_coherence = *a.crown_coherence;
+  if (by_table) lay_out_table(model, a);
+  if (sizes.delays) {
+    model.limb_share = padded_rows(model.memory, a.limb_share, 1, sizes.delays, sizes.delays);
+    model.limb_harmonics = padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m,
+                                       model.padded);
+    model.limb_spread = *a.limb_spread;
+    model.crown_coherence = *a.crown_coherence;
+  }
+  if (at_pose && lay_out_limp(model, a)) sizes.is_stepped = 2;
 }
 
 }  // namespace

@@ -81,6 +81,30 @@ struct WindTable {
   double most_pressure, most_energy;
 };
 
+// A limp tree at rest, one that is solved at its pose ("A limp tree" of doc/sway_model.md). A place
+// is the middles of the segments, each times the root of its mass: `places` numbers, x of all
+// segments, then y and z, `each` of them.
+struct Limp {
+  int64_t leading;  // q: coordinates whose inertia is that of the pose
+  int64_t row;      // q and three right-hand sides, up to whole vectors
+  int64_t each, places, keys;  // up to whole vectors
+  const double *shapes;        // (keys / 32, m, 32)
+  const double *directions;    // key rotations per unit of each coordinate (m, keys)
+  const double *amount;        // of each coordinate for the difference of its column (m)
+  const double *columns;       // places per unit of each coordinate, J (m, places)
+  const double *factor;        // Cholesky factor of the inertia of the places (q, row)
+  const double *weight;        // force of the weight on leading coordinates (q)
+  const double *slopes;        // derivative of this force by each coordinate (q, padded)
+  const double *force;         // of the weight, on the model's coordinates (padded)
+  const double *all_slopes;    // its derivative by each coordinate (m, padded)
+  const double *gravity;       // along z, over the factor of each place (each)
+  double potential;            // of this at rest
+  const double *root_mass, *half_length;  // (each)
+  const double *area, *speed;             // drag area [m^2], wind over that of the tree (each)
+  const int64_t *delay;                   // of the gusts at each segment (n); null without
+  const double *damping;                  // by still air, per drag and speed (padded)
+};
+
 }  // namespace sway
 
 struct sway_model {
@@ -102,4 +126,14 @@ struct sway_model {
   const double *limb_share;      // (delays)
   const double *limb_harmonics;  // (delays, HARMONICS, padded)
   double limb_spread, crown_coherence;
+
+  sway::Limp limp;  // where `is_limp`
 };
+
+namespace sway {
+
+inline __attribute__((always_inline)) bool is_limp(const sway_model &model) {
+  return model.sizes.is_stepped == 2;
+}
+
+}  // namespace sway

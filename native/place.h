@@ -326,23 +326,6 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
   }
 }
 
-// Write the middles of segments, each times a factor, and their directions.
-static void write_middles(int64_t n, const double *poses, const double *factor,
-                          const double *half_length, double *out, double *tangent) {
-  for (int64_t i = 0; i < n; i++) {
-    const double *pose = poses + 7 * i;
-    const Quaternion<double> q = {pose[6], pose[3], pose[4], pose[5]};
-    const Vector<double> along = axis(q);
-    out[3 * i] = factor[i] * (pose[0] + half_length[i] * along.x);
-    out[3 * i + 1] = factor[i] * (pose[1] + half_length[i] * along.y);
-    out[3 * i + 2] = factor[i] * (pose[2] + half_length[i] * along.z);
-    if (!tangent) continue;
-    tangent[3 * i] = along.x;
-    tangent[3 * i + 1] = along.y;
-    tangent[3 * i + 2] = along.z;
-  }
-}
-
 // Write the key rotations of a state to the room: shapes times what is shown of the coordinates. The
 // shapes of a tree of many branches are its largest table: they are summed in single precision.
 static void find_keys(const sway_model &model, const State &state, Room &room) {

@@ -31,7 +31,7 @@ struct OwnStep {
 // A model in a stand, as it is tuned.
 struct Kind {
   const sway_model *model;
-  double *stiffness, *damping;
+  Tuning tuning;
 };
 
 }  // namespace
@@ -44,6 +44,7 @@ struct sway_stand {
   Kind *kinds;
   OwnStep *steps;
   Room *rooms;
+  LimpTree *limp;  // of each tree; null without limp ones
   double *states;
   size_t stride, width;
   bool has_crowns;
@@ -85,36 +86,31 @@ int64_t step_of(sway_stand &stand, const sway_tree &tree) {
   return static_cast<int64_t>(stand.n_steps++);
 }
 
-void open_room(sway_stand &stand, Room &room) {
-  int64_t keys = 0, branches = 0, segments = 0, rows = 0, padded = 0;
-  for (size_t i = 0; i < stand.n_models; i++) {
-    const sway_model &model = *stand.kinds[i].model;
-    if (model.sizes.keys > keys) keys = model.sizes.keys;
-    if (model.sizes.branches > branches) branches = model.sizes.branches;
-    if (model.sizes.segments > segments) segments = model.sizes.segments;
-    if (model.rows > rows) rows = model.rows;
-    if (model.padded > padded) padded = model.padded;
+// Take what a limp tree has beside its state.
+void open_limp(Memory &memory, const sway_model &model, LimpTree &tree) {
+  const int64_t m = model.sizes.coordinates, row = model.limp.row, padded = model.padded;
+  tree.columns = memory.take<double>(m * model.limp.places);
+  tree.change = memory.take<double>(model.limp.leading * row);
+  tree.weight = memory.take<double>(row);
+  tree.last_eta = memory.take<double>(padded);
+  tree.last_rate = memory.take<double>(padded);
+  for (CoupledStep &law : tree.laws) {
+    law.part = {memory.take<double>(6 * padded), memory.take<double>(6 * padded), 0.0};
+    law.coupled = memory.take<int64_t>(row);
+    double **rows[] = {&law.stretch, &law.per_force, &law.own, &law.root_damping};
+    for (double **each : rows) *each = memory.take<double>(row);
+    law.own_damping = memory.take<double>(padded);
   }
-  Memory &memory = stand.memory;
-  room.keys = memory.take<double>(keys + 64 + KEYS_BEYOND);
-  room.bases = memory.take<double>(8 * branches);
-  room.poses = memory.take<double>(7 * segments);
-  room.slots = memory.take<double>(slots_of(rows + 4));
-  double **doubles[] = {&room.middle, &room.middle_rate, &room.change};
-  for (double **each : doubles) *each = memory.take<double>(padded);
-  float **singles[] = {&room.turned, &room.damped, &room.single_rate, &room.shown};
-  for (float **each : singles) *each = memory.take<float>(padded);
-  room.distance = memory.take<float>(4 * padded);
-  room.single_keys = memory.take<float>(16);
 }
 
 void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   kind.model = model;
-  kind.stiffness = stand.memory.take<double>(model->padded);
-  kind.damping = stand.memory.take<double>(model->padded);
+  Tuning &tuning = kind.tuning;
+  tuning.stiffness = stand.memory.take<double>(model->padded);
+  tuning.damping = stand.memory.take<double>(model->padded);
   if (!model->sizes.is_stepped || stand.memory.is_short) return;
-  memcpy(kind.stiffness, model->stiffness, model->padded * sizeof(double));
-  memcpy(kind.damping, model->own_damping, model->padded * sizeof(double));
+  memcpy(tuning.stiffness, model->stiffness, model->padded * sizeof(double));
+  memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
 }
 
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
@@ -135,7 +131,10 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
       stand.stride += CROWN + 1;  // an even number
     }
   stand.states = stand.memory.take<double>(stand.n_trees * stand.stride);
-  for (size_t i = 0; i < stand.n_rooms; i++) open_room(stand, stand.rooms[i]);
+  for (size_t i = 0; i < stand.n_rooms; i++)
+    open_room(stand.memory, models, stand.n_models, stand.rooms[i]);
+  for (size_t i = 0; i < stand.n_models; i++)
+    if (is_limp(*models[i]) && !stand.limp) stand.limp = stand.memory.take<LimpTree>(stand.n_trees);
   for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
     const sway_tree &given = trees[i];
     Tree &tree = stand.trees[i];
@@ -144,6 +143,8 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     tree.place = {cos(0.5 * given.yaw), sin(0.5 * given.yaw), given.scale,
                   {given.at[0], given.at[1], given.at[2]}};
     tree.step = step_of(stand, given);
+    if (stand.limp && is_limp(*models[given.model]))
+      open_limp(stand.memory, *models[given.model], stand.limp[i]);
   }
   return !stand.memory.is_short;
 }
@@ -216,8 +217,10 @@ int sway_tune(sway_stand *stand, size_t model, const double *stiffness, const do
   for (int64_t i = 0; i < m; i++)
     if (!(stiffness[i] >= 0.0 && damping[i] >= 0.0 && isfinite(stiffness[i] + damping[i])))
       return -1;
-  memcpy(kind.stiffness, stiffness, m * sizeof(double));
-  memcpy(kind.damping, damping, m * sizeof(double));
+  Tuning &tuning = kind.tuning;
+  if (memcmp(tuning.stiffness, stiffness, m * sizeof(double)) != 0) tuning.n_tuned++;
+  memcpy(tuning.stiffness, stiffness, m * sizeof(double));
+  memcpy(tuning.damping, damping, m * sizeof(double));
   return 0;
 }
 
@@ -228,8 +231,9 @@ int sway_set_step(sway_stand *stand, double dt) {
     own.step.dt = dt / own.scale;
     const Kind &kind = stand->kinds[own.model];
     if (kind.model->sizes.is_stepped)
-      fill_step(*kind.model, kind.stiffness, kind.damping, own.step.dt, own.step);
+      fill_step(*kind.model, kind.tuning.stiffness, kind.tuning.damping, own.step.dt, own.step);
   }
+  for (size_t i = 0; i < stand->n_models; i++) stand->kinds[i].tuning.n_set++;
   return 0;
 }
 
@@ -244,9 +248,19 @@ int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const 
     State state = state_of(*stand, first + i);
     double wind[3];
     wind_in_frame(tree, winds + 3 * i, wind);
-    n_clamped += stand->frame->step(model, kind.stiffness, stand->steps[tree.step].step, state,
-                                    stand->rooms[room], wind);
-    if (is_finite(state, model.padded)) continue;
+    const Step &step = stand->steps[tree.step].step;
+    Room &own = stand->rooms[room];
+    const Frame &frame = *stand->frame;
+    bool is_sound = true;
+    // A tree of which coordinates are left out is stepped by its table, if it has one.
+    if (is_limp(model) && (!model.table.levels || !(*state.left_out > 0.0))) {
+      LimpTree &limp = stand->limp[first + i];
+      n_clamped += frame.step_at_pose(model, kind.tuning, step, state, limp, own, wind);
+      is_sound = isfinite(limp.allowed);
+    } else {
+      n_clamped += frame.step(model, kind.tuning.stiffness, step, state, own, wind);
+    }
+    if (is_sound && is_finite(state, model.padded)) continue;
     come_to_rest(state, model.padded);
     n_restarted++;
   }
@@ -276,19 +290,5 @@ void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *
   const sway_model &model = *stand->kinds[own.model].model;
   memcpy(stand->rooms[room].keys, keys, model.sizes.keys * sizeof(double));
   stand->frame->place(model, own.place, stand->rooms[room], poses);
-}
-
-void sway_middles(sway_stand *stand, size_t room, const double *keys, size_t count,
-                  const double *factor, const double *half_length, double *out, double *tangent) {
-  const sway_model &model = *stand->kinds[stand->trees[0].model].model;
-  Room &own = stand->rooms[room];
-  const Place at_origin = {1.0, 0.0, 1.0, {0.0, 0.0, 0.0}};
-  const int64_t n = model.sizes.segments;
-  for (size_t i = 0; i < count; i++) {
-    memcpy(own.keys, keys + i * model.sizes.keys, model.sizes.keys * sizeof(double));
-    stand->frame->place(model, at_origin, own, own.poses);
-    stand->frame->middles(n, own.poses, factor, half_length, out + 3 * n * i,
-                          i == 0 ? tangent : nullptr);
-  }
 }
 }

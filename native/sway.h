@@ -45,7 +45,7 @@ typedef struct sway_sizes {
   int64_t keys;         /* N: key rotations of all branches */
   int64_t coordinates;  /* m: coordinates that are solved */
   int64_t delays;       /* delays with which gusts reach limbs; 0 if they reach all at once */
-  int64_t is_stepped;   /* 1 if it can be stepped, 0 if it can only be placed */
+  int64_t is_stepped;   /* 1 by its table, 2 at its pose (a limp tree); 0 if it is only placed */
 } sway_sizes;
 
 /* A tree of a stand. */
@@ -118,13 +118,6 @@ SWAY_API void sway_keys(sway_stand *stand, size_t room, size_t tree, double *key
 /* Place a tree by key rotations (N) [rad], in rows `poses` of its own (n, 7). */
 SWAY_API void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *keys,
                               double *poses);
-
-/* The middles of the segments of the first tree, as if its root node were at 0, by `count` rows of
- * key rotations (N): each times `factor` (n), in rows `out` (3 n); `half_length` (n) [m] is half the
- * length of each segment, `tangent` (3 n) gets its directions in the first pose. */
-SWAY_API void sway_middles(sway_stand *stand, size_t room, const double *keys, size_t count,
-                           const double *factor, const double *half_length, double *out,
-                           double *tangent);
 
 /* Winds of places that gusts reach after a delay. `history` has 2 + 4 `size` numbers, at first 0.
  * Unless `finest` is negative a step of dt [s] in a mean wind [m/s] is added to it, joined with the

@@ -169,9 +169,6 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             write_model(arguments.output, model)
             return
         write_native_model(arguments.output, model)
-        if model.is_limp:
-            said = 'its twigs hang or whip: programs in C solve it by its table, less closely'
-            print(f'note: {said}', file=sys.stderr)
         return
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)

@@ -6,13 +6,17 @@ from __future__ import annotations
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.native.model import AT_POSE
+from tree_sway.core.run.assembly import native_stand
+from tree_sway.core.run.bank import Oscillators
 from tree_sway_lab.full.bank import FullBank
+from tree_sway_lab.full.limp_bank import LimpFullBank
 
 
-def full_bank(model: SwayModel, branches: Records) -> FullBank:
+def full_bank(model: SwayModel, branches: Records) -> Oscillators:
     """Make the oscillators of all coordinates of a tree."""
     if model.is_limp:
-        from tree_sway_lab.full.limp_bank import LimpFullBank
-
-        return LimpFullBank(branches, model)
+        stand = native_stand(model)
+        if stand.models[0].sizes.is_stepped == AT_POSE:
+            return LimpFullBank(branches, model, stand)
     return FullBank(branches, model)

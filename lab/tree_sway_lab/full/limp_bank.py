@@ -4,50 +4,43 @@
 The model `full` of a limp tree: inertia, weight and wind load of its pose, on all coordinates.
 
 They are all but those that would rattle (`setup.reductions.FASTEST_LIMP`). The step is that of
-`core.run.limp_tree`, in finer parts.
+``native/limp.h``, in finer parts.
 """
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.records import WIDTH
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.limp_tree import LimpStep, SHORTEST_PART
-from tree_sway_lab.full.bank import FullBank
+from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.run.modal_coordinates import ModalCoordinates
+from tree_sway.core.run.table_model import TableOscillators
+
+LONGEST_PART = 1.0 / 240.0
+"""Longest part of a step [s]."""
 
 
-class LimpFullBank(LimpStep, FullBank):
-    """A limp tree on all its coordinates."""
+class LimpFullBank(TableOscillators):
+    """A limp tree on all its coordinates, without a table."""
 
-    longest_part = SHORTEST_PART
-
-    def __init__(self, branches: Records, model: SwayModel) -> None:
+    def __init__(self, branches: Records, model: SwayModel, stand: NativeStand) -> None:
         """Make room for the state."""
-        super().__init__(branches, model)
-        self._first = model.branch_first[:-1]
-        self.leading = len(model.stiffness)
+        super().__init__(ModalCoordinates(branches, model), stand, 0.0)
+        self._n_parts = 1
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
-        self.take_step(self, self.swing, dt)
         super().set_step(dt)
+        self._n_parts = math.ceil(dt / LONGEST_PART - 1e-9)
+        self.stand.set_step(dt / self._n_parts)
 
     def advance(self, wx: float, wy: float, wz: float) -> int:
-        """Advance one step, as `FullBank.advance`."""
-        density = self.density(wx, wy, wz)
-        drag = self.segments
-        block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
-        gust = self.loads['gust'][block, :, slot]
-        drag.gust[:] = gust[drag.branch]
-        outcome = self.step_at_pose(wx, wy, wz, density)
-        on_segments = drag.root_mass[:, None] * drag.force.reshape(-1, 3)
-        on_branches = np.add.reduceat(on_segments, self._first)
-        self.work['force'] = density * on_branches
+        """Advance one step, as `TableOscillators.advance`."""
+        outcome = 0
+        for _ in range(self._n_parts):
+            of_part = super().advance(wx, wy, wz)
+            if of_part < 0:
+                return of_part
+            outcome += of_part
         return outcome
-
-    def reset(self) -> None:
-        """Return to rest."""
-        super().reset()
-        self.begin_anew()

@@ -66,15 +66,25 @@ class PageSolver:
         with np.load(path) as file:
             self.a = dict(file)
         self.about = json.loads(str(self.a['about']))
+        self.dt = dt
+        self.whole, self.half = self.steps(dt)
+        self.q, self.v, self.f = np.zeros((3, len(self.a['stiffness'])))
+
+    def steps(self, dt):
+        """Return a step of dt, and half of it to where the load is found, (m, 2, 3)."""
         stiffness, damping = self.a['stiffness'], self.a['own_damping']
-        self.whole, self.half = (after(h, stiffness, damping) for h in (dt, dt / 2))
+        whole, half = (after(h, stiffness, damping) for h in (dt, dt / 2))
         h, share = dt / 2, 1 / (1 + dt / 2 * damping + dt * dt / 4 * stiffness)
-        euler = np.zeros_like(self.half)
+        euler = np.zeros_like(half)
         euler[:, 1] = np.stack([-h * stiffness * share, share, h * share], axis=1)
         euler[:, 0] = h * euler[:, 1] + [1, 0, 0]
-        is_later = euler[:, 1, 2] > self.half[:, 1, 2]
-        self.half[is_later] = euler[is_later]
-        self.q, self.v, self.f = np.zeros((3, len(stiffness)))
+        is_later = euler[:, 1, 2] > half[:, 1, 2]
+        half[is_later] = euler[is_later]
+        return whole, half
+
+    def drag_density(self, speed):
+        c, n, c0 = self.a['drag_law']
+        return 0.5 * 1.225 * (c * (np.clip(speed, 4, 20) ** -n if n else 1.0) + c0)
 
     def moved(self, rows, force):
         state = np.stack([self.q, self.v, force], axis=1)
@@ -83,9 +93,7 @@ class PageSolver:
     def step(self, wind):
         speed = float(np.linalg.norm(wind))
         direction = np.asarray(wind) / speed if speed else np.array([1.0, 0.0, 0.0])
-        c, n, c0 = self.a['drag_law']
-        streamlined = np.clip(speed, 4, 20) ** -n if n else 1.0
-        p = 0.5 * 1.225 * (c * streamlined + c0)
+        p = self.drag_density(speed)
         s = min(p * speed**2, self.a['most_pressure'])
         before, r, change = self.energy(), self.half[:, 1, 2], 0
         passes, k = 1, 0
@@ -134,7 +142,12 @@ class PageSolver:
 
     def poses(self):
         """Poses: start of each segment, orientation x y z w, (n, 7)."""
-        a, x = self.a, self.a['shapes'] @ self.q
+        starts, orientations = self.placed(self.a['shapes'] @ self.q)
+        return np.hstack([starts, orientations[:, [1, 2, 3, 0]]])
+
+    def placed(self, x):
+        """Return starts and orientations w x y z of the segments at key rotations."""
+        a = self.a
         near, far, right = np.deg2rad([30, 45, 90]) ** 2
         first, parent = a['branch_first'], a['branch_parent']
         starts, orientations = np.zeros((first[-1], 3)), np.zeros((first[-1], 4))
@@ -165,4 +178,123 @@ class PageSolver:
                 turned = product(base, quaternion(bend))
                 starts[i], orientations[i] = at, product(turned, a['segment_rest'][i])
                 at = at + rotated(turned, a['segment_chord'][i])
-        return np.hstack([starts, orientations[:, [1, 2, 3, 0]]])
+        return starts, orientations
+
+
+class LimpPageSolver(PageSolver):
+    """A limp tree of an ``.npz`` file, in wind that reaches all of it at once."""
+
+    def __init__(self, path, dt):
+        super().__init__(path, dt)
+        a, self.m = self.a, len(self.q)
+        self.root = np.sqrt(a['segment_mass'])[:, None]
+        self.down = np.array([0.0, 0.0, -self.about['settings']['gravity']])
+        lengths = np.linalg.norm(a['tree_end'] - a['tree_start'], axis=1)
+        first = a['branch_first'][:-1]
+        branch = np.repeat(np.arange(len(first)), np.diff(a['branch_first']))
+        wood = lengths * (a['tree_base_diameter'] + a['tree_tip_diameter']) / 2
+        of_wood = np.add.reduceat(wood, first)
+        leaves = np.maximum(a['branch_area'] - of_wood, 0) / np.add.reduceat(lengths, first)
+        clad = np.minimum(a['branch_area'] / of_wood, 1)
+        self.area = wood * clad[branch] + lengths * leaves[branch]
+        self.air = a['branch_speed'][branch][:, None]
+        self.half_length = lengths[:, None] / 2
+        # Coordinates in which the inertia of the middles at rest is 1, by turns of their keys.
+        turns = a['shapes'].T
+        at_rest = np.array([self.column(x, np.zeros(len(x)), both=True) for x in turns])
+        self.factor = np.linalg.cholesky(at_rest @ at_rest.T)
+        unit = np.linalg.inv(self.factor)
+        self.turns, self.columns = unit @ turns, unit @ at_rest
+        gravity = (self.root * self.down).ravel()
+        self.weight_at_rest, self.slopes = self.columns @ gravity, unit @ a['weight_slopes']
+        self.linear, self.gravity = at_rest @ gravity, gravity
+        self.height = gravity @ self.places(np.zeros(len(a['shapes'])))[0]
+        per_mass = np.repeat(2 * self.area * self.air[:, 0] / a['segment_mass'], 3)
+        self.damping = self.columns**2 @ per_mass
+        self.change, self.weight = np.zeros((self.m, self.m)), np.zeros(self.m)
+        self.next, self.allowed, self.n_bounded = 0, np.inf, 0
+
+    def places(self, x):
+        """Middles times the roots of the masses, (3 n,), and directions, (n, 3)."""
+        starts, orientations = self.placed(x)
+        along = np.array([rotated(q, np.array([1.0, 0, 0])) for q in orientations])
+        return (self.root * (starts + self.half_length * along)).ravel(), along
+
+    def column(self, direction, x, *, both=False):
+        amount = 1e-5 / np.abs(direction).max()
+        back = -amount if both else 0.0
+        ahead, behind = (self.places(x + by * direction)[0] for by in (amount, back))
+        return (ahead - behind) / (amount - back)
+
+    def motion(self, v):
+        return v @ v + v @ self.change @ v
+
+    def step(self, wind):
+        speed = float(np.linalg.norm(wind))
+        longest = min(0.04, max(1 / 240, 5 / max(speed**2, 1)))
+        n = ceil(min(max(self.dt / longest - 1e-9, 1), 1000))
+        for _ in range(n):
+            self.part(np.asarray(wind), speed, self.dt / n)
+
+    def part(self, wind, speed, h):
+        a, p = self.a, self.drag_density(speed)
+        shapes, (whole, half) = a['shapes'], self.steps(h)
+        middle, rate = self.moved(half, self.f)
+        x, turning = shapes @ middle, shapes @ rate
+        fastest = np.abs(turning).max()
+        ahead = 0.01 / fastest if fastest else 0.0
+        here, along = self.places(x)
+        after, before = (self.places(x + side * ahead * turning)[0] for side in (1, -1))
+        per_time = 0.5 / ahead if ahead else 0.0
+        u = self.air * wind - per_time * (after - before).reshape(-1, 3) / self.root
+        u = u - np.sum(u * along, axis=1)[:, None] * along
+        drag = (self.area * np.linalg.norm(u, axis=1))[:, None] * u / self.root
+
+        count = ceil(min(max(h * fastest / 0.3, 1 / 8), 1) * self.m)
+        rows = (self.next + np.arange(count)) % self.m
+        self.next = (self.next + count) % self.m
+        motion = self.motion(self.v)
+        self.columns[rows] = [self.column(self.turns[row], x) for row in rows]
+        inertia = self.columns[rows] @ self.columns.T
+        self.change[rows] = inertia - np.eye(self.m)[rows]
+        self.change[:, rows] = self.change[rows].T
+        bent = self.weight_at_rest[rows] + self.slopes[rows] @ middle
+        self.weight[rows] = self.columns[rows] @ self.gravity - bent
+        v = self.v * (sqrt(motion / self.motion(self.v)) if motion else 1.0)
+
+        load = p * (self.factor @ (self.columns @ drag.ravel()))
+        across = r = np.zeros(self.m)
+        if ahead:
+            across = -self.columns @ (after + before - 2 * here) / ahead**2
+            r = (rate + self.change @ rate) / self.motion(rate)
+            across = across - (across @ rate) * r
+        force = self.force_of_part(load + self.weight, v, whole, h, p * speed, across, r)
+        q1, v1 = np.einsum('mij,mj->im', whole, np.stack([self.q, v, force], axis=1))
+        fastest = np.abs(shapes @ v1).max()
+        if fastest > 40:
+            q1, v1 = self.q + 40 / fastest * (q1 - self.q), 40 / fastest * v1
+            self.n_bounded += 1
+        kinetic = self.motion(v1) / 2
+        moving = kinetic + a['stiffness'] @ q1**2 / 2
+        fallen = self.gravity @ self.places(shapes @ q1)[0] - self.height
+        energy = moving + self.linear @ q1 + q1 @ a['weight_slopes'] @ q1 / 2 - fallen
+        self.allowed += load @ (q1 - self.q)
+        if energy > self.allowed:
+            left = max(kinetic - (energy - self.allowed), 0)
+            v1 = v1 * sqrt(left / kinetic)
+            energy += left - kinetic
+        self.allowed = min(self.allowed, energy + 0.05 * moving)
+        self.q, self.v, self.f = q1, v1, force
+
+    def force_of_part(self, wanted, v, whole, h, drag, across, r):
+        """Solve for the force: implicit in inertia and drag, and turning with the motion."""
+        half = np.maximum(np.sqrt(self.a['stiffness']) * h / 2, 1e-12)
+        assert (half < 1.25).all()  # slower than coordinates that are not coupled
+        T, by_force = np.tan(half) / half, whole[:, 1, 2] / h
+        free = (whole[:, 1, 0] * self.q + (whole[:, 1, 1] - 1) * v) / h
+        root = np.sqrt(h / 2 * self.damping)
+        damped = drag * root[:, None] * (self.change + np.eye(self.m)) * root
+        turn = np.outer(across, r) - np.outer(r, across)
+        matrix = np.diag(T / by_force) + self.change + damped - h / 2 * turn
+        right = T * wanted - self.change @ free + damped @ (by_force * self.f)
+        return np.linalg.solve(matrix, right + turn @ (v + h / 2 * free)) / by_force

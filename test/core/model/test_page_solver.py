@@ -10,6 +10,8 @@ import re
 
 import numpy as np
 import pytest
+from tree_sway_lab.kinds.shoots import Drawing, towards
+from tree_sway_lab.validation.truth import SETTINGS, WOOD
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.sway_model import MEANINGS
@@ -24,11 +26,11 @@ PAGE = (HERE.parents[2] / 'doc' / 'sway_model.md').read_text(encoding='utf-8')
 DT = 1 / 60
 
 
-def page_solver(path):
+def page_solver(path, name='PageSolver'):
     spec = importlib.util.spec_from_file_location('page_solver', HERE / 'page_solver.py')
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.PageSolver(path, DT)
+    return getattr(module, name)(path, DT)
 
 
 @pytest.mark.compiled
@@ -51,6 +53,39 @@ def test_a_solver_of_the_page_gives_the_poses_of_the_library(fork, tmp_path, nam
     same_turn = np.abs(np.sum(found[:, 3:] * poses[:, 3:], axis=1))  # q and -q are one rotation
     half_angle = np.arccos(np.minimum(same_turn, 1.0))
     assert half_angle.max() < 1e-4
+
+
+def weeping_twigs():
+    """Draw a stem with three twigs of 1.4 m and 4 mm that hang from it."""
+    to = Drawing(np.random.default_rng(11))
+    stem = to.shoot(np.array([0.0, 0.0, 1.0]), 3.0, (0.05, 0.03), 4, wander=2.0)
+    for k in range(3):
+        to.shoot(
+            towards(120.0 * k, 20.0), 1.4, (0.004, 0.002), 5, on=stem, node=2 + k % 2, rise=-25.0,
+            wander=3.0,
+        )  # fmt: skip
+    return to.tree('weeping twigs')
+
+
+@pytest.mark.parametrize(('speed', 'frames'), [(9.0, 25), (22.0, 8), (80.0, 4)])
+def test_a_solver_of_the_page_moves_a_limp_tree_as_the_library_does(tmp_path, speed, frames):
+    """In a wind that takes one part of a frame, in one that takes more, and beyond the limits."""
+    path = tmp_path / 'limp.npz'
+    write_model(path, prepare(weeping_twigs(), WOOD, SETTINGS, model=24, cache=None))
+    solver, simulator = page_solver(path, 'LimpPageSolver'), SwaySimulator(read_model(path))
+    assert simulator.models[0].is_limp
+    swing = simulator.banks[0].oscillators.swing
+    winds = simulate_turbulence(9.0, rate=60.0, duration=2.0, rng=np.random.default_rng(11))
+    for wind in speed / 9.0 * winds[:frames]:
+        solver.step(wind)
+        simulator.step(wind, DT)
+        for own, of_page in zip(swing, (solver.q, solver.v, solver.f), strict=True):
+            np.testing.assert_allclose(own, of_page, atol=1e-6 * np.abs(of_page).max())
+    assert np.abs(simulator.rotations()).max() > 0.3
+    assert (solver.n_bounded > 0) == (speed == 80.0)
+    assert (simulator.counts.clamped > 0) == (speed == 80.0)
+    poses = simulator.place()
+    assert np.abs(solver.poses() - poses)[:, :3].max() < 1e-5
 
 
 def test_the_solver_uses_nothing_of_the_library():

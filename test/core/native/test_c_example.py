@@ -10,6 +10,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from tree_sway_lab.kinds.kinds import kind_called
 
 from tree_sway.core.native.library import FILE
 from tree_sway.core.scene.make import make_simulator
@@ -33,9 +34,12 @@ def program(tmp_path_factory):
     return made
 
 
-def test_it_gives_the_poses_of_python(fork, program, tmp_path):
-    simulator = make_simulator(fork(), model=12)
-    path = tmp_path / 'fork.sway'
+@pytest.mark.parametrize('kind', ['fork', 'limp'])
+def test_it_gives_the_poses_of_python(fork, program, tmp_path, kind):
+    tree = fork() if kind == 'fork' else kind_called('reeds')
+    simulator = make_simulator(tree, model=12)
+    assert simulator.models[0].is_limp == (kind == 'limp')
+    path = tmp_path / 'tree.sway'
     write_native_model(path, simulator.models[0])
     done = subprocess.run([program, path], capture_output=True, text=True, check=True, timeout=60)
     found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float)

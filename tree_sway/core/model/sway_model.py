@@ -17,7 +17,7 @@ s streamed coordinates, A azimuths and L levels of the table, h harmonics.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, MISSING
+from dataclasses import dataclass, field, fields, MISSING, replace
 from functools import cached_property
 import hashlib
 from typing import Any, NamedTuple, TYPE_CHECKING
@@ -361,6 +361,10 @@ class SwayModel:
         """Whether its twigs turn so far that loads and inertia are those of its pose."""
         return self.segment_mass.size > 0
 
+    def by_table(self) -> SwayModel:
+        """Return the model by which trees that share a table are stepped, of limp ones too."""
+        return replace(self, segment_mass=_NONE, weight_slopes=_NONE) if self.is_limp else self
+
     @cached_property
     def basis(self) -> StateBasis:
         """Return the basis in which the motion is streamed; isolated branches have none here."""
@@ -509,9 +513,13 @@ class SwayModel:
 
 def _is_native(name: str) -> bool:
     """Whether the native core needs an array or number."""
-    if name in NUMBERS or name in ('stiffness', 'own_damping', 'shapes'):
+    if name in NUMBERS or name in _NATIVE:
         return True
-    return MEANINGS[name].group in (PLACING, TABLE, LIMBS, LIMB_LOADS)
+    return MEANINGS[name].group in (PLACING, TABLE, LIMBS, LIMB_LOADS, LIMP)
+
+
+_NATIVE = ('stiffness', 'own_damping', 'shapes', 'branch_area', 'branch_speed')
+"""Arrays of groups that the native core does not need as a whole."""
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | str, ...]) -> bool:

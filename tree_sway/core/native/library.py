@@ -44,10 +44,6 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_place': (None, (_pointer, _size, _pointer, _size, _pointer)),
     'sway_keys': (None, (_pointer, _size, _size, _pointer)),
     'sway_place_keys': (None, (_pointer, _size, _size, _pointer, _pointer)),
-    'sway_middles': (
-        None,
-        (_pointer, _size, _pointer, _size, _pointer, _pointer, _pointer, _pointer),
-    ),
     'sway_past_winds': (
         None,
         (

@@ -24,6 +24,9 @@ _LINE = 64
 _ROOM = 300
 """Bytes for an error."""
 
+AT_POSE = 2
+"""How a limp tree is stepped, in `Sizes.is_stepped`."""
+
 
 class Sizes(ctypes.Structure):
     """``sway_sizes`` of the header."""

@@ -176,30 +176,6 @@ class NativeStand:
         """Write the key rotations of a tree [rad], (N,)."""
         LIBRARY.sway_keys(self._handle, 0, tree, self._keys_at.of(out))
 
-    def middles(
-        self, keys: Floats, count: int, root_mass: Floats, half_length: Floats, out: Floats,
-        tangent: Floats,
-    ) -> None:  # fmt: skip
-        """
-        Write the middles of the segments of the first tree, as if its root node were at 0.
-
-        Parameters
-        ----------
-        keys
-            Key rotations of some poses [rad], (k, N), of which ``count`` are taken.
-        root_mass, half_length
-            Factor of each middle, and half the length of each segment [m], (n,).
-        out
-            Middles times their factors, (k, 3 n), written.
-        tangent
-            Directions of the segments in the first pose, (3 n,), written.
-
-        """
-        LIBRARY.sway_middles(
-            self._handle, 0, address(keys), count, address(root_mass), address(half_length),
-            address(out), address(tangent),
-        )  # fmt: skip
-
     def place_keys(self, tree: int, keys: Floats, out: Floats) -> None:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
         keys_at = self._keys_at.of(keys)

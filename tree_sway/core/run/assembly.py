@@ -10,14 +10,12 @@ are imported where a tree needs them.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.model.records import branch_layout
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.run.bank import Bank, Oscillators
 
@@ -44,19 +42,10 @@ def bank_of(model: SwayModel) -> Bank:
     """Make a model ready to be stepped and placed."""
     branches = branch_records(model)
     stand = native_stand(model)
-    bank = Bank(_oscillators(model, branches, stand), branches, stand, model.mass)
-    if model.is_limp:
-        from tree_sway.core.run.limp_tree import LimpStep
-
-        assert isinstance(bank.oscillators, LimpStep)
-        try:
-            bank.oscillators.begin(model, bank)
-        except np.linalg.LinAlgError:
-            stiffer = replace(model, segment_mass=np.zeros(0))
-            return replace(
-                bank, oscillators=_oscillators(stiffer, branches, stand), doubt=_NO_INERTIA
-            )
-    return bank
+    made = _oscillators(model, branches, stand)
+    solved: NativeStand = getattr(made, 'stand', stand)
+    is_stiffer = model.is_limp and solved.models[0].sizes.is_stepped != AT_POSE
+    return Bank(made, branches, solved, model.mass, _NO_INERTIA if is_stiffer else '')
 
 
 def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Oscillators:
@@ -84,11 +73,6 @@ def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Osc
         from tree_sway.core.run.rigid import RigidBank
 
         return RigidBank(branches, model)
-    if model.is_limp:
-        from tree_sway.core.run.limp_tree import LimpOscillators
-
-        coordinates = ModalCoordinates(branches, model)
-        return LimpOscillators(coordinates, stand, model.most_pressure)
     from tree_sway.core.run.table_model import TableOscillators
 
     return TableOscillators(ModalCoordinates(branches, model), stand, model.most_pressure)

@@ -85,7 +85,7 @@ class SharedTables:
             with inside(scene.trees[first].name):
                 chosen = replace(kind.settings(settings), model=sharing.size_of(row))
                 prepared = prepare(kind.tree, kind.species, chosen, cache=cache)
-                self.kinds.append(SwaySimulator(prepared))
+                self.kinds.append(SwaySimulator(prepared.by_table()))
             progress(len(self.kinds))
         self.counts = Counts()
         """Counts of clamped, reduced and restarted trees."""
