@@ -65,7 +65,9 @@ if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
 
 NATIVE = 'tree_sway.core.native._sway'
-SOURCES = ('gusts', 'model', 'place_layout', 'propagate', 'stand', 'target')
+SOURCES = (
+    'gusts', 'model', 'observe', 'place_layout', 'propagate', 'samples', 'stand', 'target',
+)  # fmt: skip
 #: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
 TARGETS = {
     'x86_64': {

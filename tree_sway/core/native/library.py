@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The library of the native core: ``native/sway.h`` says what each function does.
+The library of the native core: ``sway.h`` and ``library.h`` of ``native/`` say what it does.
 
-A test compares the signatures with the header.
+A test compares the signatures with these headers.
 """
 
 from __future__ import annotations
@@ -55,6 +55,17 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
         ),
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
+    # Motion sensors.
+    'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
+    'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),
+    'sway_sense': (None, (_pointer, _pointer, _pointer, _pointer, _size)),
+    'sway_read_sensor': (
+        ctypes.c_int,
+        (_pointer, _number, _number, _pointer, _size, _pointer),
+    ),
+    'sway_correct': (None, (_pointer, _pointer, _pointer, _size)),
+    'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),
+    'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
 }
 """Result and arguments of every function."""
 

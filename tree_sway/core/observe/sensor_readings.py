@@ -9,13 +9,13 @@ had then.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.structures import Structure
 from tree_sway.core.observe.late_wind import LateWind, LONGEST_WAY
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.later_work import LaterWork, Submit
@@ -80,38 +80,33 @@ class SensorReadings:
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self.lateness = Lateness(len(tracks), dt, LATEST)
         """Steps by which sensors are read late."""
-        self._compute: Callable[..., None] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
         self._forces = np.zeros((_KEPT, unknown.count))
         self.forces = self._forces[0]
         """Force of the wind on each coordinate at the step that was read, (n,)."""
         self.beyond = np.zeros((len(tracks), 9))
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
-        self._beyond = list(self.beyond)
         self.is_known = np.zeros(len(tracks), dtype=np.bool_)
         """Which of them there are, (k,)."""
+        m, n_rows = len(unknown.all_stiffness), ROWS * len(tracks)
+        self._by_state = np.zeros((3 * m, n_rows))
+        self._sensed_at, self._beyond_at = address(self._sensed), address(self.beyond)
+        self._native = Structure(
+            'sway_sensed', coordinates=m, corrected=unknown.count, rows=n_rows,
+            by_state=self._by_state, air_damping=unknown.air_damping, sensed=self._sensed,
+            still=self._forces,
+        )  # fmt: skip
         self.read_model()
 
     def read_model(self) -> None:
         """Read stiffness and damping of the model again."""
         law = self._unknown.all_stiffness, self._unknown.all_damping
-        rows = [sensed_rows(each, *law) for each in self._places]
-        m = len(self._unknown.all_stiffness)
-        self._rows = np.array(rows).reshape(-1, 3 * m).T.reshape(3, m, -1).copy()
+        for k, place in enumerate(self._places):
+            self._by_state[:, ROWS * k : ROWS * (k + 1)] = sensed_rows(place, *law).T
 
-    def note(self, step: int, swing: tuple[Floats, ...]) -> None:
-        """Note displacement, rate and force of each coordinate in the wind alone, (m,)."""
-        if self._compute is None:
-            self._compute = self._computing(swing)
-        damping, slot = self._unknown.air_damping, step % _KEPT
-        self._compute(self._rows, damping, *swing, slot, self._sensed, self._forces)
-
-    def _computing(self, swing: tuple[Floats, ...]) -> Callable[..., None]:
-        """Return `compute` for arrays as these."""
-        if WHY_PLAIN:
-            return compute_in_numpy
-        damping = self._unknown.air_damping
-        return entry_of(compute, self._rows, damping, *swing, 0, self._sensed, self._forces)
+    def note(self, step: int, eta_at: int, rate_at: int, force_at: int) -> None:
+        """Note the coordinates in the wind alone, (m,), whose arrays begin at these addresses."""
+        LIBRARY.sway_sense(self._native.at, eta_at, rate_at, force_at, step % _KEPT)
 
     def read(self, time: float, step: int, done: int) -> bool:
         """
@@ -141,9 +136,11 @@ class SensorReadings:
         slot, when = (step - late) % _KEPT, time - late * self._dt
         self.forces = self._forces[slot]
         self._find_mounting()
-        sensed = self._sensed[slot]
+        computed_at, beyond_at = self._sensed_at + slot * self._sensed[0].nbytes, self._beyond_at
         for k, track in enumerate(self._tracks):
-            self.is_known[k] = track.read(when, sensed[k], self._beyond[k])
+            self.is_known[k] = track.read(when, computed_at, beyond_at)
+            computed_at += 8 * ROWS
+            beyond_at += 8 * 9
         return True
 
     def _find_mounting(self) -> None:
@@ -178,45 +175,3 @@ class SensorReadings:
             least = max(round(_LEAST_LAG / self._dt), track.window)
         earliest = -math.floor(delay / self._dt)
         return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)
-
-
-@kernel
-def compute(
-    rows: Floats, air_damping: Floats, eta: Floats, rate: Floats, force: Floats, slot: int,
-    sensed: Floats, still: Floats,
-) -> None:  # fmt: skip
-    """
-    Compute what sensors would measure, and the force of the wind on a tree that stands still.
-
-    Parameters
-    ----------
-    rows
-        Rows of all sensors by displacement, rate and force of each coordinate, (3, m, r).
-    air_damping
-        Damping of the first coordinates by the air [1/s], (n,).
-    eta, rate, force
-        Displacement, rate and force of each coordinate, (m,).
-    slot
-        Number of the step among those that are kept.
-    sensed, still
-        Measurements, (s, k, r / k), and forces, (s, n), of the steps that are kept, written.
-
-    """
-    found = sensed[slot].reshape(rows.shape[2])
-    found[:] = 0.0
-    for j in range(rows.shape[1]):
-        for r in range(rows.shape[2]):
-            found[r] += rows[0, j, r] * eta[j] + rows[1, j, r] * rate[j] + rows[2, j, r] * force[j]
-    for i in range(len(air_damping)):
-        still[slot, i] = air_damping[i] * rate[i] + force[i]
-
-
-def compute_in_numpy(
-    rows: Floats, air_damping: Floats, eta: Floats, rate: Floats, force: Floats, slot: int,
-    sensed: Floats, still: Floats,
-) -> None:  # fmt: skip
-    """Compute what sensors would measure as `compute`."""
-    found = sum(each @ by for each, by in zip((eta, rate, force), rows, strict=True))
-    sensed[slot] = np.reshape(found, sensed.shape[1:])
-    n = len(air_damping)
-    still[slot] = air_damping * rate[:n] + force[:n]

@@ -10,15 +10,15 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import cached_property
+from collections.abc import Iterator
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, kernel
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LIBRARY
+from tree_sway.core.native.structures import Structure
 from tree_sway.core.observe.alignment import (
     align,
     Alignment,
@@ -28,7 +28,6 @@ from tree_sway.core.observe.alignment import (
     TELLS_LITTLE,
 )
 from tree_sway.core.observe.motion_sensor import MotionSensor
-from tree_sway.core.observe.sample_ring import read_samples
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.wind_lag import find_lag
 
@@ -75,83 +74,6 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
     out = rows[3:].copy()
     out[:3] = rows[:3] + (rows[3:6] if has_gravity else 0.0)
     return out
-
-
-@kernel
-def find_beyond(
-    mounting: Floats, values: Floats, computed: Floats, moved: Floats, beyond: Floats
-) -> None:
-    """
-    Turn a sample into the frame of the tree, and take the model's motion off.
-
-    Parameters
-    ----------
-    mounting
-        Rotation to the frame of the tree, factors of acceleration and rate, gravity in the
-        acceleration [m/s^2], and bias, (21,).
-    values, computed
-        Sample (9,), and rows of the model (12,).
-    moved, beyond
-        The sample in the frame of the tree, and what it has beyond the model, (9,), written.
-
-    """
-    for i in range(3):
-        acceleration, rate, rotation = 0.0, 0.0, 0.0
-        for j in range(3):
-            acceleration += mounting[3 * i + j] * values[j]
-            rate += mounting[3 * i + j] * values[3 + j]
-            rotation += mounting[3 * i + j] * values[6 + j]
-        moved[i] = mounting[9] * acceleration
-        moved[3 + i] = mounting[10] * rate
-        moved[6 + i] = rotation
-    moved[2] -= mounting[11]
-    for i in range(9):
-        beyond[i] = moved[i] - mounting[12 + i] - computed[3 + i]
-    for i in range(3):
-        # The part by tilted gravity is felt with gravity only.
-        tilted = 0.0 if mounting[11] > 0.0 else computed[3 + i]
-        beyond[i] += tilted - computed[i]
-
-
-@kernel
-def read_motion(
-    rings: Records, time: float, dt: float, computed: Floats, mounting: Floats, row: int,
-    kept: Floats, kept_computed: Floats, values: Floats, moved: Floats, beyond: Floats,
-) -> bool:  # fmt: skip
-    """
-    Read a sensor about a time, and keep what it and the model say.
-
-    Parameters
-    ----------
-    rings
-        Samples of the sensor, (1,) of `RING`.
-    time, dt
-        Time, and that of a step [s].
-    computed
-        Rows of the model, (12,).
-    mounting
-        As `find_beyond` takes it.
-    row
-        Row of the memory to write.
-    kept, kept_computed
-        Memory of samples (n, 9), and rows of the model (n, 12), written.
-    values, moved, beyond
-        The sample, and what `find_beyond` makes of it, (9,), written.
-
-    Returns
-    -------
-    bool
-        Whether there is a sample.
-
-    """
-    if not read_samples(rings, time, dt, values):
-        return False
-    for i in range(9):
-        kept[row, i] = values[i]
-    for i in range(ROWS):
-        kept_computed[row, i] = computed[i]
-    find_beyond(mounting, values, computed, moved, beyond)
-    return True
 
 
 class LagRange(NamedTuple):
@@ -271,24 +193,20 @@ class SensorTrack:
         self._newest = sensor.newest
         self._is_refused = False
         self._quantities = sensor.quantities
-        self._values, self._moved = np.zeros((2, 9))
-        self.fitted_motion = self.watched_motion = self._moved[:3]
+        self._moved = np.zeros(9)
+        self._native = Structure(
+            'sway_sensor', ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
+            kept_computed=self._computed, moved=self._moved,
+        )  # fmt: skip
+        self.fitted_motion = self.watched_motion = self._moved[:2]
         """
-        The last sample of this quantity, and of the acceleration, in the frame of the tree, (3,).
+        The last sample of this quantity, and of the acceleration, to east and north, (2,).
 
         Without an acceleration, the first of the others is watched. The acceleration tells more of
         fast sway than the angular rate, which is less above its noise.
         """
         self.fitted_noise = self.watched_noise = 0.0
         """Standard deviations of their noise in each sample, as measured."""
-
-    @cached_property
-    def _read(self) -> Callable[..., bool]:
-        nine, twelve, memory = self._moved, np.zeros(ROWS), (self._sensed, self._computed)
-        return entry_of(
-            read_motion, self.sensor.ring, 0.0, 0.0, twelve, self._mounting, 0, *memory,
-            nine, nine, nine,
-        )  # fmt: skip
 
     def _uses(self) -> tuple[int, ...]:
         given = self.sensor.quantities
@@ -348,7 +266,7 @@ class SensorTrack:
         """Whether there was no sample for longer than networks delay one."""
         return self._absent > _ABSENT_AFTER
 
-    def read(self, time: float, computed: Floats, beyond: Floats) -> bool:
+    def read(self, time: float, computed_at: int, beyond_at: int) -> bool:
         """
         Read the sensor at the time of a step, and keep what it says.
 
@@ -356,10 +274,10 @@ class SensorTrack:
         ----------
         time
             Time in [s].
-        computed
-            Rows of the model in the wind alone, (12,).
-        beyond
-            Motion in the frame of the tree beyond the model's, (9,), written.
+        computed_at
+            Address of the rows of the model in the wind alone, (12,).
+        beyond_at
+            That of the motion in the frame of the tree beyond the model's, (9,), written.
 
         Returns
         -------
@@ -370,11 +288,9 @@ class SensorTrack:
         if self.sensor.quantities != self._quantities:
             self._begin()
         row = self._count % len(self._sensed)
-        memory = self._sensed, self._computed
-        if not self._read(
-            self.sensor.ring, time, self._dt, computed, self._mounting, row, *memory,
-            self._values, self._moved, beyond,
-        ):  # fmt: skip
+        if not LIBRARY.sway_read_sensor(
+            self._native.at, time, self._dt, computed_at, row, beyond_at
+        ):
             self._miss(time)
             return False
         self._absent = 0.0
@@ -443,8 +359,8 @@ class SensorTrack:
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
         first, watched = 3 * self.fitted, 3 * self.uses[0]
-        self.fitted_motion = self._moved[first : first + 3]
-        self.watched_motion = self._moved[watched : watched + 3]
+        self.fitted_motion = self._moved[first : first + 2]
+        self.watched_motion = self._moved[watched : watched + 2]
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias

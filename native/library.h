@@ -1,0 +1,132 @@
+/* Copyright 2026 Tree Sway maintainers
+ * SPDX-License-Identifier: Apache-2.0
+ *
+ * What the Python library calls beside sway.h; not part of the public interface.
+ *
+ * Memory is the caller's, who keeps it and has checked its shapes. Units are SI.
+ */
+#ifndef SWAY_LIBRARY_H
+#define SWAY_LIBRARY_H
+
+#include "sway.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Motion sensors: samples (9) are acceleration [m/s^2], angular rate [rad/s] and rotation [rad] in
+ * the frame of the sensor, not a number where it does not measure; rows of a model (12) are the
+ * acceleration, its part by tilted gravity, the rate and the rotation at the place of a sensor. */
+
+enum { SWAY_RING = 4096 };
+
+/* The last samples of a sensor. At first all is 0, but the time of the newest is minus infinity,
+ * and the period and `before` are not a number. */
+typedef struct sway_ring {
+  double time[SWAY_RING];       /* [s] */
+  double values[SWAY_RING][9];
+  int64_t first, count;         /* row of the first sample, and their number */
+  int64_t behind;               /* samples in a row far in the past */
+  double newest, period;        /* time of the newest; a running median of the period [s] */
+  int64_t same[6];              /* how often each number was repeated */
+  double before[6];             /* numbers of the sample before */
+} sway_ring;
+
+/* Results of `sway_keep_sample`: the sample was kept with the first and the last. */
+enum {
+  SWAY_KEPT, SWAY_NOT_FINITE, SWAY_TOO_LARGE, SWAY_SATURATED, SWAY_OUT_OF_ORDER, SWAY_CLOCK_BACK
+};
+
+/* Check a sample (9) of a time [s], and keep it; `is_measured` (9) says which of its numbers are
+ * asked for. */
+SWAY_API int sway_keep_sample(sway_ring *ring, double time, const double *sample,
+                              const uint8_t *is_measured);
+
+/* Read the motion about a time [s] into a sample (9), and forget older ones. Samples within a step
+ * of dt [s] about the time are averaged; elsewhere those before and after are joined by a line.
+ * Returns 0, and leaves zeros or a sum, where no sample is near. */
+SWAY_API int sway_read_samples(sway_ring *ring, double time, double dt, double *sample);
+
+/* What sensors would measure by the motion of a model, at the last `slots` steps. */
+typedef struct sway_sensed {
+  int64_t coordinates, corrected;  /* m; n, of which the air damping is known */
+  int64_t rows;                    /* r: 12 of each sensor */
+  const double *by_state;          /* rows by displacement, rate and force (3, m, r) */
+  const double *air_damping;       /* damping of coordinates by the air [1/s] (n) */
+  double *sensed;                  /* (slots, r), written */
+  double *still;                   /* force on a tree that stands still (slots, n), written */
+} sway_sensed;
+
+/* Compute them by displacement, rate and force of each coordinate (m), for a slot. */
+SWAY_API void sway_sense(const sway_sensed *sensed, const double *eta, const double *rate,
+                         const double *force, size_t slot);
+
+/* A sensor on a tree. */
+typedef struct sway_sensor {
+  sway_ring *ring;
+  const double *mounting;  /* rotation to the frame of the tree (9), factors of acceleration and
+                              rate, gravity in the acceleration [m/s^2], and bias (9) */
+  double *kept;            /* memory of samples (n, 9), written */
+  double *kept_computed;   /* and of the rows of the model (n, 12), written */
+  double *moved;           /* the last sample in the frame of the tree (9), written */
+} sway_sensor;
+
+/* Read a sensor about a time [s], keep the sample and the rows of the model (12) in a row of its
+ * memory, and write what the sample has beyond the model (9). Returns 0 without a sample. */
+SWAY_API int sway_read_sensor(const sway_sensor *sensor, double time, double dt,
+                              const double *computed, size_t row, double *beyond);
+
+/* A steady filter of n coordinates by p measurements, three of each quantity. */
+typedef struct sway_filter {
+  int64_t coordinates, measurements, lag;  /* n, p, l */
+  const double *law;        /* state after a step by that before, of each coordinate (3, 3, n) */
+  const double *sensed;     /* measurements by the state (3 n, p) */
+  const double *gain;       /* correction of the state by the innovations (p, 3 n) */
+  const double *deviation;  /* of each innovation (p) */
+  const int64_t *row;       /* of each measurement among the readings of all sensors, 9 of each (p) */
+  double *state;            /* displacement, rate and disturbance, as told (3, n) */
+  double *calm;             /* and calm (3, n) */
+  double *innovations;      /* of the last steps, limited, the oldest first (l, p) */
+  double *sizes;            /* mean square of each three over that expected (p / 3), written */
+} sway_filter;
+
+/* Move a filter by a number of steps, and correct it by readings (9 of each sensor) of the sensors
+ * that are known. */
+SWAY_API void sway_correct(const sway_filter *filter, const double *beyond,
+                           const uint8_t *is_known, size_t steps);
+
+/* A correction of n coordinates. */
+typedef struct sway_correction {
+  int64_t coordinates;
+  const double *stiffness;  /* [1/s^2] (n) */
+  const double *wanted;     /* trust of new gains (n) */
+  double *trust;            /* share of the correction that is applied (n), written */
+  double *moved;            /* displacement and rate of the correction (2, n), written */
+  double *energies;         /* of the motion with and without it, both twice (2), written */
+} sway_correction;
+
+/* Bring a calm motion (3, n) to the present by `ahead` (3, 3, n), as far as each coordinate of it
+ * is trusted, where the trust goes a share of the way to that wanted. The motion without correction
+ * has displacements and rates (n). */
+SWAY_API void sway_carry(const sway_correction *correction, const double *ahead,
+                         const double *calm, double share, const double *eta, const double *rate);
+
+/* What the correction of n coordinates moves of all m by drag. */
+typedef struct sway_dragged {
+  int64_t coordinates, corrected;  /* m, n */
+  const double *law;    /* displacement and rate after a step by those before and the force (2, 3, m) */
+  const double *drag;   /* force on each coordinate per rate of the corrected ones (n, m) */
+  const double *trust;  /* (n) */
+  double *state;        /* displacement, rate and force (3, m), written */
+} sway_dragged;
+
+/* Move it by a number of steps under a correction (2, n), and write it with the correction to
+ * `added` (2, m). */
+SWAY_API void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
+                        double *added);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
