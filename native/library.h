@@ -47,34 +47,56 @@ SWAY_API int sway_keep_sample(sway_ring *ring, double time, const double *sample
  * Returns 0, and leaves zeros or a sum, where no sample is near. */
 SWAY_API int sway_read_samples(sway_ring *ring, double time, double dt, double *sample);
 
-/* What sensors would measure by the motion of a model, at the last `slots` steps. */
-typedef struct sway_sensed {
-  int64_t coordinates, corrected;  /* m; n, of which the air damping is known */
-  int64_t rows;                    /* r: 12 of each sensor */
-  const double *by_state;          /* rows by displacement, rate and force (3, m, r) */
-  const double *air_damping;       /* damping of coordinates by the air [1/s] (n) */
-  double *sensed;                  /* (slots, r), written */
-  double *still;                   /* force on a tree that stands still (slots, n), written */
-} sway_sensed;
-
-/* Compute them by displacement, rate and force of each coordinate (m), for a slot. */
-SWAY_API void sway_sense(const sway_sensed *sensed, const double *eta, const double *rate,
-                         const double *force, size_t slot);
-
 /* A sensor on a tree. */
 typedef struct sway_sensor {
   sway_ring *ring;
-  const double *mounting;  /* rotation to the frame of the tree (9), factors of acceleration and
-                              rate, gravity in the acceleration [m/s^2], and bias (9) */
-  double *kept;            /* memory of samples (n, 9), written */
-  double *kept_computed;   /* and of the rows of the model (n, 12), written */
-  double *moved;           /* the last sample in the frame of the tree (9), written */
+  const double *mounting;   /* rotation to the frame of the tree (9), factors of acceleration and
+                               rate, gravity in the acceleration [m/s^2], and bias (9) */
+  double *kept;             /* memory of samples (rows, 9), written */
+  double *computed;         /* and of what the model says (rows, 12), written */
+  double *moved;            /* the last sample in the frame of the tree (9), written */
+  int64_t rows;             /* of the memory */
+  int64_t count;            /* samples since its mounting is looked for; the next row, modulo rows */
+  int64_t is_mounted;       /* whether its mounting is known */
+  int64_t in_use;           /* whether its motion corrects the tree */
+  int64_t is_refused;       /* whether it disagrees with the tree */
+  int64_t silences;         /* times that it fell silent while it was in use */
+  int64_t disagreements;    /* times that it began to disagree */
+  double dt;                /* time of a step [s] */
+  double absent;            /* time without a sample about the step, and without a new one [s] */
+  double unheard;
+  double newest, apart;     /* time of the newest sample, and that from the step, when it was absent */
+  double excess;            /* squared innovations over those expected, a running mean */
+  double agreed;            /* time for which a refused sensor agrees [s] */
 } sway_sensor;
 
-/* Read a sensor about a time [s], keep the sample and the rows of the model (12) in a row of its
- * memory, and write what the sample has beyond the model (9). Returns 0 without a sample. */
-SWAY_API int sway_read_sensor(const sway_sensor *sensor, double time, double dt,
-                              const double *computed, size_t row, double *beyond);
+enum { SWAY_SLOTS = 64 };
+
+/* The readings of k sensors on a model of m coordinates, and of the last steps what they would
+ * measure by its motion in the wind alone. */
+typedef struct sway_readings {
+  int64_t sensors, coordinates, corrected;  /* k, m; n, of which the air damping is known */
+  sway_sensor *const *sensor;               /* (k) */
+  const double *shapes;        /* displacement and rotation of each sensor by coordinates (k, 6, m) */
+  const double *stiffness;     /* [1/s^2] (m) */
+  const double *damping;       /* by the wood [1/s] (m) */
+  const double *air_damping;   /* [1/s] (n) */
+  const double *eta, *rate, *force;  /* motion of the model (m) */
+  double *sensed;              /* (SWAY_SLOTS, k, 12), written */
+  double *still;               /* force on a tree that stands still (SWAY_SLOTS, n), written */
+  double *beyond;              /* what the last sample has beyond the model (k, 9), written */
+  uint8_t *is_known;           /* whether there is one, of a known mounting (k), written */
+} sway_readings;
+
+/* Compute what sensors would measure at the step `now`, and read them about a time [s] that was the
+ * end of the step `then`, at most SWAY_SLOTS before; no sensor is read if it is negative. A sensor
+ * without a sample for longer than networks delay one is no more in use. */
+SWAY_API void sway_read_sensors(const sway_readings *readings, int64_t now, int64_t then,
+                                double time);
+
+/* Judge a sensor by the mean square of its innovations over that expected: one whose innovations
+ * stay far beyond those expected is refused until they are not. */
+SWAY_API void sway_judge(sway_sensor *sensor, double size);
 
 /* A steady filter of n coordinates by p measurements, three of each quantity. */
 typedef struct sway_filter {
@@ -83,17 +105,16 @@ typedef struct sway_filter {
   const double *sensed;     /* measurements by the state (3 n, p) */
   const double *gain;       /* correction of the state by the innovations (p, 3 n) */
   const double *deviation;  /* of each innovation (p) */
-  const int64_t *row;       /* of each measurement among the readings of all sensors, 9 of each (p) */
+  const int64_t *row;       /* of each measurement among the readings, those of a sensor together (p) */
   double *state;            /* displacement, rate and disturbance, as told (3, n) */
   double *calm;             /* and calm (3, n) */
   double *innovations;      /* of the last steps, limited, the oldest first (l, p) */
-  double *sizes;            /* mean square of each three over that expected (p / 3), written */
 } sway_filter;
 
-/* Move a filter by a number of steps, and correct it by readings (9 of each sensor) of the sensors
- * that are known. */
-SWAY_API void sway_correct(const sway_filter *filter, const double *beyond,
-                           const uint8_t *is_known, size_t steps);
+/* Move a filter by a number of steps, correct it by the readings of sensors that are known and in
+ * use, and judge these. */
+SWAY_API void sway_correct(const sway_filter *filter, const sway_readings *readings,
+                           size_t steps);
 
 /* A correction of n coordinates. */
 typedef struct sway_correction {

@@ -3,6 +3,7 @@
 //
 // How motion sensors correct a model: what they would measure by it, what they measure beyond it,
 // and the steady filter of the difference (`core/observe/steady_filter.py` has its equations).
+// Nothing is read or written beyond the arrays whose sizes the structures state.
 #include <math.h>
 #include <string.h>
 
@@ -18,6 +19,18 @@ constexpr double CLIPPED = 6.0;
 
 // Rows of the model of a sensor: acceleration, its part by gravity, rate, rotation.
 constexpr int ROWS = 12;
+
+constexpr double GRAVITY = 9.80665;
+
+// Time without a sample after which a sensor is silent: longer than networks delay one [s].
+constexpr double SILENT = 1.0;
+
+// Time over which the squares of innovations are averaged [s], their mean above which a sensor
+// disagrees and below which it agrees, and the time after which it is trusted again [s].
+constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN = 5.0;
+
+// Largest square that counts: after a knock a sensor is to be followed again in half a minute.
+constexpr double LARGEST = 1e4;
 
 // to += factor * values, whose loop has no order: sums run over rows, not along them.
 void add_row(int64_t count, double factor, const double *values, double *__restrict to) {
@@ -45,48 +58,99 @@ void turn(const double *matrix, double factor, const double *from, double *to) {
   }
 }
 
-}  // namespace
-
-extern "C" {
-
-void sway_sense(const sway_sensed *sensed, const double *eta, const double *rate,
-                const double *force, size_t slot) {
-  const int64_t m = sensed->coordinates, n = sensed->corrected, r = sensed->rows;
-  const double *const state[] = {eta, rate, force};
-  double *found = sensed->sensed + slot * r;
-  for (int64_t k = 0; k < r; k++) found[k] = 0.0;
-  for (int j = 0; j < 3; j++)
-    for (int64_t i = 0; i < m; i++)
-      add_row(r, state[j][i], sensed->by_state + (j * m + i) * r, found);
-  double *still = sensed->still + slot * n;
-  for (int64_t i = 0; i < n; i++) still[i] = sensed->air_damping[i] * rate[i] + force[i];
+// What a sensor of some shapes (6, m) would measure. The specific force that a sensor turned by theta
+// feels beyond gravity is a + g z x theta in the frame of the tree.
+void sense(const sway_readings &by, const double *shapes, double *found) {
+  const int64_t m = by.coordinates;
+  for (int axis = 0; axis < 3; axis++) {
+    const double *moved = shapes + axis * m, *turned = moved + 3 * m;
+    double acceleration = 0.0, rate = 0.0, rotation = 0.0;
+    for (int64_t i = 0; i < m; i++) {
+      const double pull = by.stiffness[i] * by.eta[i] + by.damping[i] * by.rate[i];
+      acceleration += moved[i] * (by.force[i] - pull);
+      rate += turned[i] * by.rate[i];
+      rotation += turned[i] * by.eta[i];
+    }
+    found[axis] = acceleration;
+    found[6 + axis] = rate;
+    found[9 + axis] = rotation;
+  }
+  found[3] = -GRAVITY * found[10];
+  found[4] = GRAVITY * found[9];
+  found[5] = 0.0;
 }
 
-int sway_read_sensor(const sway_sensor *sensor, double time, double dt, const double *computed,
-                     size_t row, double *beyond) {
+// Note that there is no sample about a time.
+void miss(sway_sensor &sensor, double time) {
+  const double newest = sensor.ring->newest;
+  sensor.absent += sensor.dt;
+  sensor.unheard = newest == sensor.newest ? sensor.unheard + sensor.dt : 0.0;
+  sensor.newest = newest;
+  sensor.apart = newest - time;
+  if (sensor.absent <= SILENT) return;
+  sensor.silences += sensor.in_use;
+  sensor.in_use = 0;
+}
+
+// Read a sensor about a time, keep its sample and the rows of the model, and write what the sample
+// has beyond the model. Whether there is one, and the mounting is known.
+bool read(sway_sensor &sensor, double time, const double *computed, double *beyond) {
   double sample[9];
-  if (!sway_read_samples(sensor->ring, time, dt, sample)) return 0;
-  memcpy(sensor->kept + 9 * row, sample, sizeof sample);
-  memcpy(sensor->kept_computed + ROWS * row, computed, ROWS * sizeof(double));
-  const double *mounting = sensor->mounting, *bias = mounting + 12;
-  double *moved = sensor->moved;
+  if (!sway_read_samples(sensor.ring, time, sensor.dt, sample)) {
+    miss(sensor, time);
+    return false;
+  }
+  sensor.absent = 0.0;
+  const int64_t row = (sensor.count++ % sensor.rows + sensor.rows) % sensor.rows;
+  memcpy(sensor.kept + 9 * row, sample, sizeof sample);
+  memcpy(sensor.computed + ROWS * row, computed, ROWS * sizeof(double));
+  const double *mounting = sensor.mounting, *bias = mounting + 12;
+  double *moved = sensor.moved;
   turn(mounting, mounting[9], sample, moved);
   turn(mounting, mounting[10], sample + 3, moved + 3);
   turn(mounting, 1.0, sample + 6, moved + 6);
   moved[2] -= mounting[11];
-  for (int i = 0; i < 9; i++) beyond[i] = moved[i] - bias[i];
+  for (int i = 0; i < 9; i++) beyond[i] = moved[i] - bias[i] - computed[3 + i];
   for (int i = 0; i < 3; i++) {
     // The part by tilted gravity is felt with gravity only.
-    const double tilted = mounting[11] > 0.0 ? computed[3 + i] : 0.0;
-    beyond[i] -= computed[i] + tilted;
-    beyond[3 + i] -= computed[6 + i];
-    beyond[6 + i] -= computed[9 + i];
+    const double unfelt = mounting[11] > 0.0 ? 0.0 : computed[3 + i];
+    beyond[i] += unfelt - computed[i];
   }
-  return 1;
+  return sensor.is_mounted;
 }
 
-void sway_correct(const sway_filter *filter, const double *beyond, const uint8_t *is_known,
-                  size_t steps) {
+}  // namespace
+
+extern "C" {
+
+void sway_read_sensors(const sway_readings *readings, int64_t now, int64_t then, double time) {
+  const sway_readings &by = *readings;
+  const int64_t k = by.sensors, n = by.corrected;
+  double *sensed = by.sensed + now % SWAY_SLOTS * ROWS * k;
+  for (int64_t i = 0; i < k; i++) sense(by, by.shapes + 6 * by.coordinates * i, sensed + ROWS * i);
+  double *still = by.still + now % SWAY_SLOTS * n;
+  for (int64_t i = 0; i < n; i++) still[i] = by.air_damping[i] * by.rate[i] + by.force[i];
+  const double *computed = by.sensed + (then < 0 ? 0 : then % SWAY_SLOTS) * ROWS * k;
+  for (int64_t i = 0; i < k; i++)
+    by.is_known[i] = then >= 0 && read(*by.sensor[i], time, computed + ROWS * i, by.beyond + 9 * i);
+}
+
+void sway_judge(sway_sensor *judged, double size) {
+  sway_sensor &sensor = *judged;
+  sensor.excess += sensor.dt / AVERAGED * (fmin(size, LARGEST) - sensor.excess);
+  if (sensor.is_refused) {
+    sensor.agreed = sensor.excess < AGREES ? sensor.agreed + sensor.dt : 0.0;
+    if (sensor.agreed > TRUSTED_AGAIN) sensor.is_refused = 0;
+  } else if (sensor.excess > DISAGREES) {
+    sensor.is_refused = 1;
+    sensor.in_use = 0;
+    sensor.agreed = 0.0;
+    sensor.disagreements++;
+  }
+  if (!sensor.is_refused && sensor.is_mounted) sensor.in_use = 1;
+}
+
+void sway_correct(const sway_filter *filter, const sway_readings *readings, size_t steps) {
   const int64_t n = filter->coordinates, p = filter->measurements;
   double *state = filter->state, *calm = filter->calm;
   for (size_t step = 0; step < steps; step++) {
@@ -98,14 +162,24 @@ void sway_correct(const sway_filter *filter, const double *beyond, const uint8_t
           static_cast<size_t>(filter->lag - 1) * p * sizeof(double));
   for (int64_t k = 0; k < p; k++) last[k] = 0.0;
   for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
-  for (int64_t k = 0; k < p / 3; k++) filter->sizes[k] = 0.0;
-  for (int64_t k = 0; k < p; k++) {
-    const int64_t row = filter->row[k];
-    const double innovation = is_known[row / 9] ? beyond[row] - last[k] : 0.0;
-    const double deviation = filter->deviation[k], size = innovation / deviation;
-    last[k] = limited(innovation, CLIPPED * deviation);
-    filter->sizes[k / 3] += size * size / 3.0;
-    add_row(3 * n, last[k], filter->gain + 3 * n * k, state);
+  double largest = 0.0;  // of the quantities of a sensor
+  for (int64_t k = 0; k < p; k += 3) {
+    const int64_t at = filter->row[k] / 9;
+    sway_sensor &sensor = *readings->sensor[at];
+    const bool is_known = readings->is_known[at] && sensor.in_use;
+    double size = 0.0;
+    for (int64_t j = k; j < k + 3; j++) {
+      const double innovation = is_known ? readings->beyond[filter->row[j]] - last[j] : 0.0;
+      const double deviation = filter->deviation[j], share = innovation / deviation;
+      size += share * share / 3.0;
+      last[j] = limited(innovation, CLIPPED * deviation);
+      add_row(3 * n, last[j], filter->gain + 3 * n * j, state);
+    }
+    largest = fmax(largest, size);
+    if (k + 3 < p && filter->row[k + 3] / 9 == at) continue;
+    if (is_known) sway_judge(&sensor, largest);
+    else readings->is_known[at] = 0;
+    largest = 0.0;
   }
   for (int64_t i = 0; i < 3 * n; i++) calm[i] += PACE * (state[i] - calm[i]);
 }

@@ -58,12 +58,9 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     # Motion sensors.
     'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
     'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),
-    'sway_sense': (None, (_pointer, _pointer, _pointer, _pointer, _size)),
-    'sway_read_sensor': (
-        ctypes.c_int,
-        (_pointer, _number, _number, _pointer, _size, _pointer),
-    ),
-    'sway_correct': (None, (_pointer, _pointer, _pointer, _size)),
+    'sway_read_sensors': (None, (_pointer, ctypes.c_int64, ctypes.c_int64, _number)),
+    'sway_judge': (None, (_pointer, _number)),
+    'sway_correct': (None, (_pointer, _pointer, _size)),
     'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),
     'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
 }

@@ -1,49 +1,87 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Structures of ``native/library.h``: numbers, and where the arrays of a caller begin."""
+"""
+Structures of ``native/library.h``, which says what their fields are.
+
+A test compares them with the header.
+"""
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.native.library import address
 
-FIELDS = {
-    'sway_sensed': 'coordinates corrected rows by_state air_damping sensed still',
-    'sway_sensor': 'ring mounting kept kept_computed moved',
-    'sway_filter': 'coordinates measurements lag law sensed gain deviation row state calm'
-    ' innovations sizes',
-    'sway_correction': 'coordinates stiffness wanted trust moved energies',
-    'sway_dragged': 'coordinates corrected law drag trust state',
-}
-"""Fields of each; a test compares them with the header."""
+
+def _fields(words: str, numbers: str = '') -> list[tuple[str, Any]]:
+    """Return fields of whole numbers and addresses, and then of numbers."""
+    whole = [(name, ctypes.c_int64) for name in words.split()]
+    return [*whole, *((name, ctypes.c_double) for name in numbers.split())]
 
 
-class Structure:
+class Structure(ctypes.Structure):
     """
     A structure, which keeps its arrays.
 
     Parameters
     ----------
-    name
-        Its name, one of `FIELDS`.
     **fields
-        A number or a contiguous array for each field.
+        Numbers and contiguous arrays.
 
     """
 
-    def __init__(self, name: str, **fields: int | NDArray[Any]) -> None:
-        self._kept = [fields[each] for each in FIELDS[name].split()]
-        self._memory = np.array([_word(each) for each in self._kept], dtype=np.int64)
-        self.at = address(self._memory)
+    def __init__(self, **fields: float | NDArray[Any]) -> None:
+        given = {name: _value(each) for name, each in fields.items()}
+        super().__init__(**given)
+        self._kept = fields
+        self.at = ctypes.addressof(self)
         """Where it is."""
 
 
-def _word(field: int | NDArray[Any]) -> int:
-    if isinstance(field, int):
+def _value(field: float | NDArray[Any]) -> float:
+    if isinstance(field, int | float):
         return field
     assert field.flags.c_contiguous
     return address(field)
+
+
+class NativeSensor(Structure):
+    """``sway_sensor``."""
+
+    _fields_ = _fields(
+        'ring mounting kept computed moved rows count is_mounted in_use is_refused silences'
+        ' disagreements',
+        'dt absent unheard newest apart excess agreed',
+    )
+
+
+class NativeReadings(Structure):
+    """``sway_readings``."""
+
+    _fields_ = _fields(
+        'sensors coordinates corrected sensor shapes stiffness damping air_damping eta rate force'
+        ' sensed still beyond is_known'
+    )
+
+
+class NativeFilter(Structure):
+    """``sway_filter``."""
+
+    _fields_ = _fields(
+        'coordinates measurements lag law sensed gain deviation row state calm innovations'
+    )
+
+
+class NativeCorrection(Structure):
+    """``sway_correction``."""
+
+    _fields_ = _fields('coordinates stiffness wanted trust moved energies')
+
+
+class NativeDragged(Structure):
+    """``sway_dragged``."""
+
+    _fields_ = _fields('coordinates corrected law drag trust state')

@@ -21,7 +21,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native.library import LastAddress, LIBRARY
-from tree_sway.core.native.structures import Structure
+from tree_sway.core.native.structures import NativeDragged
 from tree_sway.core.oscillators.propagator import held_propagator
 
 if TYPE_CHECKING:
@@ -51,8 +51,8 @@ class DraggedMotion:
         """Displacement and rate of each coordinate, (2, m)."""
         self._law = np.zeros((2, 3, m))
         self._drag = np.zeros((observer.count, m))
-        self._native = Structure(
-            'sway_dragged', coordinates=m, corrected=observer.count, law=self._law,
+        self._native = NativeDragged(
+            coordinates=m, corrected=observer.count, law=self._law,
             drag=self._drag, trust=observer.trust, state=self._state,
         )  # fmt: skip
         self._given_at, self._out_at = LastAddress(), LastAddress()

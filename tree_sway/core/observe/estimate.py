@@ -14,7 +14,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.native.structures import Structure
+from tree_sway.core.native.structures import NativeFilter, NativeReadings
 from tree_sway.core.observe.steady_filter import SteadyFilter
 
 
@@ -45,28 +45,16 @@ class Estimate:
         """What the last steps had beyond what was expected, limited, the oldest first, (l, p)."""
         self._backward = gains.backward.reshape(m, -1)
         self._past = np.zeros(m)
-        self.sizes = np.zeros(p // 3)
-        """Mean square of the last innovations over that expected, of each three, (p / 3,)."""
-        self._native = Structure(
-            'sway_filter', coordinates=m, measurements=p, lag=lag,
+        self._native = NativeFilter(
+            coordinates=m, measurements=p, lag=lag,
             law=np.ascontiguousarray(gains.law.step), sensed=gains.sensed.T.copy(),
             gain=gains.gain.T.copy(), deviation=gains.deviation, row=rows, state=self.state,
-            calm=self.calm, innovations=self.innovations, sizes=self.sizes,
+            calm=self.calm, innovations=self.innovations,
         )  # fmt: skip
 
-    def advance(self, beyond_at: int, is_known_at: int, n_periods: int) -> None:
-        """
-        Move by a number of steps, and correct by the sensors that are known.
-
-        Parameters
-        ----------
-        beyond_at, is_known_at
-            Addresses of the readings of all sensors, (k, 9), and of which are known, (k,).
-        n_periods
-            Number of steps.
-
-        """
-        LIBRARY.sway_correct(self._native.at, beyond_at, is_known_at, n_periods)
+    def advance(self, readings: NativeReadings, n_periods: int) -> None:
+        """Move by a number of steps, correct by sensors that are known, and judge these."""
+        LIBRARY.sway_correct(self._native.at, readings.at, n_periods)
 
     def move(self, n_periods: int) -> None:
         """Move by a number of steps."""

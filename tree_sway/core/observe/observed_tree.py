@@ -326,7 +326,7 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        correction = self.observer.step(self.now, self._last_wind, swing, n_periods)
+        correction = self.observer.step(self.now, self._last_wind, n_periods)
         self._bound(correction)
         self._dragged.step(correction, n_periods, added)
         self.observer.note_dragged(self._dragged.motion[0])

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.native.structures import Structure
+from tree_sway.core.native.structures import NativeCorrection
 from tree_sway.core.observe.disturbance import Disturbance
 from tree_sway.core.observe.estimate import Estimate
 from tree_sway.core.observe.gain_design import GainDesign, Gains, NOISE
@@ -87,7 +87,9 @@ class Observer:
         submit: Submit | None = None,
     ) -> None:
         self.tracks, self._dt = list(tracks), dt
-        m = simulator.banks[0].oscillators.shapes.shape[1]
+        oscillators: Any = simulator.banks[0].oscillators
+        swing = self._swing = oscillators.swing
+        m = oscillators.shapes.shape[1]
         n = self.count = min(MOST_COORDINATES, m)
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
@@ -95,7 +97,7 @@ class Observer:
         with one_thread():
             self._unknown = UnknownMotion(simulator, n, dt)
             self._readings = SensorReadings(
-                self._unknown, self.tracks, places, dt, wind or LateWind(), submit
+                self._unknown, self.tracks, places, dt, swing, wind or LateWind(), submit
             )
         self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
         if before is not None:
@@ -111,8 +113,7 @@ class Observer:
         self.noise = np.zeros(0)
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, tuple[Floats, int]] = {}
-        self._swing: tuple[Floats, ...] = ()
-        self._swing_at: list[int] = []
+        self._swing_at = [address(each) for each in swing[:2]]
         self._moved = np.zeros((2, n))
         self.energies = np.zeros(2)
         """
@@ -120,7 +121,6 @@ class Observer:
 
         Both are twice those per unit mass, and 0 before a sensor was in use.
         """
-        self._read_at = address(self._readings.beyond), address(self._readings.is_known)
         self._find_native()
 
     def refresh(self) -> None:
@@ -132,8 +132,8 @@ class Observer:
 
     def _find_native(self) -> None:
         """Let the native core correct the present model."""
-        self._native = Structure(
-            'sway_correction', coordinates=self.count, stiffness=self.stiffness,
+        self._native = NativeCorrection(
+            coordinates=self.count, stiffness=self.stiffness,
             wanted=self._wanted_trust, trust=self.trust, moved=self._moved, energies=self.energies,
         )  # fmt: skip
 
@@ -200,7 +200,6 @@ class Observer:
         self,
         time: float,
         wind: tuple[float, float, float],
-        swing: tuple[Floats, ...],
         n_periods: int = 1,
     ) -> Floats:
         """
@@ -212,8 +211,6 @@ class Observer:
             Time of the end of the step in [s].
         wind
             Mean wind that moves the tree in [m/s], finite.
-        swing
-            Displacement, rate and force of each coordinate in the wind alone, (m,).
         n_periods
             Number of time steps that were joined to this one.
 
@@ -223,13 +220,10 @@ class Observer:
             Correction of displacement and rate, (2, count). The array is reused.
 
         """
-        if swing is not self._swing:
-            self._swing, self._swing_at = swing, [address(each) for each in swing]
         self._step += 1
         self._unknown.note_wind(math.hypot(*wind))
-        self._readings.note(self._step, *self._swing_at)
         if self._smoothed is not None:
-            self._smoothed.note_computed(self._step, swing[0])
+            self._smoothed.note_computed(self._step, self._swing[0])
         if self._readings.read(time, self._step, self._done):
             self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
         gains = self._design.advance()
@@ -264,7 +258,7 @@ class Observer:
         if at > self._done:
             # More than one step where sensors have become less late.
             n_periods *= min(at - self._done, LATEST)
-            self._measure(estimate, n_periods)
+            estimate.advance(self._readings.native, n_periods)
             share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
             if self._smoothed is not None:
                 first = max(self._done + 1, at - LATEST)
@@ -278,23 +272,8 @@ class Observer:
         if late not in self._ahead:
             ahead = estimate.gains.law.ahead(late)
             self._ahead[late] = ahead, address(ahead)
-        eta_at, rate_at, _ = self._swing_at
         _, ahead_at = self._ahead[late]
-        LIBRARY.sway_carry(self._native.at, ahead_at, estimate.calm_at, share, eta_at, rate_at)
-
-    def _measure(self, estimate: Estimate, n_periods: int) -> None:
-        """Move the estimate on, correct it by the readings, and judge their sensors."""
-        readings, used = self._readings, self._design.used
-        for k in used:
-            readings.is_known[k] &= self.tracks[k].in_use
-        estimate.advance(*self._read_at, n_periods)
-        sizes, first = estimate.sizes.tolist(), 0
-        for k in used:
-            track = self.tracks[k]
-            last = first + len(track.uses)
-            if readings.is_known[k]:
-                track.judge(max(sizes[first:last]))
-            first = last
+        LIBRARY.sway_carry(self._native.at, ahead_at, estimate.calm_at, share, *self._swing_at)
 
     def _judge_refused(self, estimate: Estimate) -> None:
         """Judge refused sensors by the motion expected without any sensor."""

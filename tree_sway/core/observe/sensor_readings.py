@@ -14,8 +14,9 @@ import math
 
 import numpy as np
 
-from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.native.structures import Structure
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LIBRARY
+from tree_sway.core.native.structures import NativeReadings
 from tree_sway.core.observe.late_wind import LateWind, LONGEST_WAY
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.later_work import LaterWork, Submit
@@ -25,7 +26,6 @@ from tree_sway.core.observe.sensor_track import (
     LagRange,
     NO_LAG,
     ROWS,
-    sensed_rows,
     SensorTrack,
 )
 from tree_sway.core.observe.unknown_motion import UnknownMotion
@@ -58,6 +58,8 @@ class SensorReadings:
         Sensors, and how each is moved by the coordinates of the model.
     dt
         Time step in [s].
+    swing
+        Displacement, rate and force of each coordinate in the wind alone, (m,).
     wind
         Wind of the tree, which is made as late as the sensors tell.
     submit
@@ -71,10 +73,11 @@ class SensorReadings:
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
         dt: float,
+        swing: Sequence[Floats],
         wind: LateWind,
         submit: Submit | None = None,
     ) -> None:
-        self._unknown, self._tracks, self._places = unknown, tracks, places
+        self._unknown, self._tracks = unknown, tracks
         self._dt, self._wind, self._submit = dt, wind, submit
         self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
@@ -88,29 +91,26 @@ class SensorReadings:
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
         self.is_known = np.zeros(len(tracks), dtype=np.bool_)
         """Which of them there are, (k,)."""
-        m, n_rows = len(unknown.all_stiffness), ROWS * len(tracks)
-        self._by_state = np.zeros((3 * m, n_rows))
-        self._sensed_at, self._beyond_at = address(self._sensed), address(self.beyond)
-        self._native = Structure(
-            'sway_sensed', coordinates=m, corrected=unknown.count, rows=n_rows,
-            by_state=self._by_state, air_damping=unknown.air_damping, sensed=self._sensed,
-            still=self._forces,
+        shapes = [np.stack([each.displacement, each.rotation]) for each in places]
+        self._law = np.zeros((2, len(unknown.all_stiffness)))
+        eta, rate, force = swing
+        self.native = NativeReadings(
+            sensors=len(tracks), coordinates=len(eta), corrected=unknown.count,
+            sensor=np.array([each.native.at for each in tracks], dtype=np.int64),
+            shapes=np.array(shapes), stiffness=self._law[0], damping=self._law[1],
+            air_damping=unknown.air_damping, eta=eta, rate=rate, force=force,
+            sensed=self._sensed, still=self._forces, beyond=self.beyond, is_known=self.is_known,
         )  # fmt: skip
+        """Readings in the native core."""
         self.read_model()
 
     def read_model(self) -> None:
         """Read stiffness and damping of the model again."""
-        law = self._unknown.all_stiffness, self._unknown.all_damping
-        for k, place in enumerate(self._places):
-            self._by_state[:, ROWS * k : ROWS * (k + 1)] = sensed_rows(place, *law).T
-
-    def note(self, step: int, eta_at: int, rate_at: int, force_at: int) -> None:
-        """Note the coordinates in the wind alone, (m,), whose arrays begin at these addresses."""
-        LIBRARY.sway_sense(self._native.at, eta_at, rate_at, force_at, step % _KEPT)
+        self._law[:] = self._unknown.all_stiffness, self._unknown.all_damping
 
     def read(self, time: float, step: int, done: int) -> bool:
         """
-        Read the sensors.
+        Compute what sensors would measure, and read them.
 
         Parameters
         ----------
@@ -126,22 +126,19 @@ class SensorReadings:
 
         """
         for k, track in enumerate(self._tracks):
+            track.heed()
             if track.may_be_used:
                 self.lateness.note(k, time, track.sensor.newest)
         self.lateness.settle(time)
         late = self.lateness.steps
-        if step - late <= done:
-            self.is_known[:] = False
-            return False
-        slot, when = (step - late) % _KEPT, time - late * self._dt
-        self.forces = self._forces[slot]
-        self._find_mounting()
-        computed_at, beyond_at = self._sensed_at + slot * self._sensed[0].nbytes, self._beyond_at
-        for k, track in enumerate(self._tracks):
-            self.is_known[k] = track.read(when, computed_at, beyond_at)
-            computed_at += 8 * ROWS
-            beyond_at += 8 * 9
-        return True
+        then = step - late
+        is_read = then > done
+        if is_read:
+            self.forces = self._forces[then % _KEPT]
+            self._find_mounting()
+        when = time - late * self._dt
+        LIBRARY.sway_read_sensors(self.native.at, step, then if is_read else -1, when)
+        return is_read
 
     def _find_mounting(self) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native.library import LIBRARY
-from tree_sway.core.native.structures import Structure
+from tree_sway.core.native.structures import NativeSensor
 from tree_sway.core.observe.alignment import (
     align,
     Alignment,
@@ -35,15 +35,11 @@ LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.4, 600.0
-_ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
+_ABSENT_AFTER = 1.0
 _KNOCKED = 5.0
-_AVERAGED = 2.0
 _COMPARED = 1.0
 """Periods of the first sway over which motions are averaged to find a mounting."""
 
-_DISAGREES, _AGREES = 16.0, 4.0
-_LARGEST = 1e4
-"""Largest square that counts: after a knock a sensor is to be followed again in half a minute."""
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
@@ -171,33 +167,27 @@ class SensorTrack:
     def __init__(self, sensor: MotionSensor, frequency: float, dt: float) -> None:
         self.sensor, self._dt = sensor, dt
         self.alignment: Alignment | None = None
-        self.in_use = False
-        """Whether its motion corrects the tree."""
         self.tells_little = False
         """Whether it is in use, and tells too little of any coordinate to correct the tree."""
         self._mounting = np.zeros(21)
         self.bias = self._mounting[12:]
         """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
-        self.excess = 1.0
-        """Squared innovations over those expected, a running mean [-]."""
         self.uses: tuple[int, ...] = ()
         """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
         self.picked = slice(0, 0)
         """Rows of a sample, (9,), of these."""
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
-        self._count = 0
         self._window = max(round(_COMPARED / (frequency * dt)), 1)
         self._next_fit = round(LEARNING / dt)
-        self._absent = self._agreed = self._unheard = self._apart = 0.0
-        self._newest = sensor.newest
-        self._is_refused = False
         self._quantities = sensor.quantities
         self._moved = np.zeros(9)
-        self._native = Structure(
-            'sway_sensor', ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
-            kept_computed=self._computed, moved=self._moved,
+        self.native = NativeSensor(
+            ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
+            computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
+            newest=sensor.newest, excess=1.0,
         )  # fmt: skip
+        """Its state in the native core."""
         self.fitted_motion = self.watched_motion = self._moved[:2]
         """
         The last sample of this quantity, and of the acceleration, to east and north, (2,).
@@ -231,6 +221,16 @@ class SensorTrack:
         return known * math.sqrt(held)
 
     @property
+    def in_use(self) -> bool:
+        """Whether its motion corrects the tree."""
+        return bool(self.native.in_use)
+
+    @property
+    def excess(self) -> float:
+        """Squared innovations over those expected, a running mean [-]."""
+        return float(self.native.excess)
+
+    @property
     def may_be_used(self) -> bool:
         """Whether it is in use, or its mounting is being found."""
         return self.in_use or self.alignment is None
@@ -238,7 +238,7 @@ class SensorTrack:
     @property
     def problem(self) -> str:
         """Why it does not correct the tree, and what to do; empty if it does."""
-        name = self.sensor.name
+        name, native = self.sensor.name, self.native
         if self.in_use:
             return f'{name}: {TELLS_LITTLE}' if self.tells_little else ''
         counts = self.sensor.counts
@@ -247,81 +247,49 @@ class SensorTrack:
         if counts.accepted == 0:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
-            return f'{name}: refused for {self._absent:.0f} s: {self.sensor.trouble}'
-        if self.is_silent and self._unheard <= _ABSENT_AFTER:
-            return f'{name}: its times are {self._apart:+.1f} s from the steps: check its clock'
+            return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+            return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
-            return f'{name}: silent for {self._absent:.0f} s: check its battery and connection'
+            return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
         if self.alignment is None:
-            left = (self._next_fit - self._count) * self._dt
+            left = (self._next_fit - native.count) * self._dt
             return f'{name}: its mounting is found within {left:.0f} s of sway'
         if self.alignment.problem:
             return f'{name}: {self.alignment.problem}'
-        if self._is_refused:
+        if native.is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
         return f'{name}: it is followed from the next sample on'
 
     @property
     def is_silent(self) -> bool:
         """Whether there was no sample for longer than networks delay one."""
-        return self._absent > _ABSENT_AFTER
+        return bool(self.native.absent > _ABSENT_AFTER)
 
-    def read(self, time: float, computed_at: int, beyond_at: int) -> bool:
-        """
-        Read the sensor at the time of a step, and keep what it says.
-
-        Parameters
-        ----------
-        time
-            Time in [s].
-        computed_at
-            Address of the rows of the model in the wind alone, (12,).
-        beyond_at
-            That of the motion in the frame of the tree beyond the model's, (9,), written.
-
-        Returns
-        -------
-        bool
-            Whether there is a sample, and its mounting is known.
-
-        """
+    def heed(self) -> None:
+        """Heed what has become of the sensor since the last step."""
+        native, counts = self.native, self.sensor.counts
+        counts.silent = native.silences
+        if native.disagreements != counts.disagreed:
+            counts.disagreed = native.disagreements
+            # A knock may have moved it: its mounting is found from what comes after.
+            native.count = -round(_KNOCKED / self._dt)
+            self._next_fit = round(LEARNING / self._dt)
         if self.sensor.quantities != self._quantities:
-            self._begin()
-        row = self._count % len(self._sensed)
-        if not LIBRARY.sway_read_sensor(
-            self._native.at, time, self._dt, computed_at, row, beyond_at
-        ):
-            self._miss(time)
-            return False
-        self._absent = 0.0
-        self._count += 1
-        return self.alignment is not None and not self.alignment.problem
-
-    def _begin(self) -> None:
-        """Find the mounting of a sensor that measures other quantities."""
-        self._quantities = self.sensor.quantities
-        self.alignment, self.in_use, self._is_refused = None, False, False
-        self._count, self._next_fit = 0, round(LEARNING / self._dt)
-        self.excess = 1.0
-
-    def _miss(self, time: float) -> None:
-        self._absent += self._dt
-        newest = self.sensor.newest
-        self._unheard = 0.0 if newest != self._newest else self._unheard + self._dt
-        self._newest, self._apart = newest, newest - time
-        if self.is_silent:
-            if self.in_use:
-                self.sensor.counts.silent += 1
-            self.in_use = False
+            self._quantities = self.sensor.quantities
+            self.alignment = None
+            native.in_use = native.is_mounted = native.is_refused = native.count = 0
+            native.excess = 1.0
+            self._next_fit = round(LEARNING / self._dt)
 
     @property
     def is_due(self) -> bool:
         """Whether it has seen enough motion for its mounting to be found again."""
-        return self._count >= self._next_fit
+        return bool(self.native.count >= self._next_fit)
 
     def search(self, lags: LagRange = NO_LAG) -> Iterator[FoundMounting]:
         """Find its mounting from the motion so far, as a work of one part."""
-        self._next_fit = math.ceil(_LATER * self._count)
+        self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
         return _mountings(sensed, computed.T.copy(), self.sensor.reference, self._window, lags)
 
@@ -332,7 +300,7 @@ class SensorTrack:
 
     def _remembered(self) -> tuple[Floats, Floats]:
         """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
-        n, size = max(self._count, 0), len(self._sensed)
+        n, size = max(self.native.count, 0), len(self._sensed)
         first = n % size if n > size else 0
         memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
         return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
@@ -343,15 +311,18 @@ class SensorTrack:
         later, earlier = lagging(lag, len(sensed))
         kept = max(len(sensed) - abs(lag), 0)
         self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
-        if self._count > kept:
-            self._next_fit -= self._count - kept
-            self._count = kept
+        gone = self.native.count - kept
+        if gone > 0:
+            self._next_fit -= gone
+            self.native.count = kept
 
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on."""
         found = self.alignment = mounting.alignment
+        native = self.native
+        native.is_mounted = not found.problem
+        native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
-            self.in_use = False
             return
         self.uses = self._uses()
         self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
@@ -364,28 +335,7 @@ class SensorTrack:
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
-        self.in_use = not self._is_refused
-
-    def _forget_motion(self) -> None:
-        """Find the mounting next from what comes after a knock: it may have moved the sensor."""
-        self._count = -round(_KNOCKED / self._dt)
-        self._next_fit = round(LEARNING / self._dt)
 
     def judge(self, size: float) -> None:
-        """
-        Judge a sensor by the mean square of its innovations over that expected.
-
-        One whose innovations stay far beyond those expected is refused until they are not.
-        """
-        share = self._dt / _AVERAGED
-        self.excess += share * (min(size, _LARGEST) - self.excess)
-        if self.excess > _DISAGREES and not self._is_refused:
-            self._is_refused, self.in_use, self._agreed = True, False, 0.0
-            self.sensor.counts.disagreed += 1
-            self._forget_motion()
-        elif self._is_refused:
-            self._agreed = self._agreed + self._dt if self.excess < _AGREES else 0.0
-            if self._agreed > _TRUSTED_AGAIN:
-                self._is_refused = False
-        if not self._is_refused and self.alignment is not None and not self.alignment.problem:
-            self.in_use = True
+        """Judge it by the mean square of its innovations over that expected."""
+        LIBRARY.sway_judge(self.native.at, size)
