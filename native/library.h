@@ -58,6 +58,7 @@ typedef struct sway_sensor {
   int64_t rows;             /* of the memory */
   int64_t count;            /* samples since its mounting is looked for; the next row, modulo rows */
   int64_t is_mounted;       /* whether its mounting is known */
+  int64_t is_awaited;       /* whether its mounting is being found */
   int64_t in_use;           /* whether its motion corrects the tree */
   int64_t is_refused;       /* whether it disagrees with the tree */
   int64_t silences;         /* times that it fell silent while it was in use */
@@ -68,6 +69,8 @@ typedef struct sway_sensor {
   double newest, apart;     /* time of the newest sample, and that from the step, when it was absent */
   double excess;            /* squared innovations over those expected, a running mean */
   double agreed;            /* time for which a refused sensor agrees [s] */
+  double heard, came;       /* time of the newest sample that was heard of, and of the step then */
+  double lag;               /* age of its newest sample before another comes, at its worst [s] */
 } sway_sensor;
 
 enum { SWAY_SLOTS = 64 };
@@ -76,6 +79,7 @@ enum { SWAY_SLOTS = 64 };
  * measure by its motion in the wind alone. */
 typedef struct sway_readings {
   int64_t sensors, coordinates, corrected;  /* k, m; n, of which the air damping is known */
+  int64_t late;                             /* steps by which sensors are read late */
   sway_sensor *const *sensor;               /* (k) */
   const double *shapes;        /* displacement and rotation of each sensor by coordinates (k, 6, m) */
   const double *stiffness;     /* [1/s^2] (m) */
@@ -88,11 +92,14 @@ typedef struct sway_readings {
   uint8_t *is_known;           /* whether there is one, of a known mounting (k), written */
 } sway_readings;
 
-/* Compute what sensors would measure at the step `now`, and read them about a time [s] that was the
- * end of the step `then`, at most SWAY_SLOTS before; no sensor is read if it is negative. A sensor
- * without a sample for longer than networks delay one is no more in use. */
-SWAY_API void sway_read_sensors(const sway_readings *readings, int64_t now, int64_t then,
-                                double time);
+enum { SWAY_LATEST = 30 };
+
+/* Compute what sensors would measure at the step `now`, whose end is at a time [s], and read them at
+ * the step before it by which they are late, at most SWAY_LATEST. Returns that step, or -1 where no
+ * sensor is read because it was done before. A sensor without a sample for longer than networks
+ * delay one is no more in use. */
+SWAY_API int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done,
+                                   double time);
 
 /* Judge a sensor by the mean square of its innovations over that expected: one whose innovations
  * stay far beyond those expected is refused until they are not. */

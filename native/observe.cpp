@@ -25,6 +25,13 @@ constexpr double GRAVITY = 9.80665;
 // Time without a sample after which a sensor is silent: longer than networks delay one [s].
 constexpr double SILENT = 1.0;
 
+// How late sensors are. When a sample comes, the step that is just made tells how old what was known
+// of the sensor was at its worst; the share by which such a lag above or below the known one is
+// followed, so that a stall now and then counts little. Steps by which sensors may be read later
+// than needed before they are read sooner.
+constexpr double UP = 0.2, DOWN = 0.005;
+constexpr int64_t SPARE = 2;
+
 // Time over which the squares of innovations are averaged [s], their mean above which a sensor
 // disagrees and below which it agrees, and the time after which it is trusted again [s].
 constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN = 5.0;
@@ -56,6 +63,36 @@ void turn(const double *matrix, double factor, const double *from, double *to) {
     const double *row = matrix + 3 * i;
     to[i] = factor * (row[0] * from[0] + row[1] * from[1] + row[2] * from[2]);
   }
+}
+
+// Note the newest sample of a sensor at the time of a step; whether there is another.
+bool note_lag(sway_sensor &sensor, double time) {
+  const double newest = sensor.ring->newest, before = sensor.heard;
+  if (newest == before) return false;
+  sensor.heard = newest;
+  sensor.came = time;
+  const double lag = time - sensor.dt - before;  // at the last step without it
+  if (newest < before || lag > SWAY_LATEST * sensor.dt) return true;
+  const double missing = fmax(lag, 0.0) - sensor.lag;
+  sensor.lag += (missing > 0.0 ? UP : DOWN) * missing;
+  return true;
+}
+
+// Find by how many steps sensors are read late, so that the samples of those that are heard are
+// there, at the time of a step.
+void follow_lags(sway_readings &readings, double time) {
+  bool is_new = false, is_heard = false;
+  double most = 0.0;  // steps
+  for (int64_t i = 0; i < readings.sensors; i++) {
+    sway_sensor &sensor = *readings.sensor[i];
+    if (sensor.in_use || sensor.is_awaited) is_new |= note_lag(sensor, time);
+    if (time - sensor.came >= SILENT) continue;
+    most = fmax(most, sensor.lag / sensor.dt);
+    is_heard = true;
+  }
+  if (!is_new) return;
+  const int64_t needed = static_cast<int64_t>(fmin(ceil(most - 0.01), SWAY_LATEST));
+  if (needed > readings.late || (is_heard && needed < readings.late - SPARE)) readings.late = needed;
 }
 
 // What a sensor of some shapes (6, m) would measure. The specific force that a sensor turned by theta
@@ -123,16 +160,26 @@ bool read(sway_sensor &sensor, double time, const double *computed, double *beyo
 
 extern "C" {
 
-void sway_read_sensors(const sway_readings *readings, int64_t now, int64_t then, double time) {
-  const sway_readings &by = *readings;
+int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, double time) {
+  sway_readings &by = *readings;
   const int64_t k = by.sensors, n = by.corrected;
   double *sensed = by.sensed + now % SWAY_SLOTS * ROWS * k;
   for (int64_t i = 0; i < k; i++) sense(by, by.shapes + 6 * by.coordinates * i, sensed + ROWS * i);
   double *still = by.still + now % SWAY_SLOTS * n;
   for (int64_t i = 0; i < n; i++) still[i] = by.air_damping[i] * by.rate[i] + by.force[i];
-  const double *computed = by.sensed + (then < 0 ? 0 : then % SWAY_SLOTS) * ROWS * k;
-  for (int64_t i = 0; i < k; i++)
-    by.is_known[i] = then >= 0 && read(*by.sensor[i], time, computed + ROWS * i, by.beyond + 9 * i);
+  follow_lags(by, time);
+  const int64_t then = now - by.late;
+  if (then <= done) {
+    for (int64_t i = 0; i < k; i++) by.is_known[i] = 0;
+    return -1;
+  }
+  const double *computed = by.sensed + then % SWAY_SLOTS * ROWS * k;
+  for (int64_t i = 0; i < k; i++) {
+    sway_sensor &sensor = *by.sensor[i];
+    const double when = time - static_cast<double>(by.late) * sensor.dt;
+    by.is_known[i] = read(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
+  }
+  return then;
 }
 
 void sway_judge(sway_sensor *judged, double size) {

@@ -24,6 +24,7 @@ FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sw
 """The library, which programs in other languages may link."""
 
 _pointer, _size, _number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
+_whole = ctypes.c_int64
 
 SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_version': (ctypes.c_int, ()),
@@ -58,7 +59,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     # Motion sensors.
     'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
     'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),
-    'sway_read_sensors': (None, (_pointer, ctypes.c_int64, ctypes.c_int64, _number)),
+    'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
     'sway_judge': (None, (_pointer, _number)),
     'sway_correct': (None, (_pointer, _pointer, _size)),
     'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),

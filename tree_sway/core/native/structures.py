@@ -52,9 +52,9 @@ class NativeSensor(Structure):
     """``sway_sensor``."""
 
     _fields_ = _fields(
-        'ring mounting kept computed moved rows count is_mounted in_use is_refused silences'
-        ' disagreements',
-        'dt absent unheard newest apart excess agreed',
+        'ring mounting kept computed moved rows count is_mounted is_awaited in_use is_refused'
+        ' silences disagreements',
+        'dt absent unheard newest apart excess agreed heard came lag',
     )
 
 
@@ -62,8 +62,8 @@ class NativeReadings(Structure):
     """``sway_readings``."""
 
     _fields_ = _fields(
-        'sensors coordinates corrected sensor shapes stiffness damping air_damping eta rate force'
-        ' sensed still beyond is_known'
+        'sensors coordinates corrected late sensor shapes stiffness damping air_damping eta rate'
+        ' force sensed still beyond is_known'
     )
 
 

@@ -140,7 +140,7 @@ class Observer:
     @property
     def late(self) -> int:
         """Steps by which sensors are read late."""
-        return self._readings.lateness.steps
+        return int(self._readings.native.late)
 
     @property
     def stiffness(self) -> Floats:
@@ -224,7 +224,8 @@ class Observer:
         self._unknown.note_wind(math.hypot(*wind))
         if self._smoothed is not None:
             self._smoothed.note_computed(self._step, self._swing[0])
-        if self._readings.read(time, self._step, self._done):
+        at = self._readings.read(time, self._step, self._done)
+        if at >= 0:
             self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:
@@ -238,7 +239,7 @@ class Observer:
         else:
             self._judge_refused(self._estimate)
             self._fit.advance(self._design.used)
-            self._correct(self._estimate, n_periods)
+            self._correct(self._estimate, at, n_periods)
         return self._moved
 
     def _take(self, gains: Gains) -> None:
@@ -252,10 +253,10 @@ class Observer:
             self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}
 
-    def _correct(self, estimate: Estimate, n_periods: int) -> None:
-        """Correct the estimate by the measurements of the step that is late."""
-        at, share = self._step - self.late, 0.0
-        if at > self._done:
+    def _correct(self, estimate: Estimate, at: int, n_periods: int) -> None:
+        """Correct the estimate by the measurements of a step, unless it was done before."""
+        share = 0.0
+        if at >= 0:
             # More than one step where sensors have become less late.
             n_periods *= min(at - self._done, LATEST)
             estimate.advance(self._readings.native, n_periods)
@@ -265,7 +266,7 @@ class Observer:
                 self._smoothed.note_estimated(first, at, estimate.state[0])
                 self._smoothed.smooth(at, self.trust, estimate.past_change())
             self._done = at
-        self._carry(estimate, self.late, share)
+        self._carry(estimate, self._readings.native.late, share)
 
     def _carry(self, estimate: Estimate, late: int, share: float) -> None:
         """Bring the calm motion to the present, where trust goes a share of its way."""

@@ -18,7 +18,6 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.native.library import LIBRARY
 from tree_sway.core.native.structures import NativeReadings
 from tree_sway.core.observe.late_wind import LateWind, LONGEST_WAY
-from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.later_work import LaterWork, Submit
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.sensor_track import (
@@ -34,6 +33,7 @@ LATEST = 30
 """Largest number of steps by which sensors are read late."""
 
 _KEPT = 64
+"""Steps whose measurements are kept, `SWAY_SLOTS` of the native core."""
 
 _MOUNTED_AFTER = 12
 """Steps after which a mounting that is looked for is known."""
@@ -81,8 +81,6 @@ class SensorReadings:
         self._dt, self._wind, self._submit = dt, wind, submit
         self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
-        self.lateness = Lateness(len(tracks), dt, LATEST)
-        """Steps by which sensors are read late."""
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
         self._forces = np.zeros((_KEPT, unknown.count))
         self.forces = self._forces[0]
@@ -108,7 +106,7 @@ class SensorReadings:
         """Read stiffness and damping of the model again."""
         self._law[:] = self._unknown.all_stiffness, self._unknown.all_damping
 
-    def read(self, time: float, step: int, done: int) -> bool:
+    def read(self, time: float, step: int, done: int) -> int:
         """
         Compute what sensors would measure, and read them.
 
@@ -121,24 +119,17 @@ class SensorReadings:
 
         Returns
         -------
-        bool
-            Whether a step was read; not where sensors have become later.
+        int
+            The step that was read; -1 if it was done before, as sensors have become later.
 
         """
-        for k, track in enumerate(self._tracks):
+        for track in self._tracks:
             track.heed()
-            if track.may_be_used:
-                self.lateness.note(k, time, track.sensor.newest)
-        self.lateness.settle(time)
-        late = self.lateness.steps
-        then = step - late
-        is_read = then > done
-        if is_read:
+        self._find_mounting()
+        then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
+        if then >= 0:
             self.forces = self._forces[then % _KEPT]
-            self._find_mounting()
-        when = time - late * self._dt
-        LIBRARY.sway_read_sensors(self.native.at, step, then if is_read else -1, when)
-        return is_read
+        return then
 
     def _find_mounting(self) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""

@@ -185,7 +185,7 @@ class SensorTrack:
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.newest, excess=1.0,
+            newest=sensor.newest, excess=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
         self.fitted_motion = self.watched_motion = self._moved[:2]
@@ -231,11 +231,6 @@ class SensorTrack:
         return float(self.native.excess)
 
     @property
-    def may_be_used(self) -> bool:
-        """Whether it is in use, or its mounting is being found."""
-        return self.in_use or self.alignment is None
-
-    @property
     def problem(self) -> str:
         """Why it does not correct the tree, and what to do; empty if it does."""
         name, native = self.sensor.name, self.native
@@ -279,6 +274,7 @@ class SensorTrack:
             self._quantities = self.sensor.quantities
             self.alignment = None
             native.in_use = native.is_mounted = native.is_refused = native.count = 0
+            native.is_awaited = 1
             native.excess = 1.0
             self._next_fit = round(LEARNING / self._dt)
 
@@ -320,7 +316,7 @@ class SensorTrack:
         """Read the sensor by another mounting from now on."""
         found = self.alignment = mounting.alignment
         native = self.native
-        native.is_mounted = not found.problem
+        native.is_awaited, native.is_mounted = 0, not found.problem
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
             return
