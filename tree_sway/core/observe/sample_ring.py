@@ -27,8 +27,11 @@ _RING = np.dtype(
     [
         ('time', 'f8', (CAPACITY,)),
         ('values', 'f8', (CAPACITY, 9)),
-        ('at', 'i8', (3,)),
-        ('clock', 'f8', (2,)),
+        ('first', 'i8'),
+        ('count', 'i8'),
+        ('behind', 'i8'),
+        ('newest', 'f8'),
+        ('period', 'f8'),
         ('same', 'i8', (6,)),
         ('before', 'f8', (6,)),
     ]
@@ -50,8 +53,8 @@ class SampleRing:
     def __init__(self, sample: Floats, is_measured: NDArray[np.bool_]) -> None:
         self.memory: NDArray[Any] = np.zeros(1, dtype=_RING)
         """Its memory, ``sway_ring`` of the native core."""
-        self._clock: Floats = self.memory['clock'][0]
-        self._clock[:] = -math.inf, math.nan
+        self._newest, self._period = self.memory['newest'], self.memory['period']
+        self._newest[0], self._period[0] = -math.inf, math.nan
         self.memory['before'] = math.nan
         self._kept = sample, is_measured
         self._found = np.zeros(9)
@@ -74,14 +77,14 @@ class SampleRing:
 
     def clear(self) -> None:
         """Forget all samples; the clock stays."""
-        self.memory['at'] = 0
+        self.memory['count'] = self.memory['behind'] = 0
 
     @property
     def newest(self) -> float:
         """Time of the newest sample in [s]; minus infinity before any."""
-        return self._clock.item(0)
+        return float(self._newest[0])
 
     @property
     def period(self) -> float:
         """Time between samples in [s], a running median; not a number before two samples."""
-        return self._clock.item(1)
+        return float(self._period[0])
