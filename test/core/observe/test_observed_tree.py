@@ -475,6 +475,15 @@ def test_another_rate_does_not_change_what_fits_are_relative_to() -> None:
     assert twin.observer.fit == FIT
 
 
+def test_the_learned_frequency_does_not_follow_the_model() -> None:
+    twin = told(steps=700)
+    assert goal(twin).stiffness_factor < 0.95
+    first, learned = told().learned, twin.learned
+    assert first is not None
+    assert learned is not None
+    assert learned.frequency == pytest.approx(first.frequency, rel=1e-9)
+
+
 def test_learned_damping_is_that_of_the_real_tree_where_a_ratio_is_given() -> None:
     ratio = 0.25 * SPECIES.damping(False)
     twin = told(FIT._replace(damping=1.0), damping_ratio=ratio)
