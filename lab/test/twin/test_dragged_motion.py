@@ -39,11 +39,12 @@ def test_twigs_follow_the_correction_of_the_stem_as_in_the_model() -> None:
     change = swayed(twin) - as_is
 
     observer.trust[stem] = 1.0
-    dragged, rates = DraggedMotion(observer, DT), np.zeros(observer.count)
+    dragged, correction = DraggedMotion(observer, DT), np.zeros((2, observer.count))
     found = np.empty_like(change[:, 0])
     for k in range(STEPS):
-        rates[stem] = change[k, 1, stem]
-        found[k] = dragged.step(rates, 1)[0]
+        correction[1, stem] = change[k, 1, stem]
+        dragged.step(correction, 1, np.empty_like(change[k]))
+        found[k] = dragged.motion[0]
     twigs = np.arange(found.shape[1]) != stem
     assert not found[:, stem].any()
     wanted = change[:, 0, twigs]

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The functions of the native core are called as its header declares them."""
+"""The functions of the native core are called as its headers declare them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,35 @@ from tree_sway.core.native.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
+from tree_sway.core.native.structures import Structure
+from tree_sway.core.observe.sample_ring import _RING
 
 NATIVE = Path(__file__).parents[3] / 'native'
-HEADER, LIBRARY_HEADER = (
-    re.sub(r'/\*.*?\*/', '', (NATIVE / name).read_text(encoding='utf-8'), flags=re.S)
-    for name in ('sway.h', 'library.h')
-)
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
+
+
+def code_of(name: str) -> str:
+    """Return a header without its comments."""
+    return re.sub(r'/\*.*?\*/', '', (NATIVE / name).read_text(encoding='utf-8'), flags=re.S)
+
+
+HEADER = code_of('sway.h')
+LIBRARY_HEADER = code_of('library.h')
+
+
+def fields_of(structure: str) -> list[tuple[str, bool, int]]:
+    """Return name, whether it is a number, and count of each field of a structure."""
+    body = LIBRARY_HEADER.partition(f'struct {structure} {{')[2].partition('}')[0]
+    body = body.replace('SWAY_RING', str(4096))
+    found = []
+    for line in filter(None, map(str.strip, body.split(';'))):
+        of, names = re.match(r'((?:const )?\w+\b(?: \*const)?) ?(.*)', line, re.S).groups()
+        for name in names.split(','):
+            sizes = [int(each) for each in re.findall(r'\[(\d+)\]', name)]
+            is_number = of == 'double' and '*' not in name
+            found.append((re.search(r'\w+', name)[0], is_number, math.prod(sizes)))
+    return found
 
 
 def kind(declared: str) -> object:
@@ -35,8 +56,8 @@ def kind(declared: str) -> object:
     if '*' in words or '[' in words:
         return ctypes.c_void_p
     named = {
-        'int': ctypes.c_int, 'int64_t': ctypes.c_int64, 'size_t': ctypes.c_size_t,
-        'double': ctypes.c_double,
+        'int': ctypes.c_int, 'size_t': ctypes.c_size_t, 'double': ctypes.c_double,
+        'int64_t': ctypes.c_int64,
     }  # fmt: skip
     return named.get(words.split()[0]) if words.split()[0] != 'void' else None
 
@@ -82,6 +103,18 @@ def test_structures_of_branches_are_those_of_the_header() -> None:
     body = LIBRARY_HEADER.partition('struct sway_branches {')[2].partition('}')[0]
     assert [field for field, _ in re.findall(number, body)] == [
         field for field, _ in Branches._fields_
+    ]
+
+
+def test_structures_are_those_of_the_header() -> None:
+    structures = Structure.__subclasses__()
+    assert len(structures) == 5
+    for each in structures:
+        name = each.__name__.replace('Native', 'sway_').lower()
+        own = [(field, kind is ctypes.c_double, 1) for field, kind in each._fields_]
+        assert own == fields_of(name), name
+    assert fields_of('sway_ring') == [
+        (name, of.base.kind == 'f', math.prod(of.shape)) for name, (of, _) in _RING.fields.items()
     ]
 
 

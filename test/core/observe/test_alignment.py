@@ -166,6 +166,47 @@ def test_an_acceleration_of_the_opposite_sign_is_recognised(
     np.testing.assert_allclose(found.motion(values)[:, :2], wanted[:, :2], atol=0.3)
 
 
+SIGNS = {
+    'acceleration of the opposite sign': [-1.0] * 3 + [1.0] * 3,
+    'angular rate of the opposite sign': [1.0] * 3 + [-1.0] * 3,
+    'all signs are opposite: its axes are reversed, or left-handed': [-1.0] * 6,
+}
+
+
+@pytest.mark.parametrize('note', SIGNS)
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_opposite_signs_are_found_where_half_of_the_motion_is_not_the_models(
+    mount: Rotation, note: str
+) -> None:
+    values = sensed(mount)
+    other, _ = motions(7)
+    for rows in (slice(0, 3), slice(3, 6)):
+        values[:, rows] += 0.7 * mount.inv().apply(other[:, rows])
+    values[:, :6] *= SIGNS[note]
+    found = align(values, *motions(1))
+    assert found.notes == (note,)
+    assert 0.6 < found.likeness < 0.9
+    error = Rotation.from_matrix(found.turn) * mount.inv()
+    assert np.degrees(error.magnitude()) < 20.0
+    right = values.copy()
+    right[:, :6] *= SIGNS[note]
+    assert not align(right, *motions(1)).notes
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+@pytest.mark.parametrize('axis', [0, 1, 2])
+def test_a_frame_with_one_axis_mirrored_is_a_turned_one_with_all_reversed(
+    mount: Rotation, axis: int
+) -> None:
+    values = sensed(mount)
+    right = align(values, *motions(1)).motion(values)
+    values[:, [axis, 3 + axis]] *= -1.0
+    found = align(values, *motions(1))
+    assert not found.problem
+    assert 'left-handed' in found.notes[0]
+    np.testing.assert_allclose(found.motion(values)[:, :6], right[:, :6], atol=0.02)
+
+
 @pytest.mark.parametrize('mount', MOUNTS)
 def test_an_acceleration_that_lost_its_mean_still_feels_tilts(mount: Rotation) -> None:
     values = sensed(mount, height=0.3)

@@ -26,7 +26,7 @@ def test_samples_are_joined_by_lines() -> None:
     phone = sensor()
     for k in range(5):
         assert phone.offer(0.04 * k, acceleration=(k, 0.0, 9.81))
-    found = phone.at(0.05, 1.0 / 60.0)
+    found = phone.ring.read(0.05, 1.0 / 60.0)
     assert found is not None
     np.testing.assert_allclose(found[:3], [1.25, 0.0, 9.81])
     assert np.isnan(found[3:]).all()
@@ -36,7 +36,7 @@ def test_samples_within_a_step_are_averaged() -> None:
     phone = sensor()
     for k in range(100):
         phone.offer(0.005 * k, rate=(k, 0.0, 0.0))
-    found = phone.at(0.1, 0.02)
+    found = phone.ring.read(0.1, 0.02)
     assert found is not None
     assert found[3] == pytest.approx(20.5)
 
@@ -45,8 +45,8 @@ def test_nothing_is_read_across_a_gap() -> None:
     phone = sensor()
     for time in (0.0, 0.01, 0.02, 2.0, 2.01):
         phone.offer(time, acceleration=UP)
-    assert phone.at(1.0, 1.0 / 60.0) is None
-    assert phone.at(3.0, 1.0 / 60.0) is None
+    assert phone.ring.read(1.0, 1.0 / 60.0) is None
+    assert phone.ring.read(3.0, 1.0 / 60.0) is None
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_orientations_are_rotations_in_the_frame_of_the_sensor() -> None:
     turned = first * Rotation.from_rotvec([0.03, 0.0, -0.01])
     phone.offer(0.0, orientation=first.as_quat())
     phone.offer(0.01, orientation=turned.as_quat())
-    found = phone.at(0.01, 0.001)
+    found = phone.ring.read(0.01, 0.001)
     assert found is not None
     np.testing.assert_allclose(found[6:], [0.03, 0.0, -0.01], atol=1e-9)
 
@@ -126,7 +126,7 @@ def test_orientations_are_rotations_from_the_first_one() -> None:
     for k in range(1, 4):
         half = 0.5 + 0.5 * turn
         phone.offer(0.01 * k, orientation=(0.0, 0.0, -math.sin(half), -math.cos(half)))
-    found = phone.at(0.02, 1e-3)
+    found = phone.ring.read(0.02, 1e-3)
     assert found is not None
     np.testing.assert_allclose(found[6:], [0.0, 0.0, turn], atol=1e-12)
 
@@ -156,7 +156,7 @@ def test_a_majority_decides_what_a_sensor_measures(first: dict[str, Any]) -> Non
     refused = sum(not phone.offer(0.01 * k, **swaying(k)) for k in range(1, 1141))
     assert phone.quantities == ('acceleration', 'rate')
     assert refused <= 1
-    found = phone.at(11.0, 0.01)
+    found = phone.ring.read(11.0, 0.01)
     assert found is not None
     assert np.isfinite(found[:6]).all()
 

@@ -23,6 +23,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe.later_work import Submit
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.observe.sensor_report import sensor_reports
 from tree_sway.core.observe.smoothed_motion import LATE_STEPS
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.run.tuning import Tuning
@@ -422,15 +423,30 @@ def test_a_step_that_is_refused_changes_nothing(bad: Any) -> None:
 
 def test_what_a_person_tuned_stays_and_learning_goes_on_from_it() -> None:
     twin = told(steps=600)
-    twin.tune(stiffness_factor=0.5)
-    factors = []
+    made = twin.models[0].damping_ratio
+    twin.tune(stiffness_factor=0.5, damping_ratio=4.0 * made)
+    factors, ratios = [], []
     for _ in range(4):
         for _ in range(300):
             twin.step((5.0, 1.0, 0.0), DT)
         factors.append(goal(twin).stiffness_factor)
+        ratios.append(goal(twin).damping_ratio / made)
     assert 0.5 <= factors[0] < 0.54
-    assert np.all(np.diff(np.log(factors)) < 0.051)
+    assert 3.7 < ratios[0] <= 4.0
+    assert np.abs(np.diff(np.log([factors, ratios]))).max() < 0.051
     assert factors[-1] > factors[0]
+    assert ratios[-1] < ratios[0]
+
+
+def test_learning_waits_for_a_change_that_is_under_way() -> None:
+    twin = told(steps=590)
+    twin.tune(stiffness_factor=0.5)
+    stiffness = []
+    for _ in range(60):  # among them the one with which the model follows
+        twin.step((5.0, 1.0, 0.0), DT)
+        stiffness.append(twin.observer.stiffness[0])
+    assert stiffness[-1] < 0.7 * stiffness[0]
+    assert np.abs(np.diff(np.log(stiffness))).max() < 0.06
 
 
 def test_a_state_carries_what_was_learned() -> None:
@@ -459,12 +475,53 @@ def test_another_rate_does_not_change_what_fits_are_relative_to() -> None:
     assert twin.observer.fit == FIT
 
 
+def test_the_learned_frequency_does_not_follow_the_model() -> None:
+    twin = told(steps=700)
+    assert goal(twin).stiffness_factor < 0.95
+    first, learned = told().learned, twin.learned
+    assert first is not None
+    assert learned is not None
+    assert learned.frequency == pytest.approx(first.frequency, rel=1e-9)
+
+
 def test_learned_damping_is_that_of_the_real_tree_where_a_ratio_is_given() -> None:
     ratio = 0.25 * SPECIES.damping(False)
     twin = told(FIT._replace(damping=1.0), damping_ratio=ratio)
     learned = twin.learned
     assert learned is not None
     assert learned.of(SPECIES, in_leaf=False).damping(False) == pytest.approx(ratio)
+
+
+def test_what_a_sensor_measures_no_more_is_reported() -> None:
+    twin, motion = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}), measured()
+    for k, each in enumerate(truth().wind[: 30 * 60]):
+        rate = motion.rate[k] if k < 20 * 60 else None
+        twin.offer('phone', (k + 1) * DT, acceleration=motion.acceleration[k], rate=rate)
+        twin.step(each, DT)
+        (report,) = sensor_reports(twin)
+        is_said = 'it measures no rate any more: restart it' in report.notes
+        assert is_said == (twin.sensors['phone'].quantities == ('acceleration',))
+    assert is_said
+
+
+def test_the_correction_does_not_touch_the_motion_in_the_wind(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    corrected, alone = told(), told()
+    correction = np.zeros((2, corrected.observer.count))
+
+    def known(time: float, *_: Any) -> Floats:
+        correction[0] = 0.02 * np.sin(9.0 * time)
+        correction[1] = 0.18 * np.cos(9.0 * time)
+        return correction
+
+    monkeypatch.setattr(corrected.observer, 'step', known)
+    for each in truth().wind[:300]:
+        for twin in (corrected, alone):
+            twin.step(each, DT)
+    for one, other, added in zip(corrected._swing[:2], alone._swing, correction, strict=False):
+        np.testing.assert_allclose(one[: len(added)] - other[: len(added)], added, atol=1e-12)
+        np.testing.assert_allclose(one[len(added) :], other[len(added) :], atol=1e-12)
 
 
 @pytest.mark.parametrize(

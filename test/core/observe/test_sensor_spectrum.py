@@ -16,7 +16,7 @@ LENGTH = 400
 
 def test_it_is_the_mean_over_stretches_that_overlap_by_half() -> None:
     rng = np.random.default_rng(6)
-    motion, force = rng.normal(size=(1000, 3)), rng.normal(size=(1000, FORCES)) + 5.0
+    motion, force = rng.normal(size=(1000, 2)), rng.normal(size=(1000, FORCES)) + 5.0
     spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
     for each in zip(motion, force, strict=True):
         spectrum.add(*each, each[0])
@@ -42,7 +42,7 @@ def test_it_is_the_mean_over_stretches_that_overlap_by_half() -> None:
 
 def test_a_gap_begins_a_stretch_anew() -> None:
     spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
-    still = np.zeros(3), np.zeros(FORCES), np.zeros(3)
+    still = np.zeros(2), np.zeros(FORCES), np.zeros(2)
     for _ in range(300):
         spectrum.add(*still)
     assert spectrum.until_first == pytest.approx(10.0)

@@ -44,7 +44,7 @@ def watched(
         sway = swayed(frequency, wind, rng) + of_limb
         motion = share * sway + NOISE * rng.normal(size=(N_STEPS, 3))
         for each in motion:
-            spectrum.add(each, force, each)
+            spectrum.add(each[:2], force, each[:2])
             blown, count = blown + wind, count + 1
             if watch.is_due:
                 watch.advance((blown, 0.0, count), NOISE, NOISE)

@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The library of the native core.
+The library of the native core: ``sway.h`` and ``library.h`` of ``native/`` say what it does.
 
-``native/sway.h`` and ``native/library.h`` say what each function does; a test compares the
-signatures with them.
+A test compares the signatures with these headers.
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sw
 """The library, which programs in other languages may link."""
 
 _pointer, _size, _number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
+_whole = ctypes.c_int64
 
 SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_version': (ctypes.c_int, ()),
@@ -52,10 +52,15 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
         ),
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
-}
-"""Result and arguments of every function of ``native/sway.h``."""
-
-SIGNATURES |= {
+    # Motion sensors.
+    'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
+    'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),
+    'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
+    'sway_judge': (None, (_pointer, _number)),
+    'sway_correct': (None, (_pointer, _pointer, _size)),
+    'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),
+    'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
+    # Loads of winds on branches.
     'sway_wind_moments': (
         None, (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
     ),
@@ -70,7 +75,7 @@ SIGNATURES |= {
         None, (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
     ),
 }
-"""And of ``native/library.h``: loads of winds on branches."""
+"""Result and arguments of every function."""
 
 
 def _opened() -> ctypes.CDLL:

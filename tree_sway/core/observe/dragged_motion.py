@@ -15,14 +15,13 @@ correction of u that is applied, and c_u, k_u damping, by wood and air, and stif
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
+from tree_sway.core.native.library import LastAddress, LIBRARY
+from tree_sway.core.native.structures import NativeDragged
 from tree_sway.core.oscillators.propagator import held_propagator
 
 if TYPE_CHECKING:
@@ -51,98 +50,48 @@ class DraggedMotion:
         self.motion = self._state[:2]
         """Displacement and rate of each coordinate, (2, m)."""
         self._law = np.zeros((2, 3, m))
-        self._drag = np.zeros((m, observer.count))
+        self._drag = np.zeros((observer.count, m))
+        self._native = NativeDragged(
+            coordinates=m, corrected=observer.count, law=self._law,
+            drag=self._drag, trust=observer.trust, state=self._state,
+        )  # fmt: skip
+        self._given_at, self._out_at = LastAddress(), LastAddress()
         self._found_for: tuple[Disturbance | None, Floats | None] = None, None
 
-    def step(self, rates: Floats, n_periods: int) -> Floats:
+    def step(self, correction: Floats, n_periods: int, out: Floats) -> None:
         """
         Move by some time steps.
 
         Parameters
         ----------
-        rates
-            Rates of the correction that is applied, (count,).
+        correction
+            Displacement and rate of the correction that is applied, (2, count).
         n_periods
             Number of time steps.
-
-        Returns
-        -------
-        Floats
-            Displacement and rate of each coordinate, (2, m). The array is reused.
+        out
+            The correction with what it drags, of each coordinate, (2, m), written.
 
         """
-        observer = self._observer
-        forces = observer.forces
-        if forces is None:
-            return self.motion
-        damping = observer.damping
-        if forces is not self._found_for[0] or damping is not self._found_for[1]:
-            self._find_law(forces.drag)
-            self._found_for = forces, damping
-        self._move(self._law, self._drag, observer.trust, rates, n_periods, self._state)
-        return self.motion
+        present = self._observer.forces, self._observer.damping
+        if any(now is not then for now, then in zip(present, self._found_for, strict=True)):
+            self._find_law()
+            self._found_for = present
+        given_at, out_at = self._given_at.of(correction), self._out_at.of(out)
+        LIBRARY.sway_drag(self._native.at, given_at, n_periods, out_at)
 
-    @cached_property
-    def _move(self) -> Callable[..., None]:
-        if WHY_PLAIN:
-            return move_dragged_in_numpy
-        trust = self._observer.trust
-        return entry_of(move_dragged, self._law, self._drag, trust, trust, 1, self._state)
-
-    def _find_law(self, drag: Floats) -> None:
-        """Find how the coordinates move in the present wind, with drag per rate (m, m)."""
+    def _find_law(self) -> None:
+        """Find how the coordinates move in the present wind, with its drag per rate (m, m)."""
         observer = self._observer
+        if observer.forces is None:
+            return
+        drag = observer.forces.drag
         damping = observer.damping + np.diag(drag)
         stiffness = observer.all_stiffness
         self._law[:] = held_propagator(damping, stiffness, self._dt)
         by_others = drag.copy()
         np.fill_diagonal(by_others, 0.0)
-        self._drag[:] = -by_others[:, : observer.count]
+        self._drag[:] = -by_others[:, : observer.count].T
 
     def reset(self) -> None:
         """Return to rest."""
         self._state[:] = 0.0
-
-
-@kernel
-def move_dragged(
-    law: Floats, drag: Floats, trust: Floats, rates: Floats, n_periods: int, state: Floats
-) -> None:
-    """
-    Move what is dragged by some time steps.
-
-    Parameters
-    ----------
-    law
-        Displacement and rate after a step by those before and the force, (2, 3, m).
-    drag
-        Force on each coordinate per rate of the corrected ones, (m, n).
-    trust, rates
-        Share of the correction that is applied, and its rate, (n,).
-    n_periods
-        Number of time steps.
-    state
-        Displacement, rate and force, (3, m), written.
-
-    """
-    for i in range(len(drag)):
-        force = 0.0
-        for j in range(len(rates)):
-            force += drag[i, j] * rates[j]
-        if i < len(trust):
-            force *= 1.0 - trust[i]
-        state[2, i] = force
-        for _ in range(n_periods):
-            eta, rate = state[0, i], state[1, i]
-            for k in range(2):
-                state[k, i] = law[k, 0, i] * eta + law[k, 1, i] * rate + law[k, 2, i] * force
-
-
-def move_dragged_in_numpy(
-    law: Floats, drag: Floats, trust: Floats, rates: Floats, n_periods: int, state: Floats
-) -> None:
-    """Move what is dragged as `move_dragged`."""
-    np.dot(drag, rates, out=state[2])
-    state[2, : len(trust)] *= 1.0 - trust
-    for _ in range(n_periods):
-        state[:2] = (law * state).sum(axis=1)

@@ -89,7 +89,7 @@ class GainDesign:
 
     def advance(self) -> Gains | None:
         """Find gains where others are needed; return them when they are due."""
-        in_use = tuple([k for k, track in enumerate(self._tracks) if track.in_use])
+        in_use = tuple([k for k, track in enumerate(self._tracks) if track.native.in_use])
         if not in_use:
             self.stop()
             return None

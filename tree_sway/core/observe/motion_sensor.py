@@ -14,29 +14,21 @@ What a sensor measures is decided by a majority vote (Boyer and Moore 1991, Auto
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, partial
 from math import dist, inf, isfinite, nan
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of
 from tree_sway.core.observe.alignment import LEAST_NOISE, matrix_of
 from tree_sway.core.observe.sample_ring import (
-    empty_ring,
-    keep_sample,
     KEPT,
-    longest_gap,
-    NEWEST,
     NOT_FINITE,
     OUT_OF_ORDER,
-    PERIOD,
-    read_samples,
     RESTARTED,
+    SampleRing,
     SATURATED,
     TOO_LARGE,
 )
@@ -59,7 +51,7 @@ _SPIKES, _USUAL = 3, 20
 """Spikes in a row that may be, and samples before the first."""
 
 STUCK, SPIKE = 6, 7
-"""Results of `MotionSensor.offer` beside those of `keep_sample`."""
+"""Results of `MotionSensor.offer` beside those of `SampleRing.keep`."""
 
 _COUNTED = {
     KEPT: 'accepted',
@@ -142,9 +134,9 @@ class MotionSensor:
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
         self._is_measured = np.ones(9, dtype=np.bool_)
-        self._sample, self._found = np.full((2, 9), np.nan)
-        self.ring = empty_ring()
-        """Its last samples, (1,) of `RING`."""
+        self._sample = np.full(9, nan)
+        self.ring = SampleRing(self._sample, self._is_measured)
+        """Its last samples."""
         self._reference: Floats | None = None
         self._first_turn: Floats = np.eye(3)
         self._unit = np.zeros(4)
@@ -159,26 +151,12 @@ class MotionSensor:
     @property
     def newest(self) -> float:
         """Time of the newest sample in [s]; minus infinity before any."""
-        return float(self._clock[NEWEST])
+        return self.ring.newest
 
     @property
     def period(self) -> float:
         """Time between samples in [s], a running median; not a number before two samples."""
-        return float(self._clock[PERIOD])
-
-    @cached_property
-    def _clock(self) -> Floats:
-        return np.asarray(self.ring['clock'][0])
-
-    @cached_property
-    def _keep(self) -> Callable[[float], int]:
-        """Check and keep the sample in `_sample`, of a time."""
-        call = entry_of(keep_sample, self.ring, 0.0, self._sample, self._is_measured)
-        return lambda time: call(self.ring, time, self._sample, self._is_measured)
-
-    @cached_property
-    def _read(self) -> Callable[..., bool]:
-        return partial(entry_of(read_samples, self.ring, 0.0, 0.0, self._found), self.ring)
+        return self.ring.period
 
     def offer(
         self,
@@ -240,7 +218,7 @@ class MotionSensor:
             return STUCK
         if self._kept and self._is_spike(numbers):
             return SPIKE
-        outcome = self._keep(time)
+        outcome = self.ring.keep(time)
         if outcome in {KEPT, RESTARTED}:
             self._kept = numbers
         return outcome
@@ -260,7 +238,7 @@ class MotionSensor:
         self._is_given, self._lead = is_given, 1
         self._is_measured[:] = np.repeat(is_given, 3)
         self._kept, self._n_spikes = [], -_USUAL
-        self.ring['at'] = 0
+        self.ring.clear()
         if is_given[2]:
             self._reference = None
             self._sample[6:9] = self._turn(self._unit)
@@ -313,24 +291,3 @@ class MotionSensor:
     def reference(self) -> Floats | None:
         """First orientation, x y z w; None without orientations."""
         return self._reference
-
-    @property
-    def longest_gap(self) -> float:
-        """Longest time between samples that is bridged in [s]."""
-        return longest_gap(self.period)
-
-    def at(self, time: float, dt: float) -> Floats | None:
-        """
-        Read the motion about a time.
-
-        Samples within a step of dt [s] about the time are averaged; elsewhere the samples before
-        and after are joined. Older samples are forgotten.
-
-        Returns
-        -------
-        Floats or None
-            Acceleration, rate and rotation, (9,), not a number where not measured; None where no
-            sample is near. The array is reused.
-
-        """
-        return self._found if self._read(time, dt, self._found) else None

@@ -326,11 +326,10 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        correction = self.observer.step(self.now, self._last_wind, swing, n_periods)
+        correction = self.observer.step(self.now, self._last_wind, n_periods)
         self._bound(correction)
-        added[:] = self._dragged.step(correction[1], n_periods)
-        self.observer.note_dragged(added[0])
-        added[:, : self.observer.count] += correction
+        self._dragged.step(correction, n_periods, added)
+        self.observer.note_dragged(self._dragged.motion[0])
         if self.members is not None:
             self.members.step(swing, self._last_wind[:2], self._apart)
         eta += added[0]

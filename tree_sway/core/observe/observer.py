@@ -14,18 +14,17 @@ The motion of the present is the calm one of `Estimate`; the smoothed one is tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import cached_property
+from collections.abc import Sequence
 import math
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, WHY_PLAIN
-from tree_sway.core.observe.correction_energy import find_energies
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.structures import NativeCorrection
 from tree_sway.core.observe.disturbance import Disturbance
-from tree_sway.core.observe.estimate import carry, carry_in_numpy, Estimate
+from tree_sway.core.observe.estimate import Estimate
 from tree_sway.core.observe.gain_design import GainDesign, Gains, NOISE
 from tree_sway.core.observe.late_wind import LateWind
 from tree_sway.core.observe.later_work import Submit
@@ -88,7 +87,9 @@ class Observer:
         submit: Submit | None = None,
     ) -> None:
         self.tracks, self._dt = list(tracks), dt
-        m = simulator.banks[0].oscillators.shapes.shape[1]
+        oscillators: Any = simulator.banks[0].oscillators
+        swing = self._swing = oscillators.swing
+        m = oscillators.shapes.shape[1]
         n = self.count = min(MOST_COORDINATES, m)
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
@@ -96,7 +97,7 @@ class Observer:
         with one_thread():
             self._unknown = UnknownMotion(simulator, n, dt)
             self._readings = SensorReadings(
-                self._unknown, self.tracks, places, dt, wind or LateWind(), submit
+                self._unknown, self.tracks, places, dt, swing, wind or LateWind(), submit
             )
         self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
         if before is not None:
@@ -111,23 +112,35 @@ class Observer:
         self._wanted_trust = np.zeros(n)
         self.noise = np.zeros(0)
         """Standard deviation of the noise of the measurements in use, (p,)."""
-        self._row_of = self._sensor_of = np.zeros(0, dtype=np.intp)
-        self._values, self._is_known = np.zeros(0), np.zeros(0, dtype=np.bool_)
-        self._ahead: dict[int, Floats] = {}
+        self._ahead: dict[int, tuple[Floats, int]] = {}
+        self._swing_at = [address(each) for each in swing[:2]]
         self._moved = np.zeros((2, n))
         self.energies = np.zeros(2)
-        """Energies of the corrected and of the uncorrected motion, as `find_energies` has them."""
+        """
+        Energies of the corrected and of the uncorrected motion, (2,).
+
+        Both are twice those per unit mass, and 0 before a sensor was in use.
+        """
+        self._find_native()
 
     def refresh(self) -> None:
         """Read stiffness and damping of the model again, after a change."""
         self._unknown.read_model()
         self._unknown.forget_changed_model()
         self._readings.read_model()
+        self._find_native()
+
+    def _find_native(self) -> None:
+        """Let the native core correct the present model."""
+        self._native = NativeCorrection(
+            coordinates=self.count, stiffness=self.stiffness,
+            wanted=self._wanted_trust, trust=self.trust, moved=self._moved, energies=self.energies,
+        )  # fmt: skip
 
     @property
     def late(self) -> int:
         """Steps by which sensors are read late."""
-        return self._readings.lateness.steps
+        return int(self._readings.native.late)
 
     @property
     def stiffness(self) -> Floats:
@@ -187,7 +200,6 @@ class Observer:
         self,
         time: float,
         wind: tuple[float, float, float],
-        swing: tuple[Floats, ...],
         n_periods: int = 1,
     ) -> Floats:
         """
@@ -199,8 +211,6 @@ class Observer:
             Time of the end of the step in [s].
         wind
             Mean wind that moves the tree in [m/s], finite.
-        swing
-            Displacement, rate and force of each coordinate in the wind alone, (m,).
         n_periods
             Number of time steps that were joined to this one.
 
@@ -212,16 +222,15 @@ class Observer:
         """
         self._step += 1
         self._unknown.note_wind(math.hypot(*wind))
-        self._readings.note(self._step, swing)
         if self._smoothed is not None:
-            self._smoothed.note_computed(self._step, swing[0])
-        if self._readings.read(time, self._step, self._done):
+            self._smoothed.note_computed(self._step, self._swing[0])
+        at = self._readings.read(time, self._step, self._done)
+        if at >= 0:
             self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:
             self._take(gains)
         if self._estimate is None:
-            self._moved[:] = 0.0
             self._smooth_unmeasured()
         elif not self.is_active:
             self._judge_refused(self._estimate)
@@ -230,71 +239,42 @@ class Observer:
         else:
             self._judge_refused(self._estimate)
             self._fit.advance(self._design.used)
-            self._correct(self._estimate, n_periods)
-        self._find_energies(self.stiffness, swing[0], swing[1], self._moved, self.energies)
+            self._correct(self._estimate, at, n_periods)
         return self._moved
-
-    @cached_property
-    def _carry(self) -> Callable[..., None]:
-        if WHY_PLAIN:
-            return carry_in_numpy
-        n = self.count
-        ahead, calm = np.zeros((3, 3, n)), np.zeros((3, n))
-        return entry_of(carry, ahead, calm, self.trust, 0.0, self.trust, self._moved)
-
-    @cached_property
-    def _find_energies(self) -> Callable[..., None]:
-        one = self.stiffness
-        return entry_of(find_energies, one, one, one, self._moved, self.energies)
 
     def _take(self, gains: Gains) -> None:
         """Go on with other gains."""
-        self._estimate = Estimate(gains.filter, self._estimate)
-        self.noise, self._wanted_trust = gains.noise, gains.trust
-        for k in gains.used:
-            self.tracks[k].tells_little = not gains.trust.any()
         picked = [self.tracks[k].picked for k in gains.used]
         # Where each measurement is among the readings, (k, 9).
         rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
-        self._row_of = np.concatenate(rows)
-        self._sensor_of = self._row_of // 9
-        self._values = np.zeros(len(self._row_of))
-        self._is_known = np.zeros(len(self._row_of), dtype=np.bool_)
+        self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
+        self.noise, self._wanted_trust[:] = gains.noise, gains.trust
+        for k in gains.used:
+            self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}
 
-    def _correct(self, estimate: Estimate, n_periods: int) -> None:
-        """Correct the estimate by the measurements of the step that is late."""
-        at, share = self._step - self.late, 0.0
-        if at > self._done:
+    def _correct(self, estimate: Estimate, at: int, n_periods: int) -> None:
+        """Correct the estimate by the measurements of a step, unless it was done before."""
+        share = 0.0
+        if at >= 0:
             # More than one step where sensors have become less late.
             n_periods *= min(at - self._done, LATEST)
-            self._measure(estimate, n_periods)
+            estimate.advance(self._readings.native, n_periods)
             share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
             if self._smoothed is not None:
                 first = max(self._done + 1, at - LATEST)
                 self._smoothed.note_estimated(first, at, estimate.state[0])
                 self._smoothed.smooth(at, self.trust, estimate.past_change())
             self._done = at
-        if self.late not in self._ahead:
-            self._ahead[self.late] = estimate.gains.law.ahead(self.late)
-        ahead = self._ahead[self.late]
-        self._carry(ahead, estimate.calm, self._wanted_trust, share, self.trust, self._moved)
+        self._carry(estimate, self._readings.native.late, share)
 
-    def _measure(self, estimate: Estimate, n_periods: int) -> None:
-        """Move the estimate on, correct it by the readings, and judge their sensors."""
-        readings, used = self._readings, self._design.used
-        for k in used:
-            readings.is_known[k] &= self.tracks[k].in_use
-        readings.beyond.take(self._row_of, out=self._values, mode='clip')
-        readings.is_known.take(self._sensor_of, out=self._is_known, mode='clip')
-        estimate.advance(self._values, self._is_known, n_periods)
-        sizes, first = estimate.sizes.tolist(), 0
-        for k in used:
-            track = self.tracks[k]
-            last = first + len(track.uses)
-            if readings.is_known[k]:
-                track.judge(max(sizes[first:last]))
-            first = last
+    def _carry(self, estimate: Estimate, late: int, share: float) -> None:
+        """Bring the calm motion to the present, where trust goes a share of its way."""
+        if late not in self._ahead:
+            ahead = estimate.gains.law.ahead(late)
+            self._ahead[late] = ahead, address(ahead)
+        _, ahead_at = self._ahead[late]
+        LIBRARY.sway_carry(self._native.at, ahead_at, estimate.calm_at, share, *self._swing_at)
 
     def _judge_refused(self, estimate: Estimate) -> None:
         """Judge refused sensors by the motion expected without any sensor."""
@@ -337,11 +317,12 @@ class Observer:
         """Forget the correction; what is known about the sensors stays."""
         self._estimate = None
         self._design.stop()
-        self.trust[:] = 0.0
+        for each in (self.trust, self._moved, self.energies):
+            each[:] = 0.0
         if self._smoothed is not None:
             self._smoothed.reset()
 
     def _fade(self, estimate: Estimate, n_periods: int) -> None:
         estimate.move(n_periods)
         estimate.scale(math.exp(-n_periods * self._dt / _FADE))
-        np.multiply(estimate.calm[:2], self.trust, out=self._moved)
+        self._carry(estimate, 0, 0.0)

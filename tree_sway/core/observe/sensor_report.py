@@ -33,7 +33,8 @@ class SensorReport(NamedTuple):
     counts
         Counts of its samples.
     notes
-        Properties that were recognised, such as a unit, and how late the wind is.
+        Properties that were recognised, such as a unit, how late the wind is, and what the sensor
+        measures no more.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -61,6 +62,8 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
     late = tuple(filter(None, [twin.late_wind.note]))
     for number, track in enumerate(twin.observer.tracks):
         sensor, alignment = track.sensor, track.alignment
+        recognised = () if alignment is None else (*alignment.notes, *late)
+        lost = [f'it measures no {name} any more: restart it' for name in sensor.lost]
         found.append(
             SensorReport(
                 sensor.name,
@@ -70,7 +73,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
                 twin.observer.late * twin.period,
                 sensor.counts,
-                () if alignment is None else (*alignment.notes, *late),
+                (*recognised, *lost),
                 twin.observer.sway_change(number),
             )
         )

@@ -9,15 +9,12 @@ series at each step.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.observe.spectrum_change import WATCHED_BAND
 
 Waves = NDArray[np.complex128]
@@ -70,7 +67,7 @@ class SensorSpectrum:
         # East, north, the force on each coordinate, and the watched motion to east and north.
         self._n_products = 2 + count
         n_series = self._n_products + 2
-        self._series = np.zeros((n_series, _HALVES, half))
+        self._series = np.zeros((_HALVES, half, n_series))
         self._window = np.hanning(2 * half + 1)[:-1]
         self._stretch = np.zeros(2 * half)
         axis = np.fft.rfftfreq(2 * half, dt)
@@ -89,31 +86,24 @@ class SensorSpectrum:
         self._watched = np.zeros((len(self.watched_frequencies), 2))
         self._block = SpectrumBlock(np.zeros(n_frequencies), self._watched.copy(), 0, 0.0)
         self._now, self._filled, self._n_halves = 0, 0, 0
-        self._next = n_series
+        self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
 
     def add(self, motion: Floats, force: Floats, watched: Floats) -> None:
-        """Add motions, (3,), and forces of the known wind, (count,), of a step."""
-        self._keep(self._series, self._now, self._filled, motion, force, watched)
+        """Add motions to east and north, (2,), and forces of the known wind, (count,)."""
+        np.concatenate((motion, force, watched), out=self._series[self._now, self._filled])
         self._filled += 1
         self.seconds += self._dt
-        if self._next < len(self._series):
+        if self._next < self._n_series:
             self._transform_next()
         if self._filled == self._half:
             self._n_halves += 1
             self._now, self._filled = (self._now + 1) % _HALVES, 0
             if self._n_halves > 1:
                 self._next = 0
-
-    @cached_property
-    def _keep(self) -> Callable[..., None]:
-        if WHY_PLAIN:
-            return keep_in_numpy
-        three, force = np.zeros(3), np.zeros(self._n_products - 2)
-        return entry_of(keep, self._series, 0, 0, three, force, three)
 
     @property
     def until_first(self) -> float:
@@ -124,11 +114,11 @@ class SensorSpectrum:
     def skip(self) -> None:
         """Forget an unfinished stretch: the motion has a gap."""
         self._filled = self._n_halves = 0
-        self._next = len(self._series)
+        self._next = self._n_series
 
     def _transform_next(self) -> None:
         """Transform a series of the last stretch, and average after the last one."""
-        series, stretch, half = self._series[self._next], self._stretch, self._half
+        series, stretch, half = self._series[..., self._next], self._stretch, self._half
         stretch[:half] = series[self._now - 2]
         stretch[half:] = series[self._now - 1]
         stretch -= stretch.mean()
@@ -140,7 +130,7 @@ class SensorSpectrum:
             axis = self._next - self._n_products
             self._watched[:, axis] += np.square(np.abs(waves[self._is_watched]))
         self._next += 1
-        if self._next == len(self._series):
+        if self._next == self._n_series:
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
             self.count += 1
 
@@ -169,41 +159,3 @@ class SensorSpectrum:
     def products(self) -> Waves:
         """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
         return self._products / max(self.count, 1)
-
-
-@kernel
-def keep(
-    series: Floats, half: int, step: int, motion: Floats, force: Floats, watched: Floats
-) -> None:
-    """
-    Keep what was measured at a step.
-
-    Parameters
-    ----------
-    series
-        East, north, forces, and the watched motion to east and north, of the steps of some halves
-        of a stretch, (n + 4, h, t), written.
-    half, step
-        Number of the half, and of the step in it.
-    motion, watched
-        Motions, (3,).
-    force
-        Force on each coordinate, (n,).
-
-    """
-    n = len(force)
-    for axis in range(2):
-        series[axis, half, step] = motion[axis]
-        series[2 + n + axis, half, step] = watched[axis]
-    for i in range(n):
-        series[2 + i, half, step] = force[i]
-
-
-def keep_in_numpy(
-    series: Floats, half: int, step: int, motion: Floats, force: Floats, watched: Floats
-) -> None:
-    """Keep what was measured at a step as `keep`."""
-    row = series[:, half, step]
-    row[:2] = motion[:2]
-    row[2:-2] = force
-    row[-2:] = watched[:2]

@@ -10,15 +10,15 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import cached_property
+from collections.abc import Iterator
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, kernel
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LIBRARY
+from tree_sway.core.native.structures import NativeSensor
 from tree_sway.core.observe.alignment import (
     align,
     Alignment,
@@ -28,7 +28,6 @@ from tree_sway.core.observe.alignment import (
     TELLS_LITTLE,
 )
 from tree_sway.core.observe.motion_sensor import MotionSensor
-from tree_sway.core.observe.sample_ring import read_samples
 from tree_sway.core.observe.sensor_place import PlaceMotion
 from tree_sway.core.observe.wind_lag import find_lag
 
@@ -36,15 +35,11 @@ LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.4, 600.0
-_ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
+_ABSENT_AFTER = 1.0
 _KNOCKED = 5.0
-_AVERAGED = 2.0
 _COMPARED = 1.0
 """Periods of the first sway over which motions are averaged to find a mounting."""
 
-_DISAGREES, _AGREES = 16.0, 4.0
-_LARGEST = 1e4
-"""Largest square that counts: after a knock a sensor is to be followed again in half a minute."""
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
@@ -75,83 +70,6 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
     out = rows[3:].copy()
     out[:3] = rows[:3] + (rows[3:6] if has_gravity else 0.0)
     return out
-
-
-@kernel
-def find_beyond(
-    mounting: Floats, values: Floats, computed: Floats, moved: Floats, beyond: Floats
-) -> None:
-    """
-    Turn a sample into the frame of the tree, and take the model's motion off.
-
-    Parameters
-    ----------
-    mounting
-        Rotation to the frame of the tree, factors of acceleration and rate, gravity in the
-        acceleration [m/s^2], and bias, (21,).
-    values, computed
-        Sample (9,), and rows of the model (12,).
-    moved, beyond
-        The sample in the frame of the tree, and what it has beyond the model, (9,), written.
-
-    """
-    for i in range(3):
-        acceleration, rate, rotation = 0.0, 0.0, 0.0
-        for j in range(3):
-            acceleration += mounting[3 * i + j] * values[j]
-            rate += mounting[3 * i + j] * values[3 + j]
-            rotation += mounting[3 * i + j] * values[6 + j]
-        moved[i] = mounting[9] * acceleration
-        moved[3 + i] = mounting[10] * rate
-        moved[6 + i] = rotation
-    moved[2] -= mounting[11]
-    for i in range(9):
-        beyond[i] = moved[i] - mounting[12 + i] - computed[3 + i]
-    for i in range(3):
-        # The part by tilted gravity is felt with gravity only.
-        tilted = 0.0 if mounting[11] > 0.0 else computed[3 + i]
-        beyond[i] += tilted - computed[i]
-
-
-@kernel
-def read_motion(
-    rings: Records, time: float, dt: float, computed: Floats, mounting: Floats, row: int,
-    kept: Floats, kept_computed: Floats, values: Floats, moved: Floats, beyond: Floats,
-) -> bool:  # fmt: skip
-    """
-    Read a sensor about a time, and keep what it and the model say.
-
-    Parameters
-    ----------
-    rings
-        Samples of the sensor, (1,) of `RING`.
-    time, dt
-        Time, and that of a step [s].
-    computed
-        Rows of the model, (12,).
-    mounting
-        As `find_beyond` takes it.
-    row
-        Row of the memory to write.
-    kept, kept_computed
-        Memory of samples (n, 9), and rows of the model (n, 12), written.
-    values, moved, beyond
-        The sample, and what `find_beyond` makes of it, (9,), written.
-
-    Returns
-    -------
-    bool
-        Whether there is a sample.
-
-    """
-    if not read_samples(rings, time, dt, values):
-        return False
-    for i in range(9):
-        kept[row, i] = values[i]
-    for i in range(ROWS):
-        kept_computed[row, i] = computed[i]
-    find_beyond(mounting, values, computed, moved, beyond)
-    return True
 
 
 class LagRange(NamedTuple):
@@ -249,46 +167,36 @@ class SensorTrack:
     def __init__(self, sensor: MotionSensor, frequency: float, dt: float) -> None:
         self.sensor, self._dt = sensor, dt
         self.alignment: Alignment | None = None
-        self.in_use = False
-        """Whether its motion corrects the tree."""
         self.tells_little = False
         """Whether it is in use, and tells too little of any coordinate to correct the tree."""
         self._mounting = np.zeros(21)
         self.bias = self._mounting[12:]
         """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
-        self.excess = 1.0
-        """Squared innovations over those expected, a running mean [-]."""
         self.uses: tuple[int, ...] = ()
         """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
         self.picked = slice(0, 0)
         """Rows of a sample, (9,), of these."""
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
-        self._count = 0
         self._window = max(round(_COMPARED / (frequency * dt)), 1)
         self._next_fit = round(LEARNING / dt)
-        self._absent = self._agreed = self._unheard = self._apart = 0.0
-        self._newest = sensor.newest
-        self._is_refused = False
         self._quantities = sensor.quantities
-        self._values, self._moved = np.zeros((2, 9))
-        self.fitted_motion = self.watched_motion = self._moved[:3]
+        self._moved = np.zeros(9)
+        self.native = NativeSensor(
+            ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
+            computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
+            newest=sensor.newest, excess=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
+        )  # fmt: skip
+        """Its state in the native core."""
+        self.fitted_motion = self.watched_motion = self._moved[:2]
         """
-        The last sample of this quantity, and of the acceleration, in the frame of the tree, (3,).
+        The last sample of this quantity, and of the acceleration, to east and north, (2,).
 
         Without an acceleration, the first of the others is watched. The acceleration tells more of
         fast sway than the angular rate, which is less above its noise.
         """
         self.fitted_noise = self.watched_noise = 0.0
         """Standard deviations of their noise in each sample, as measured."""
-
-    @cached_property
-    def _read(self) -> Callable[..., bool]:
-        nine, twelve, memory = self._moved, np.zeros(ROWS), (self._sensed, self._computed)
-        return entry_of(
-            read_motion, self.sensor.ring, 0.0, 0.0, twelve, self._mounting, 0, *memory,
-            nine, nine, nine,
-        )  # fmt: skip
 
     def _uses(self) -> tuple[int, ...]:
         given = self.sensor.quantities
@@ -313,14 +221,19 @@ class SensorTrack:
         return known * math.sqrt(held)
 
     @property
-    def may_be_used(self) -> bool:
-        """Whether it is in use, or its mounting is being found."""
-        return self.in_use or self.alignment is None
+    def in_use(self) -> bool:
+        """Whether its motion corrects the tree."""
+        return bool(self.native.in_use)
+
+    @property
+    def excess(self) -> float:
+        """Squared innovations over those expected, a running mean [-]."""
+        return float(self.native.excess)
 
     @property
     def problem(self) -> str:
         """Why it does not correct the tree, and what to do; empty if it does."""
-        name = self.sensor.name
+        name, native = self.sensor.name, self.native
         if self.in_use:
             return f'{name}: {TELLS_LITTLE}' if self.tells_little else ''
         counts = self.sensor.counts
@@ -329,83 +242,50 @@ class SensorTrack:
         if counts.accepted == 0:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
-            return f'{name}: refused for {self._absent:.0f} s: {self.sensor.trouble}'
-        if self.is_silent and self._unheard <= _ABSENT_AFTER:
-            return f'{name}: its times are {self._apart:+.1f} s from the steps: check its clock'
+            return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+            return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
-            return f'{name}: silent for {self._absent:.0f} s: check its battery and connection'
+            return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
         if self.alignment is None:
-            left = (self._next_fit - self._count) * self._dt
+            left = (self._next_fit - native.count) * self._dt
             return f'{name}: its mounting is found within {left:.0f} s of sway'
         if self.alignment.problem:
             return f'{name}: {self.alignment.problem}'
-        if self._is_refused:
+        if native.is_refused:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
         return f'{name}: it is followed from the next sample on'
 
     @property
     def is_silent(self) -> bool:
         """Whether there was no sample for longer than networks delay one."""
-        return self._absent > _ABSENT_AFTER
+        return bool(self.native.absent > _ABSENT_AFTER)
 
-    def read(self, time: float, computed: Floats, beyond: Floats) -> bool:
-        """
-        Read the sensor at the time of a step, and keep what it says.
-
-        Parameters
-        ----------
-        time
-            Time in [s].
-        computed
-            Rows of the model in the wind alone, (12,).
-        beyond
-            Motion in the frame of the tree beyond the model's, (9,), written.
-
-        Returns
-        -------
-        bool
-            Whether there is a sample, and its mounting is known.
-
-        """
+    def heed(self) -> None:
+        """Heed what has become of the sensor since the last step."""
+        native, counts = self.native, self.sensor.counts
+        counts.silent = native.silences
+        if native.disagreements != counts.disagreed:
+            counts.disagreed = native.disagreements
+            # A knock may have moved it: its mounting is found from what comes after.
+            native.count = -round(_KNOCKED / self._dt)
+            self._next_fit = round(LEARNING / self._dt)
         if self.sensor.quantities != self._quantities:
-            self._begin()
-        row = self._count % len(self._sensed)
-        memory = self._sensed, self._computed
-        if not self._read(
-            self.sensor.ring, time, self._dt, computed, self._mounting, row, *memory,
-            self._values, self._moved, beyond,
-        ):  # fmt: skip
-            self._miss(time)
-            return False
-        self._absent = 0.0
-        self._count += 1
-        return self.alignment is not None and not self.alignment.problem
-
-    def _begin(self) -> None:
-        """Find the mounting of a sensor that measures other quantities."""
-        self._quantities = self.sensor.quantities
-        self.alignment, self.in_use, self._is_refused = None, False, False
-        self._count, self._next_fit = 0, round(LEARNING / self._dt)
-        self.excess = 1.0
-
-    def _miss(self, time: float) -> None:
-        self._absent += self._dt
-        newest = self.sensor.newest
-        self._unheard = 0.0 if newest != self._newest else self._unheard + self._dt
-        self._newest, self._apart = newest, newest - time
-        if self.is_silent:
-            if self.in_use:
-                self.sensor.counts.silent += 1
-            self.in_use = False
+            self._quantities = self.sensor.quantities
+            self.alignment = None
+            native.in_use = native.is_mounted = native.is_refused = native.count = 0
+            native.is_awaited = 1
+            native.excess = 1.0
+            self._next_fit = round(LEARNING / self._dt)
 
     @property
     def is_due(self) -> bool:
         """Whether it has seen enough motion for its mounting to be found again."""
-        return self._count >= self._next_fit
+        return bool(self.native.count >= self._next_fit)
 
     def search(self, lags: LagRange = NO_LAG) -> Iterator[FoundMounting]:
         """Find its mounting from the motion so far, as a work of one part."""
-        self._next_fit = math.ceil(_LATER * self._count)
+        self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
         return _mountings(sensed, computed.T.copy(), self.sensor.reference, self._window, lags)
 
@@ -416,7 +296,7 @@ class SensorTrack:
 
     def _remembered(self) -> tuple[Floats, Floats]:
         """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
-        n, size = max(self._count, 0), len(self._sensed)
+        n, size = max(self.native.count, 0), len(self._sensed)
         first = n % size if n > size else 0
         memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
         return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
@@ -427,15 +307,18 @@ class SensorTrack:
         later, earlier = lagging(lag, len(sensed))
         kept = max(len(sensed) - abs(lag), 0)
         self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
-        if self._count > kept:
-            self._next_fit -= self._count - kept
-            self._count = kept
+        gone = self.native.count - kept
+        if gone > 0:
+            self._next_fit -= gone
+            self.native.count = kept
 
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on."""
         found = self.alignment = mounting.alignment
+        native = self.native
+        native.is_awaited, native.is_mounted = 0, not found.problem
+        native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
-            self.in_use = False
             return
         self.uses = self._uses()
         self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
@@ -443,33 +326,12 @@ class SensorTrack:
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
         first, watched = 3 * self.fitted, 3 * self.uses[0]
-        self.fitted_motion = self._moved[first : first + 3]
-        self.watched_motion = self._moved[watched : watched + 3]
+        self.fitted_motion = self._moved[first : first + 2]
+        self.watched_motion = self._moved[watched : watched + 2]
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
-        self.in_use = not self._is_refused
-
-    def _forget_motion(self) -> None:
-        """Find the mounting next from what comes after a knock: it may have moved the sensor."""
-        self._count = -round(_KNOCKED / self._dt)
-        self._next_fit = round(LEARNING / self._dt)
 
     def judge(self, size: float) -> None:
-        """
-        Judge a sensor by the mean square of its innovations over that expected.
-
-        One whose innovations stay far beyond those expected is refused until they are not.
-        """
-        share = self._dt / _AVERAGED
-        self.excess += share * (min(size, _LARGEST) - self.excess)
-        if self.excess > _DISAGREES and not self._is_refused:
-            self._is_refused, self.in_use, self._agreed = True, False, 0.0
-            self.sensor.counts.disagreed += 1
-            self._forget_motion()
-        elif self._is_refused:
-            self._agreed = self._agreed + self._dt if self.excess < _AGREES else 0.0
-            if self._agreed > _TRUSTED_AGAIN:
-                self._is_refused = False
-        if not self._is_refused and self.alignment is not None and not self.alignment.problem:
-            self.in_use = True
+        """Judge it by the mean square of its innovations over that expected."""
+        LIBRARY.sway_judge(self.native.at, size)

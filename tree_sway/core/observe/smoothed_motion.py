@@ -9,18 +9,16 @@ and averaged over a short window.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 
 SMOOTHED_LAG = 6
 """Steps between the smoother's estimate and its newest measurement."""
 
 _WINDOW = np.hanning(9)[1:-1] / np.hanning(9)[1:-1].sum()
+_WINDOWS = np.stack([np.roll(_WINDOW, k) for k in range(len(_WINDOW))])
+"""Shares of the rows of a window whose oldest row is each of them."""
 
 LATE_STEPS = SMOOTHED_LAG + len(_WINDOW) // 2
 """Steps by which the smoothed state is late."""
@@ -39,18 +37,16 @@ class SmoothedMotion:
         Number of coordinates of the model.
     count
         Number of the first ones that are corrected.
-    plain
-        Whether numpy is used where a compiler is there.
 
     """
 
-    def __init__(self, n_coordinates: int, count: int, *, plain: bool = bool(WHY_PLAIN)) -> None:
-        self._plain = plain
+    def __init__(self, n_coordinates: int, count: int) -> None:
         self._computed = np.zeros((_KEPT, n_coordinates))
         self._estimated = np.zeros((_KEPT, count))
         self._window = np.zeros((len(_WINDOW), n_coordinates))
+        self._oldest = 0
         self._out = np.zeros(n_coordinates)
-        self._no_change = np.zeros(count)
+        self._added = np.zeros(count)
 
     def note_computed(self, step: int, eta: Floats) -> None:
         """Note the displacements that the model has in the wind alone at a step, (m,)."""
@@ -81,60 +77,20 @@ class SmoothedMotion:
 
         """
         then = (step - SMOOTHED_LAG) % _KEPT
-        added = self._no_change if change is None else change
-        self._push(self._computed, self._estimated, then, trust, added, self._window)
-
-    @cached_property
-    def _push(self) -> Callable[..., None]:
-        if self._plain:
-            return push_in_numpy
-        n = self._no_change
-        return entry_of(push, self._computed, self._estimated, 0, n, n, self._window)
+        added = self._added
+        np.add(self._estimated[then], 0.0 if change is None else change, out=added)
+        added *= trust
+        row = self._window[self._oldest]
+        row[:] = self._computed[then]
+        row[: len(added)] += added
+        self._oldest = (self._oldest + 1) % len(_WINDOW)
 
     @property
     def displacements(self) -> Floats:
         """Displacements of `LATE_STEPS` ago, (m,). The array is reused."""
-        return np.dot(_WINDOW, self._window, out=self._out)
+        return np.dot(_WINDOWS[self._oldest], self._window, out=self._out)
 
     def reset(self) -> None:
         """Forget the motion."""
         self._computed[:] = 0.0
         self._estimated[:] = 0.0
-
-
-@kernel
-def push(
-    computed: Floats, estimated: Floats, then: int, trust: Floats, change: Floats, window: Floats
-) -> None:
-    """
-    Push the smoothed displacements of a step into a window.
-
-    Parameters
-    ----------
-    computed, estimated
-        Displacements of the model, (k, m), and estimated differences from it, (k, n).
-    then
-        Row of the step.
-    trust, change
-        Share of the difference that is applied, and what was measured since adds to it, (n,).
-    window
-        Displacements of some steps, the oldest first, (w, m), written.
-
-    """
-    last, m = window.shape[0] - 1, window.shape[1]
-    for k in range(last):
-        for i in range(m):
-            window[k, i] = window[k + 1, i]
-    for i in range(m):
-        window[last, i] = computed[then, i]
-    for i in range(len(trust)):
-        window[last, i] += trust[i] * (estimated[then, i] + change[i])
-
-
-def push_in_numpy(
-    computed: Floats, estimated: Floats, then: int, trust: Floats, change: Floats, window: Floats
-) -> None:
-    """Push the smoothed displacements of a step into a window as `push`."""
-    window[:-1] = window[1:]
-    window[-1] = computed[then]
-    window[-1, : len(trust)] += trust * (estimated[then] + change)

@@ -101,7 +101,7 @@ class UnknownMotion:
         self._found_for, n = speed, self.count
         found = self._found = disturbance(self._simulator, speed, n)
         self._found_with = (self.all_stiffness, self.all_damping)
-        self.air_damping = found.air_damping
+        self.air_damping[:] = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
         self._law, self.apart = (
             sway_law(self.stiffness, self.damped, each, TIME_CONSTANT, self._dt)

@@ -1,0 +1,268 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// How motion sensors correct a model: what they would measure by it, what they measure beyond it,
+// and the steady filter of the difference (`core/observe/steady_filter.py` has its equations).
+// Nothing is read or written beyond the arrays whose sizes the structures state.
+#include <math.h>
+#include <string.h>
+
+#include "library.h"
+
+namespace {
+
+// Share of the difference from the estimate by which the calm motion comes nearer per step.
+constexpr double PACE = 0.15;
+
+// Largest innovation that corrects, in its standard deviations.
+constexpr double CLIPPED = 6.0;
+
+// Rows of the model of a sensor: acceleration, its part by gravity, rate, rotation.
+constexpr int ROWS = 12;
+
+constexpr double GRAVITY = 9.80665;
+
+// Time without a sample after which a sensor is silent: longer than networks delay one [s].
+constexpr double SILENT = 1.0;
+
+// How late sensors are. When a sample comes, the step that is just made tells how old what was known
+// of the sensor was at its worst; the share by which such a lag above or below the known one is
+// followed, so that a stall now and then counts little. Steps by which sensors may be read later
+// than needed before they are read sooner.
+constexpr double UP = 0.2, DOWN = 0.005;
+constexpr int64_t SPARE = 2;
+
+// Time over which the squares of innovations are averaged [s], their mean above which a sensor
+// disagrees and below which it agrees, and the time after which it is trusted again [s].
+constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN = 5.0;
+
+// Largest square that counts: after a knock a sensor is to be followed again in half a minute.
+constexpr double LARGEST = 1e4;
+
+// to += factor * values, whose loop has no order: sums run over rows, not along them.
+void add_row(int64_t count, double factor, const double *values, double *__restrict to) {
+  for (int64_t i = 0; i < count; i++) to[i] += factor * values[i];
+}
+
+// Move states (rows, n), rows of which are written, by a law (rows, 3, n).
+void move(int64_t n, const double *law, int rows, double *state) {
+  for (int64_t i = 0; i < n; i++) {
+    const double eta = state[i], rate = state[n + i], force = state[2 * n + i];
+    for (int j = 0; j < rows; j++) {
+      const double *by = law + 3 * j * n + i;
+      state[j * n + i] = by[0] * eta + by[n] * rate + by[2 * n] * force;
+    }
+  }
+}
+
+double limited(double value, double most) { return fmin(fmax(value, -most), most); }
+
+// Turn a vector of the frame of a sensor into that of the tree.
+void turn(const double *matrix, double factor, const double *from, double *to) {
+  for (int i = 0; i < 3; i++) {
+    const double *row = matrix + 3 * i;
+    to[i] = factor * (row[0] * from[0] + row[1] * from[1] + row[2] * from[2]);
+  }
+}
+
+// Note the newest sample of a sensor at the time of a step; whether there is another.
+bool note_lag(sway_sensor &sensor, double time) {
+  const double newest = sensor.ring->newest, before = sensor.heard;
+  if (newest == before) return false;
+  sensor.heard = newest;
+  sensor.came = time;
+  const double lag = time - sensor.dt - before;  // at the last step without it
+  if (newest < before || lag > SWAY_LATEST * sensor.dt) return true;
+  const double missing = fmax(lag, 0.0) - sensor.lag;
+  sensor.lag += (missing > 0.0 ? UP : DOWN) * missing;
+  return true;
+}
+
+// Find by how many steps sensors are read late, so that the samples of those that are heard are
+// there, at the time of a step.
+void follow_lags(sway_readings &readings, double time) {
+  bool is_new = false, is_heard = false;
+  double most = 0.0;  // steps
+  for (int64_t i = 0; i < readings.sensors; i++) {
+    sway_sensor &sensor = *readings.sensor[i];
+    if (sensor.in_use || sensor.is_awaited) is_new |= note_lag(sensor, time);
+    if (time - sensor.came >= SILENT) continue;
+    most = fmax(most, sensor.lag / sensor.dt);
+    is_heard = true;
+  }
+  if (!is_new) return;
+  const int64_t needed = static_cast<int64_t>(fmin(ceil(most - 0.01), SWAY_LATEST));
+  if (needed > readings.late || (is_heard && needed < readings.late - SPARE)) readings.late = needed;
+}
+
+// What a sensor of some shapes (6, m) would measure. The specific force that a sensor turned by theta
+// feels beyond gravity is a + g z x theta in the frame of the tree.
+void sense(const sway_readings &by, const double *shapes, double *found) {
+  const int64_t m = by.coordinates;
+  for (int axis = 0; axis < 3; axis++) {
+    const double *moved = shapes + axis * m, *turned = moved + 3 * m;
+    double acceleration = 0.0, rate = 0.0, rotation = 0.0;
+    for (int64_t i = 0; i < m; i++) {
+      const double pull = by.stiffness[i] * by.eta[i] + by.damping[i] * by.rate[i];
+      acceleration += moved[i] * (by.force[i] - pull);
+      rate += turned[i] * by.rate[i];
+      rotation += turned[i] * by.eta[i];
+    }
+    found[axis] = acceleration;
+    found[6 + axis] = rate;
+    found[9 + axis] = rotation;
+  }
+  found[3] = -GRAVITY * found[10];
+  found[4] = GRAVITY * found[9];
+  found[5] = 0.0;
+}
+
+// Note that there is no sample about a time.
+void miss(sway_sensor &sensor, double time) {
+  const double newest = sensor.ring->newest;
+  sensor.absent += sensor.dt;
+  sensor.unheard = newest == sensor.newest ? sensor.unheard + sensor.dt : 0.0;
+  sensor.newest = newest;
+  sensor.apart = newest - time;
+  if (sensor.absent <= SILENT) return;
+  sensor.silences += sensor.in_use;
+  sensor.in_use = 0;
+}
+
+// Read a sensor about a time, keep its sample and the rows of the model, and write what the sample
+// has beyond the model. Whether there is one, and the mounting is known.
+bool read(sway_sensor &sensor, double time, const double *computed, double *beyond) {
+  double sample[9];
+  if (!sway_read_samples(sensor.ring, time, sensor.dt, sample)) {
+    miss(sensor, time);
+    return false;
+  }
+  sensor.absent = 0.0;
+  const int64_t row = (sensor.count++ % sensor.rows + sensor.rows) % sensor.rows;
+  memcpy(sensor.kept + 9 * row, sample, sizeof sample);
+  memcpy(sensor.computed + ROWS * row, computed, ROWS * sizeof(double));
+  const double *mounting = sensor.mounting, *bias = mounting + 12;
+  double *moved = sensor.moved;
+  turn(mounting, mounting[9], sample, moved);
+  turn(mounting, mounting[10], sample + 3, moved + 3);
+  turn(mounting, 1.0, sample + 6, moved + 6);
+  moved[2] -= mounting[11];
+  for (int i = 0; i < 9; i++) beyond[i] = moved[i] - bias[i] - computed[3 + i];
+  for (int i = 0; i < 3; i++) {
+    // The part by tilted gravity is felt with gravity only.
+    const double unfelt = mounting[11] > 0.0 ? 0.0 : computed[3 + i];
+    beyond[i] += unfelt - computed[i];
+  }
+  return sensor.is_mounted;
+}
+
+}  // namespace
+
+extern "C" {
+
+int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, double time) {
+  sway_readings &by = *readings;
+  const int64_t k = by.sensors, n = by.corrected;
+  double *sensed = by.sensed + now % SWAY_SLOTS * ROWS * k;
+  for (int64_t i = 0; i < k; i++) sense(by, by.shapes + 6 * by.coordinates * i, sensed + ROWS * i);
+  double *still = by.still + now % SWAY_SLOTS * n;
+  for (int64_t i = 0; i < n; i++) still[i] = by.air_damping[i] * by.rate[i] + by.force[i];
+  follow_lags(by, time);
+  const int64_t then = now - by.late;
+  if (then <= done) {
+    for (int64_t i = 0; i < k; i++) by.is_known[i] = 0;
+    return -1;
+  }
+  const double *computed = by.sensed + then % SWAY_SLOTS * ROWS * k;
+  for (int64_t i = 0; i < k; i++) {
+    sway_sensor &sensor = *by.sensor[i];
+    const double when = time - static_cast<double>(by.late) * sensor.dt;
+    by.is_known[i] = read(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
+  }
+  return then;
+}
+
+void sway_judge(sway_sensor *judged, double size) {
+  sway_sensor &sensor = *judged;
+  sensor.excess += sensor.dt / AVERAGED * (fmin(size, LARGEST) - sensor.excess);
+  if (sensor.is_refused) {
+    sensor.agreed = sensor.excess < AGREES ? sensor.agreed + sensor.dt : 0.0;
+    if (sensor.agreed > TRUSTED_AGAIN) sensor.is_refused = 0;
+  } else if (sensor.excess > DISAGREES) {
+    sensor.is_refused = 1;
+    sensor.in_use = 0;
+    sensor.agreed = 0.0;
+    sensor.disagreements++;
+  }
+  if (!sensor.is_refused && sensor.is_mounted) sensor.in_use = 1;
+}
+
+void sway_correct(const sway_filter *filter, const sway_readings *readings, size_t steps) {
+  const int64_t n = filter->coordinates, p = filter->measurements;
+  double *state = filter->state, *calm = filter->calm;
+  for (size_t step = 0; step < steps; step++) {
+    move(n, filter->law, 3, state);
+    move(n, filter->law, 3, calm);
+  }
+  double *last = filter->innovations + (filter->lag - 1) * p;
+  memmove(filter->innovations, filter->innovations + p,
+          static_cast<size_t>(filter->lag - 1) * p * sizeof(double));
+  for (int64_t k = 0; k < p; k++) last[k] = 0.0;
+  for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
+  double largest = 0.0;  // of the quantities of a sensor
+  for (int64_t k = 0; k < p; k += 3) {
+    const int64_t at = filter->row[k] / 9;
+    sway_sensor &sensor = *readings->sensor[at];
+    const bool is_known = readings->is_known[at] && sensor.in_use;
+    double size = 0.0;
+    for (int64_t j = k; j < k + 3; j++) {
+      const double innovation = is_known ? readings->beyond[filter->row[j]] - last[j] : 0.0;
+      const double deviation = filter->deviation[j], share = innovation / deviation;
+      size += share * share / 3.0;
+      last[j] = limited(innovation, CLIPPED * deviation);
+      add_row(3 * n, last[j], filter->gain + 3 * n * j, state);
+    }
+    largest = fmax(largest, size);
+    if (k + 3 < p && filter->row[k + 3] / 9 == at) continue;
+    if (is_known) sway_judge(&sensor, largest);
+    else readings->is_known[at] = 0;
+    largest = 0.0;
+  }
+  for (int64_t i = 0; i < 3 * n; i++) calm[i] += PACE * (state[i] - calm[i]);
+}
+
+void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,
+                double share, const double *eta, const double *rate) {
+  const int64_t n = correction->coordinates;
+  double *trust = correction->trust, *moved = correction->moved, *moving = moved + n;
+  double whole = 0.0, own = 0.0;
+  for (int64_t i = 0; i < n; i++) {
+    trust[i] += share * (correction->wanted[i] - trust[i]);
+    const double *by = ahead + i;
+    moved[i] = trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
+    by += 3 * n;
+    moving[i] = trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
+    const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
+    const double at = x + moved[i], going = v + moving[i];
+    whole += stiffness * at * at + going * going;
+    own += stiffness * x * x + v * v;
+  }
+  correction->energies[0] = whole;
+  correction->energies[1] = own;
+}
+
+void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
+               double *added) {
+  const int64_t m = dragged->coordinates, n = dragged->corrected;
+  double *state = dragged->state, *force = state + 2 * m;
+  for (int64_t i = 0; i < m; i++) force[i] = 0.0;
+  for (int64_t j = 0; j < n; j++) add_row(m, correction[n + j], dragged->drag + j * m, force);
+  for (int64_t j = 0; j < n; j++) force[j] *= 1.0 - dragged->trust[j];
+  for (size_t step = 0; step < steps; step++) move(m, dragged->law, 2, state);
+  memcpy(added, state, static_cast<size_t>(2 * m) * sizeof(double));
+  for (int64_t j = 0; j < n; j++) {
+    added[j] += correction[j];
+    added[m + j] += correction[n + j];
+  }
+}
+}

@@ -1,0 +1,121 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+//
+// The last samples of a motion sensor: checked as they are kept, and read at any time.
+#include <math.h>
+#include <string.h>
+
+#include "library.h"
+
+namespace {
+
+// Largest values of sensors: 32 g in [m/s^2]; 2,000 degrees per second, also in degrees.
+constexpr double MOST[] = {320.0, 2500.0};
+
+// Values above which a repeated number is the limit of a sensor; below, one that moves little.
+constexpr double SATURATED[] = {15.0, 4.0};
+constexpr int REPEATED = 3;
+
+// Time by which a clock is set back, and longest time between samples that is bridged [s].
+constexpr double CLOCK_BACK = 1.0, LONGEST_GAP = 0.25;
+constexpr double SILENT_PERIODS = 4.0;
+
+// Share of a step within which a sample is of the time asked for.
+constexpr double SAME_TIME = 0.01;
+
+// Whether a number is repeated at the limit of the sensor.
+bool is_saturated(sway_ring &ring, const double *sample) {
+  bool found = false;
+  for (int j = 0; j < 6; j++) {
+    ring.same[j] = sample[j] == ring.before[j] ? ring.same[j] + 1 : 0;
+    ring.before[j] = sample[j];
+    found |= ring.same[j] >= REPEATED && fabs(sample[j]) > SATURATED[j / 3];
+  }
+  return found;
+}
+
+// Row of a sample, counted from the oldest.
+int64_t row_of(const sway_ring &ring, int64_t from_oldest) {
+  return static_cast<int64_t>(static_cast<uint64_t>(ring.first + from_oldest) % SWAY_RING);
+}
+
+void drop_oldest(sway_ring &ring) {
+  ring.first = row_of(ring, 1);
+  ring.count--;
+}
+
+}  // namespace
+
+extern "C" {
+
+int sway_keep_sample(sway_ring *kept, double time, const double *sample,
+                     const uint8_t *is_measured) {
+  sway_ring &ring = *kept;
+  if (!isfinite(time)) return SWAY_NOT_FINITE;
+  for (int j = 0; j < 9; j++)
+    if (is_measured[j] && !isfinite(sample[j])) return SWAY_NOT_FINITE;
+  for (int j = 0; j < 6; j++)
+    if (fabs(sample[j]) > MOST[j / 3]) return SWAY_TOO_LARGE;
+  int outcome = SWAY_KEPT;
+  if (time <= ring.newest) {
+    // One of the past is refused; several in a row, far back, are those of a new clock.
+    if (time < ring.newest - CLOCK_BACK) ring.behind++;
+    if (ring.behind < REPEATED) return SWAY_OUT_OF_ORDER;
+    ring.count = ring.behind = 0;
+    ring.newest = -INFINITY;
+    outcome = SWAY_CLOCK_BACK;
+  } else {
+    ring.behind = 0;
+    if (is_saturated(ring, sample)) return SWAY_SATURATED;
+  }
+  const double step = time - ring.newest;
+  if (step < INFINITY) {
+    // A running median: up or down by a twentieth.
+    if (isnan(ring.period))
+      ring.period = step;
+    else if (step != ring.period)
+      ring.period *= step > ring.period ? 1.05 : 0.95;
+  }
+  if (ring.count == SWAY_RING) drop_oldest(ring);
+  const int64_t row = row_of(ring, ring.count);
+  ring.time[row] = time;
+  memcpy(ring.values[row], sample, sizeof ring.values[row]);
+  ring.count++;
+  ring.newest = time;
+  return outcome;
+}
+
+int sway_read_samples(sway_ring *kept, double time, double dt, double *sample) {
+  sway_ring &ring = *kept;
+  while (ring.count > 2 && ring.time[row_of(ring, 1)] < time - 0.5 * dt) drop_oldest(ring);
+  int64_t within = 0, before = -1, after = -1;
+  for (int j = 0; j < 9; j++) sample[j] = 0.0;
+  for (int64_t k = 0; k < ring.count; k++) {
+    const int64_t row = row_of(ring, k);
+    const double stamp = ring.time[row];
+    if (stamp > time && after < 0) after = row;
+    if (stamp > time + 0.5 * dt) break;
+    if (stamp > time - 0.5 * dt) {
+      within++;
+      for (int j = 0; j < 9; j++) sample[j] += ring.values[row][j];
+    }
+    if (stamp <= time) before = row;
+  }
+  if (within > 1) {
+    for (int j = 0; j < 9; j++) sample[j] /= static_cast<double>(within);
+    return 1;
+  }
+  if (before < 0) return 0;
+  const double *from = ring.values[before];
+  if (time - ring.time[before] < SAME_TIME * dt) {
+    for (int j = 0; j < 9; j++) sample[j] = from[j];
+    return 1;
+  }
+  if (after < 0) return 0;
+  const double apart = ring.time[after] - ring.time[before];
+  if (apart > fmax(LONGEST_GAP, SILENT_PERIODS * ring.period)) return 0;
+  const double share = (time - ring.time[before]) / apart;
+  for (int j = 0; j < 9; j++) sample[j] = from[j] + share * (ring.values[after][j] - from[j]);
+  return 1;
+}
+}
