@@ -29,6 +29,7 @@ public partial class TreeInGodot : MultiMeshInstance3D
 
     public override void _Process(double delta)
     {
+        if (tree == null) return;
         var air = GlobalTransform.Basis.Inverse() * Wind;
         tree.Step(air.X, -air.Z, air.Y, delta);
         var p = tree.Poses;

@@ -37,6 +37,7 @@ public class TreeInUnity : MonoBehaviour
 
     void Update()
     {
+        if (tree == null) return;
         var air = transform.InverseTransformDirection(wind);
         tree.Step(air.x, air.z, air.y, Time.deltaTime);
         var p = tree.Poses;

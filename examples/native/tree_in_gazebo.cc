@@ -51,7 +51,7 @@ class TreeInGazebo : public System, public ISystemConfigure, public ISystemPreUp
   // Steps of the world are shorter than those that a picture needs.
   void PreUpdate(const UpdateInfo &info, EntityComponentManager &ecm) override {
     if (!info.paused) since_ += std::chrono::duration<double>(info.dt).count();
-    if (since_ < 1.0 / 60.0) return;
+    if (since_ < 0.015) return;
     gz::math::Vector3d wind;
     const auto *velocity =
         ecm.Component<components::WorldLinearVelocity>(ecm.EntityByComponents(components::Wind()));
