@@ -77,7 +77,7 @@ TARGETS = {
 OPTIONS = '-std=c++17 -O3 -fvisibility=hidden -fno-exceptions -fno-rtti -ffp-contract=fast'
 OPTIONS += ' -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi'
 COMPILER = 'install a C++ compiler (Debian, Ubuntu: sudo apt install g++), or pip install ziglang'
-#: Wheels that ziglang compiles on any machine, by the tag of their platform: its name of the target.
+#: Wheels that ziglang compiles on any machine: tag of the platform, and its name of the target.
 WHEELS = {
     'manylinux_2_17_x86_64': 'x86_64-linux-gnu.2.17',
     'manylinux_2_17_aarch64': 'aarch64-linux-gnu.2.17',
@@ -157,8 +157,9 @@ def compiler_words():
     return [sys.executable, '-m', 'ziglang', 'c++', *zig] if find_spec('ziglang') else []
 
 
-#: pip brings it for the build, where it builds apart from what is installed.
-NEEDED = [] if compiler_words() or 'setuptools.build_meta' not in sys.modules else ['ziglang>=0.13']
+#: What pip asks for before it builds apart from what is installed.
+IS_ASKED = 'setuptools.build_meta' in sys.modules and 'egg_info' in sys.argv
+NEEDED = ['ziglang>=0.13'] if IS_ASKED and not compiler_words() else []
 
 
 commands = {'build_ext': BuildNative}

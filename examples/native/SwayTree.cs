@@ -42,7 +42,8 @@ public sealed class SwayTree : IDisposable
         var n = (int)sizes.Segments;
         Poses = new double[7 * n];
         sway_place(stand, UIntPtr.Zero, Rows, (UIntPtr)1, Poses);
-        double[] start = Numbers(file, "tree_start", 3 * n), end = Numbers(file, "tree_end", 3 * n);
+        var start = Numbers(file, "tree_start", 3 * n);
+        var end = Numbers(file, "tree_end", 3 * n);
         Lengths = new double[n];
         for (int i = 0; i < n; i++)
         {

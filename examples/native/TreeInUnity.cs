@@ -22,7 +22,8 @@ public class TreeInUnity : MonoBehaviour
 
     void Start()
     {
-        tree = new SwayTree(File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, file)));
+        var path = Path.Combine(Application.streamingAssetsPath, file);
+        tree = new SwayTree(File.ReadAllBytes(path));
         wood = new Transform[tree.Lengths.Length];
         for (int i = 0; i < wood.Length; i++)
         {

@@ -40,7 +40,8 @@ class Tree {
     poses.resize(7 * sizes.segments);
     place();
     const double *start = array(bytes, "tree_start"), *end = array(bytes, "tree_end");
-    const double *base = array(bytes, "tree_base_diameter"), *tip = array(bytes, "tree_tip_diameter");
+    const double *base = array(bytes, "tree_base_diameter");
+    const double *tip = array(bytes, "tree_tip_diameter");
     for (int64_t i = 0; i < sizes.segments; i++) {
       const double x = end[3 * i] - start[3 * i], y = end[3 * i + 1] - start[3 * i + 1];
       const double z = end[3 * i + 2] - start[3 * i + 2];

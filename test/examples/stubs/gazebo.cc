@@ -31,7 +31,8 @@ struct Quaterniond {
             w * q.y - x * q.z + y * q.w + z * q.x, w * q.z + x * q.y - y * q.x + z * q.w};
   }
   Vector3d RotateVector(const Vector3d &v) const {
-    const Quaterniond turned = *this * Quaterniond{0.0, v.x, v.y, v.z} * Quaterniond{w, -x, -y, -z};
+    const Quaterniond back{w, -x, -y, -z};
+    const Quaterniond turned = *this * Quaterniond{0.0, v.x, v.y, v.z} * back;
     return {turned.x, turned.y, turned.z};
   }
   Vector3d RotateVectorReverse(const Vector3d &v) const {

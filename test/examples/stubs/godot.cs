@@ -86,7 +86,8 @@ static class Program
     {
         CultureInfo.CurrentCulture = CultureInfo.InvariantCulture;
         Print(new Basis(TreeInGodot.Rotation(0.1, 0.7, -0.5, 0.5)) * TreeInGodot.Point(1, 2, 3));
-        var tree = new TreeInGodot { File = arguments[0] + "/tree.sway", Wind = new Vector3(8, 0, -1) };
+        var tree = new TreeInGodot { File = arguments[0] + "/tree.sway" };
+        tree.Wind = new Vector3(8, 0, -1);
         tree._Ready();
         for (int frame = 0; frame < 64; frame++) tree._Process(1.0 / 64);
         foreach (var wood in tree.Multimesh.Placed)
