@@ -8,11 +8,11 @@ from pathlib import Path
 import platform
 import re
 import shutil
+import subprocess
 import sys
 
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
-from setuptools.errors import CompileError, LinkError
 
 try:
     from setuptools.command.bdist_wheel import bdist_wheel
@@ -80,6 +80,19 @@ TARGETS = {
 OPTIONS = '-std=c++17 -O3 -fvisibility=hidden -fno-exceptions -fno-rtti -ffp-contract=fast'
 OPTIONS += ' -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi'
 COMPILER = 'install a C++ compiler (Debian, Ubuntu: sudo apt install g++), or pip install ziglang'
+#: Wheels that ziglang compiles on any machine: tag of the platform, and its name of the target.
+WHEELS = {
+    'manylinux_2_17_x86_64': 'x86_64-linux-gnu.2.17',
+    'manylinux_2_17_aarch64': 'aarch64-linux-gnu.2.17',
+    'macosx_10_13_x86_64': 'x86_64-macos.10.13',
+    'macosx_11_0_arm64': 'aarch64-macos.11.0',
+    'win_amd64': 'x86_64-windows-gnu',
+}
+#: One of them, or this machine.
+WHEEL = os.environ.get('TREE_SWAY_WHEEL', '')
+SYSTEM = WHEEL or sys.platform
+IS_WINDOWS = SYSTEM.startswith('win')
+MACHINE = 'x86_64' if re.search('x86_64|amd64', WHEEL or platform.machine().lower()) else 'other'
 
 
 class BuildNative(build_ext):
@@ -87,61 +100,69 @@ class BuildNative(build_ext):
 
     def get_ext_filename(self, fullname):
         """Return a name without the version of Python, which the core does not know."""
-        return fullname.replace('.', '/') + ('.dll' if sys.platform == 'win32' else '.so')
+        return fullname.replace('.', '/') + ('.dll' if IS_WINDOWS else '.so')
 
     def build_extension(self, ext):
         """Compile each source, that of a frame for each target, and link them."""
-        compiler = self.compiler
-        choose_compiler(compiler)
-        options = [*OPTIONS.split(), *([] if sys.platform == 'win32' else ['-fPIC'])]
+        compiler = compiler_words()
+        if not compiler:
+            raise SystemExit(f'the native core is not built, as there is no compiler; {COMPILER}')
+        is_zig = 'ziglang' in compiler
         # Such as -fsanitize=address,undefined, which .ci/run tests the core with.
         more = os.environ.get('TREE_SWAY_CXXFLAGS', '').split()
-        options += more
+        options = [*OPTIONS.split(), *([] if IS_WINDOWS else ['-fPIC']), *more]
         folder = Path(self.build_temp, 'native')
-        try:
-            sources = [str(ROOT / 'native' / f'{name}.cpp') for name in SOURCES]
-            objects = compiler.compile(sources, str(folder), extra_postargs=options)
-            for name, own in targets().items():
-                objects += compiler.compile(
-                    [str(ROOT / 'native' / 'frame.cpp')],
-                    str(folder / name),
-                    macros=[('SWAY_FRAME', f'frame_{name}'), ('SWAY_TARGET', f'"{name}"')],
-                    extra_postargs=[*options, *own],
-                )
-            target = self.get_ext_fullpath(ext.name)
-            Path(target).parent.mkdir(parents=True, exist_ok=True)
-            libraries = [] if sys.platform == 'win32' else ['m']
-            compiler.link_shared_object(
-                objects, target, libraries=libraries, target_lang='c', extra_postargs=more
-            )
-        except (CompileError, LinkError) as error:
-            raise SystemExit(f'the native core is not built ({error}); {COMPILER}') from None
+        folder.mkdir(parents=True, exist_ok=True)
+        objects = []
+
+        def compiled(name, source, *own):
+            path = ROOT / 'native' / f'{source}.cpp'
+            objects.append(str(folder / f'{name}.o'))
+            run([*compiler, *options, *own, '-c', str(path), '-o', objects[-1]])
+
+        for name in SOURCES:
+            compiled(name, name)
+        for name, own in TARGETS.get(MACHINE, {'baseline': []}).items():
+            if is_zig:
+                own = [each.replace('x86-64-v', 'x86_64_v') for each in own]
+            names = [f'-DSWAY_FRAME=frame_{name}', f'-DSWAY_TARGET="{name}"']
+            compiled(f'frame_{name}', 'frame', *names, *own)
+        # Nothing of the run-time library of C++ is needed.
+        linker = ['cc' if word == 'c++' else word for word in compiler] if is_zig else compiler
+        linked = folder / Path(self.get_ext_filename(ext.name)).name
+        own = ['-shared', '-s'] if is_zig else ['-shared']
+        own += [] if IS_WINDOWS else ['-lm']
+        own += ['-Wl,--as-needed'] if 'linux' in SYSTEM else []
+        run([*linker, *own, *objects, *more, '-o', str(linked)])
+        target = Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.unlink(missing_ok=True)  # a process that has it open keeps it
+        shutil.copy(linked, target)
 
 
-def targets():
-    """Return the options of each target of this machine; the baseline alone on other machines."""
-    return TARGETS.get(platform.machine().lower().replace('amd64', 'x86_64'), {'baseline': []})
+def run(words):
+    """Run a compiler, or end with the cure."""
+    if subprocess.run(words, check=False).returncode:
+        raise SystemExit(f'the native core is not built: {words[0]} failed; {COMPILER}')
 
 
-def choose_compiler(compiler):
-    """Compile by the system's C++ compiler, or by that of the package ziglang if there is none."""
+def compiler_words():
+    """Return the system's C++ compiler, or that of the package ziglang if there is none."""
     named = os.environ.get('CXX', '').split()
-    found = next(filter(shutil.which, ('c++', 'g++', 'clang++')), None)
-    linker = []
-    if not named and found:
-        named = [found]
-    elif not named and find_spec('ziglang'):
-        named = [sys.executable, '-m', 'ziglang', 'c++']
-        linker = [*named[:-1], 'cc']
-    if not named or (sys.platform == 'win32' and not linker):
-        return
-    options = ['-dynamiclib'] if sys.platform == 'darwin' else ['-shared']
-    if sys.platform == 'linux':
-        options.append('-Wl,--as-needed')  # nothing of the run-time library of C++ is needed
-    chosen = {'compiler_so': named, 'compiler_so_cxx': named}
-    chosen['linker_so'] = [*(linker or named), *options]
-    known = compiler.executables  # compiler_so_cxx is new in setuptools 73
-    compiler.set_executables(**{name: chosen[name] for name in chosen if name in known})
+    # That of Visual Studio has no vectors, and GCC does not align them on Windows.
+    usual = ('clang++',) if IS_WINDOWS else ('c++', 'g++', 'clang++')
+    if WHEEL:
+        zig = ['-target', WHEELS[WHEEL]]
+    elif named or any(map(shutil.which, usual)):
+        return named or [next(filter(shutil.which, usual))]
+    else:
+        zig = ['-mcpu=baseline']
+    return [sys.executable, '-m', 'ziglang', 'c++', *zig] if find_spec('ziglang') else []
+
+
+#: What pip asks for before it builds apart from what is installed.
+IS_ASKED = 'setuptools.build_meta' in sys.modules and 'egg_info' in sys.argv
+NEEDED = ['ziglang>=0.13'] if IS_ASKED and not compiler_words() else []
 
 
 commands = {'build_ext': BuildNative}
@@ -152,7 +173,7 @@ if bdist_wheel is not None:
 
         def get_tag(self):
             """Return the tag of a wheel whose library knows nothing of Python."""
-            return 'py3', 'none', super().get_tag()[2]
+            return 'py3', 'none', WHEEL or super().get_tag()[2]
 
     commands['bdist_wheel'] = AnyPython
 
@@ -250,6 +271,7 @@ setup(
         NUMBA,
     ],
     extras_require=extras,
+    setup_requires=NEEDED,
     ext_modules=[Extension(NATIVE, [])],
     cmdclass=commands,
     zip_safe=False,

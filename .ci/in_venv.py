@@ -210,8 +210,9 @@ def make_ready(environment, extras):
     if 'ros' in there | extras and not ('ros' in there and made_from[:3] == wanted()):
         # By their hashes: they are built by one person (doc/licences.md).
         pip(environment, '--require-hashes', '--no-deps', '-r', str(HASHES))
-    if not any(map(shutil.which, ('c++', 'g++', 'clang++'))):
-        pip(environment, 'ziglang>=0.13')  # compiles the native core
+    if not any(map(shutil.which, ('c++', 'g++', 'clang++', os.environ.get('CXX', 'c++')))):
+        say('no C++ compiler here, so taking ziglang, 0.5 GB; smaller: sudo apt install g++')
+        pip(environment, 'ziglang>=0.13')
     target = f'{ROOT}[{",".join(sorted((there | extras) - {"lab"}))}]'
     pip(environment, '-c', str(CONSTRAINTS), '--no-build-isolation', '-e', target)
     if 'lab' in there | extras:  # a project of its own, with what its truths need
@@ -306,6 +307,9 @@ def failure(words, log):
         return 'no network: the package index cannot be reached', cure
     if 'No space left' in words:
         return 'the disk is full', f'make about 1 GB of room at {VENV}'
+    native = re.search('(the native core is not built.*?); (.*)', words)
+    if native:
+        return native.groups()
     errors = [line for line in words.splitlines() if line.startswith('ERROR')]
     return (errors or ['pip failed'])[0], f"pip's own words are in {log}"
 

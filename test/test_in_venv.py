@@ -171,6 +171,7 @@ def test_a_shell_without_ros_is_left_alone(
         ('ERROR: ... [Errno 28] No space left on device', 'the disk is full'),
         ('so it goes\nERROR: No matching distribution for x\nERROR: more', 'ERROR: No matching'),
         ('killed', 'pip failed'),
+        ('  the native core is not built: no; get one\nERROR: x', 'core is not built'),
     ],
 )
 def test_why_pip_failed(script: ModuleType, words: str, expected: str) -> None:

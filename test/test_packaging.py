@@ -7,6 +7,7 @@ from __future__ import annotations
 import ast
 import asyncio
 from importlib.metadata import metadata, PackageNotFoundError
+import importlib.util
 import os
 from pathlib import Path
 import re
@@ -23,6 +24,7 @@ import venv
 from xml.etree import ElementTree
 import zipfile
 
+import numpy as np
 import pytest
 import yaml
 
@@ -306,6 +308,92 @@ def test_a_release_is_tested_before_it_is_published_without_a_token() -> None:
     assert systems == {'ubuntu', 'macos', 'windows'}
     assert 'secrets.' not in text
     assert 'password' not in text
+    setup = (ROOT / 'setup.py').read_text(encoding='utf-8')
+    wheels = re.findall(r"'(\w+)': '\w+-(?:linux|macos|windows)", setup)
+    assert len(wheels) == 5
+    assert f'for wheel in {" ".join(wheels)}; do' in text
+
+
+BUILD_NEEDS = """
+from setuptools import build_meta
+print(build_meta.get_requires_for_build_wheel())
+"""
+
+
+def test_without_a_compiler_one_is_brought_or_named(tmp_path: Path) -> None:
+    """Where pip builds apart from what is installed it brings one; elsewhere one line names it."""
+    if importlib.util.find_spec('ziglang'):
+        pytest.skip('ziglang is installed here')
+    source = copy_of_source(tmp_path)
+    environment = {**os.environ, 'PATH': str(tmp_path / 'nothing')}
+    environment.pop('CXX', None)
+    for path, needed in ((environment['PATH'], True), (os.environ['PATH'], False)):
+        done = subprocess.run(
+            [sys.executable, '-c', BUILD_NEEDS], cwd=source, env={**environment, 'PATH': path},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        assert ('ziglang' in done.stdout) is (needed or not shutil.which('c++'))
+    done = subprocess.run(
+        [sys.executable, 'setup.py', '-q', 'build_ext'], cwd=source, env=environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode != 0
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith('the native core is not built')
+    assert 'apt install g++' in last
+    assert 'pip install ziglang' in last
+
+
+STEPPED = """
+import sys
+import numpy as np
+import tree_sway
+from tree_sway.core.native.library import FILE
+
+simulator = tree_sway.make_simulator(tree_sway.open_tree('goldcrest'), model=12)
+for _ in range(120):
+    simulator.step((6.0, 2.0, 0.0), 1.0 / 60.0)
+np.save(sys.argv[1], simulator.place())
+print(FILE)
+"""
+
+
+@pytest.mark.long
+def test_wheels_that_ziglang_compiles_step_as_here(tmp_path: Path) -> None:
+    """One without a system's compiler for this machine, and one for another."""
+    source = copy_of_source(tmp_path)
+    venv.create(tmp_path / 'venv', with_pip=True)
+    environment = {**os.environ, 'PATH': str(tmp_path / 'nothing')}
+    environment.pop('CXX', None)
+    pip = [str(tmp_path / 'venv/bin/pip'), 'wheel', '-q', '--no-deps', str(source)]
+    for wheel in ('', 'manylinux_2_17_aarch64'):
+        got = subprocess.run(
+            [*pip, '-w', str(tmp_path / 'wheels')], env={**environment, 'TREE_SWAY_WHEEL': wheel},
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert got.returncode == 0, got.stderr
+        shutil.rmtree(source / 'build')
+    (other,) = (tmp_path / 'wheels').glob('*-py3-none-manylinux_2_17_aarch64.whl')
+    with zipfile.ZipFile(other) as archive:
+        library = archive.read('tree_sway/core/native/_sway.so')
+        assert library[:4] == b'\x7fELF'
+        assert library[18] == 183  # aarch64
+        for name in archive.namelist():
+            if name.endswith('/WHEEL'):
+                assert b'Root-Is-Purelib: false' in archive.read(name)
+    (own,) = set((tmp_path / 'wheels').glob('*.whl')) - {other}
+    poses = []
+    for folder in (tmp_path / 'installed', ROOT):
+        if folder != ROOT:
+            zipfile.ZipFile(own).extractall(folder)
+        done = subprocess.run(
+            [sys.executable, '-c', STEPPED, str(tmp_path / 'poses.npy')], cwd=tmp_path,
+            env={**os.environ, 'PYTHONPATH': str(folder), 'TREE_SWAY_CACHE': str(tmp_path / 'c')},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        assert done.stdout.startswith(str(folder))
+        poses.append(np.load(tmp_path / 'poses.npy'))
+    np.testing.assert_allclose(poses[0], poses[1], atol=1e-7)
 
 
 def test_pixi_has_what_setup_asks_for(setup_words: dict[str, Any]) -> None:
