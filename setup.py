@@ -8,9 +8,11 @@ from pathlib import Path
 import platform
 import re
 import shutil
+import subprocess
 import sys
+from tempfile import TemporaryDirectory
 
-from setuptools import Extension, find_packages, setup
+from setuptools import Command, Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError, LinkError
 
@@ -141,7 +143,56 @@ def choose_compiler(compiler):
     compiler.set_executables(**{name: chosen[name] for name in chosen if name in known})
 
 
-commands = {'build_ext': BuildNative}
+#: The compiler of the page's core: another version makes other bytes.
+ZIG = '0.17.1'
+WASM = 'tree_sway/page/static/sway.wasm'
+#: What the page calls.
+EXPORTS = (
+    'calloc', 'free', 'sway_model_open', 'sway_model_close', 'sway_stand_open',
+    'sway_stand_close', 'sway_state', 'sway_set_step', 'sway_step', 'sway_past_winds',
+    'page_placer_open', 'page_placer_close', 'page_place', 'page_steps',
+)  # fmt: skip
+
+
+class BuildWasm(Command):
+    """Compile the native core for the page: WebAssembly without a run-time library."""
+
+    description = f'compile {WASM} by ziglang=={ZIG}'
+    user_options = [('output=', 'o', f'file that is written [{WASM}]')]
+
+    def initialize_options(self):
+        """Write the file of the page."""
+        self.output = str(ROOT / WASM)
+
+    def finalize_options(self):
+        """Need nothing more."""
+
+    def run(self):
+        """Compile each source, small but for the frame, and link them."""
+        zig = [sys.executable, '-m', 'ziglang']
+        try:
+            found = subprocess.check_output([*zig, 'version'], text=True).strip()
+        except subprocess.CalledProcessError:
+            found = 'none'
+        if found != ZIG.partition('.post')[0]:
+            raise SystemExit(f'ziglang is {found}: pip install ziglang=={ZIG}')
+        # The headers are those of WASI; its library stays out.
+        options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128']
+        frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize', '-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
+        with TemporaryDirectory() as folder:
+            objects = []
+            for name in (*SOURCES, 'page', 'frame'):
+                own = frame if name == 'frame' else ['-Oz']
+                objects.append(f'{folder}/{name}.o')
+                source = f'native/{name}.cpp'
+                command = [*zig, 'c++', *options, *own, '-c', source, '-o', objects[-1]]
+                subprocess.run(command, cwd=ROOT, check=True)
+            linked = ['--no-entry', '--allow-undefined', '--stack-first', '-z', 'stack-size=65536']
+            linked += ['-s', *(f'--export={name}' for name in EXPORTS), '-o', self.output]
+            subprocess.run([*zig, 'wasm-ld', *linked, *objects], check=True)
+
+
+commands = {'build_ext': BuildNative, 'build_wasm': BuildWasm}
 if bdist_wheel is not None:
 
     class AnyPython(bdist_wheel):

@@ -13,7 +13,7 @@ const read = (name) => {
 const stand = new Stand(decodeTables(read("tables.bin")), decodeDescription(read("description.bin")));
 const winds = new Float64Array(read("winds.bin"));
 const expected = new Float64Array(read("expected.bin"));
-const size = stand.trees.reduce((sum, { state }) => sum + state.eta.length, 0);
+const size = stand.trees.reduce((sum, { table }) => sum + table.m, 0);
 const every = winds.length / 3 / (expected.length / size);
 let [wrong, greatest, outside, at] = [0, 0, 0, 0];
 const begin = performance.now();
@@ -21,8 +21,8 @@ for (let step = 0; step < winds.length / 3; step++) {
   stand.step(winds[3 * step], winds[3 * step + 1], winds[3 * step + 2]);
   outside += stand.outside;
   if ((step + 1) % every) continue;
-  for (const { state } of stand.trees) {
-    for (const value of state.eta) {
+  for (const [number, { table }] of stand.trees.entries()) {
+    for (const value of stand.rows(number).eta.subarray(0, table.m)) {
       wrong = Math.max(wrong, Math.abs(value - expected[at]));
       greatest = Math.max(greatest, Math.abs(expected[at++]));
     }
