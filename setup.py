@@ -154,15 +154,20 @@ EXPORTS = (
 )  # fmt: skip
 
 
+#: What it calls of the browser's Math.
+MATH = ('atan2', 'cos', 'exp', 'expm1', 'log', 'pow', 'sin')
+
+
 class BuildWasm(Command):
     """Compile the native core for the page: WebAssembly without a run-time library."""
 
     description = f'compile {WASM} by ziglang=={ZIG}'
-    user_options = [('output=', 'o', f'file that is written [{WASM}]')]
+    user_options = [('check', None, 'compare with the file that is there, and write nothing')]
+    boolean_options = ['check']
 
     def initialize_options(self):
-        """Write the file of the page."""
-        self.output = str(ROOT / WASM)
+        """Write the file."""
+        self.check = False
 
     def finalize_options(self):
         """Need nothing more."""
@@ -174,7 +179,7 @@ class BuildWasm(Command):
             found = subprocess.check_output([*zig, 'version'], text=True).strip()
         except subprocess.CalledProcessError:
             found = 'none'
-        if found != ZIG.partition('.post')[0]:
+        if found != ZIG:
             raise SystemExit(f'ziglang is {found}: pip install ziglang=={ZIG}')
         # The headers are those of WASI; its library stays out.
         options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128']
@@ -187,9 +192,16 @@ class BuildWasm(Command):
                 source = f'native/{name}.cpp'
                 command = [*zig, 'c++', *options, *own, '-c', source, '-o', objects[-1]]
                 subprocess.run(command, cwd=ROOT, check=True)
-            linked = ['--no-entry', '--allow-undefined', '--stack-first', '-z', 'stack-size=65536']
-            linked += ['-s', *(f'--export={name}' for name in EXPORTS), '-o', self.output]
+            Path(folder, 'math').write_text('\n'.join(MATH), encoding='utf-8')
+            linked = ['--no-entry', f'--allow-undefined-file={folder}/math', '--stack-first', '-s']
+            linked += [f'--export={name}' for name in EXPORTS]
+            linked += ['-z', 'stack-size=65536', '-o', f'{folder}/wasm']
             subprocess.run([*zig, 'wasm-ld', *linked, *objects], check=True)
+            made = Path(folder, 'wasm').read_bytes()
+        if not self.check:
+            (ROOT / WASM).write_bytes(made)
+        elif made != (ROOT / WASM).read_bytes():
+            raise SystemExit(f'{WASM} is of other sources: python setup.py build_wasm')
 
 
 commands = {'build_ext': BuildNative, 'build_wasm': BuildWasm}
@@ -221,6 +233,8 @@ NUMBA = (
 extras = {
     # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
+    # The compiler of the page's core (python setup.py build_wasm).
+    'wasm': [f'ziglang=={ZIG}'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
     # The real rclpy and Fast DDS as wheels; `pip -c .ci/constraints-ros-jazzy.txt` pins the rest.

@@ -230,7 +230,6 @@ class Reader {
     if (b < 1 || b > n) return refuse("branch_parent", "no tree");
     if (a.branch_first[0] != 0 || a.branch_first[b] != n)
       return refuse("branch_first", "no rise from 0 to the number of segments");
-    int64_t key = 0;
     for (int64_t i = 0; i < b; i++) {
       const int64_t parent = a.branch_parent[i], seat = a.branch_base_segment[i];
       if (a.branch_first[i + 1] <= a.branch_first[i] || a.branch_first[i + 1] > n)
@@ -241,7 +240,6 @@ class Reader {
         return refuse("branch_base_segment", "no segment of the parent");
       if (a.branch_coordinate[i] < 0 || a.branch_coordinate[i] > N - a.branch_keys[i])
         return refuse("branch_coordinate", "a key rotation that does not exist");
-      key += a.branch_keys[i];
     }
     if (a.size[-SIZE_delays] > DELAYS) return refuse("limb_share", "more delays than there are");
     if (a.limb_delay)

@@ -27,7 +27,7 @@ export function owned(owner, made, free) {
   return made;
 }
 
-/** Numbers in the memory of the core, at first 0. @template {Float32Array | Float64Array | BigInt64Array | Uint8Array} T */
+/** Numbers in the memory of the core, at first 0. @template {Float32Array | Float64Array | BigInt64Array | Uint32Array | Uint8Array} T */
 export class Block {
   /** @param {{new (buffer: ArrayBuffer, at: number, count: number): T, BYTES_PER_ELEMENT: number}} type
    * @param {number} count @param {number} [at] address; memory of its own if left out */

@@ -44,7 +44,9 @@ export class Table {
   constructor(numbers, parts) {
     const size = checkTable(numbers, parts);
     /** Number of coordinates that are solved, of those that are streamed, and of key rotations. */
-    [this.m, this.n, this.nKeys] = [size.m, size.n, size.keys];
+    this.m = size.m;
+    this.n = size.n;
+    this.nKeys = size.keys;
     this.mostPressure = /** @type {number} */ (numbers.most_pressure);
     /** @type {Record<string, any>} */
     this.arrays = Object.fromEntries(Object.entries(parts).map(([name, { values }]) => [name, values]));
@@ -117,7 +119,8 @@ class Gusts {
     /** Mean wind of the last step at each place [m/s]. */
     this.felt = new Block(Float64Array, 3 * count);
     this._history = new Block(Float64Array, 2 + 4 * KEPT);
-    [this._wanted, this._delay] = [0, 0].map(() => new Block(Float64Array, count));
+    this._wanted = new Block(Float64Array, count);
+    this._delay = new Block(Float64Array, count);
     this._wind = new Block(Float64Array, 3);
     /** Mean wind [m/s], and the time over which it is taken [s]. */
     this._mean = [0, 0, 0];
@@ -163,7 +166,7 @@ export class Stand {
     need(tables.kinds.length === kinds.length, "kinds");
     tables.kinds.forEach(({ n, nKeys, arrays }, k) => {
       const { nCoordinates, nKeys: keys, arrays: { branch_keys: each } } = kinds[k];
-      const most = each.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.max(a, b), 0);
+      const most = Array.from(each).reduce((a, b) => Math.max(a, b), 0);
       need(n === nCoordinates, "state");
       need(nKeys === keys && arrays.branch_compliance.length >= keys * most, "branch_compliance");
     });
@@ -186,11 +189,18 @@ export class Stand {
       return { table, ownDt, firstCoordinate };
     });
     this._counts = new Block(BigInt64Array, 2);
-    this._open(tables);
+    this._core = this._opened(tables);
+    const [stride, width] = [0, 0].map(() => new Block(Uint32Array, 1));
+    const first = core.sway_state(this._core, stride.at, width.at);
+    /** Numbers of a tree, and of each of its rows. */
+    this._stride = stride.values[0];
+    this._width = width.values[0];
+    this._states = new Block(Float64Array, this._stride * trees.length, first);
+    for (const each of [stride, width]) each.free();
   }
 
   /** Make the stand of the core, at rest. @param {Tables} tables */
-  _open({ kinds, speeds }) {
+  _opened({ kinds, speeds }) {
     const { trees } = this.description;
     const [models, given] = [new Block(Uint8Array, 4 * kinds.length), new Block(Uint8Array, TREE * trees.length)];
     const [handles, view] = [models, given].map(({ at, values }) => new DataView(values.buffer, at));
@@ -199,14 +209,11 @@ export class Stand {
       view.setBigInt64(TREE * i, BigInt(kind), true);
       [...place, speeds[i]].forEach((each, k) => view.setFloat64(TREE * i + 8 + 8 * k, each, true));
     });
-    this._stand = made(this, "sway_stand_close", (error, room) =>
+    const found = made(this, "sway_stand_close", (error, room) =>
       core.sway_stand_open(models.at, kinds.length, given.at, trees.length, 1, error, room));
-    core.sway_set_step(this._stand, this.dt);
-    const first = core.sway_state(this._stand, models.at, given.at);
-    const [stride, width] = [models, given].map(({ at }) => new DataView(core.memory.buffer).getUint32(at, true));
-    [this._stride, this._width] = [stride, width];
-    this._states = new Block(Float64Array, stride * trees.length, first);
+    core.sway_set_step(found, this.dt);
     for (const each of [models, given]) each.free();
+    return found;
   }
 
   /** Rows of the state of a tree, and the numbers behind them, until more memory is taken. @param {number} tree */
@@ -221,7 +228,7 @@ export class Stand {
   step(x, y, z) {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
     this.gusts.push(x, y, z);
-    core.sway_step(this._stand, 0, 0, this.trees.length, this.gusts.felt.at, this._counts.at);
+    core.sway_step(this._core, 0, 0, this.trees.length, this.gusts.felt.at, this._counts.at);
     this.outside = Number(this._counts.values[0]);
     this._steps++;
     for (const [number, touch] of this._touches) {
