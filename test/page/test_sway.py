@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The solver in JavaScript against the one in Python, on the tables that both are given."""
+"""The solver of the page against the one in Python, on the tables that both are given."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tree_sway.stream.tables import tables_of  # noqa: E402
 
 HERE = Path(__file__).parent
 ROUNDING = 1e-6
-"""The native core adds products of single precision up in that precision, JavaScript does not."""
+"""Lanes of another number add up products of single precision in another order."""
 SCAN = HERE.parent / 'files' / 'data'
 DT, STEPS, EVERY = 1.0 / 60.0, 1200, 50
 
