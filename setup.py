@@ -10,8 +10,9 @@ import re
 import shutil
 import subprocess
 import sys
+from tempfile import TemporaryDirectory
 
-from setuptools import Extension, find_packages, setup
+from setuptools import Command, Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
 try:
@@ -165,7 +166,68 @@ IS_ASKED = 'setuptools.build_meta' in sys.modules and 'egg_info' in sys.argv
 NEEDED = ['ziglang>=0.13'] if IS_ASKED and not compiler_words() else []
 
 
-commands = {'build_ext': BuildNative}
+#: The compiler of the page's core: another version makes other bytes.
+ZIG = '0.17.1'
+WASM = 'tree_sway/page/static/sway.wasm'
+#: What the page calls.
+EXPORTS = (
+    'calloc', 'free', 'sway_model_open', 'sway_model_close', 'sway_stand_open',
+    'sway_stand_close', 'sway_state', 'sway_set_step', 'sway_step', 'sway_past_winds',
+    'page_placer_open', 'page_placer_close', 'page_place', 'page_steps',
+)  # fmt: skip
+
+
+#: What it calls of the browser's Math.
+MATH = ('atan2', 'cos', 'exp', 'expm1', 'log', 'pow', 'sin')
+
+
+class BuildWasm(Command):
+    """Compile the native core for the page: WebAssembly without a run-time library."""
+
+    description = f'compile {WASM} by ziglang=={ZIG}'
+    user_options = [('check', None, 'compare with the file that is there, and write nothing')]
+    boolean_options = ['check']
+
+    def initialize_options(self):
+        """Write the file."""
+        self.check = False
+
+    def finalize_options(self):
+        """Need nothing more."""
+
+    def run(self):
+        """Compile each source, small but for the frame, and link them."""
+        zig = [sys.executable, '-m', 'ziglang']
+        try:
+            found = subprocess.check_output([*zig, 'version'], text=True).strip()
+        except subprocess.CalledProcessError:
+            found = 'none'
+        if found != ZIG:
+            raise SystemExit(f'ziglang is {found}: pip install ziglang=={ZIG}')
+        # The headers are those of WASI; its library stays out.
+        options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128']
+        frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize', '-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
+        with TemporaryDirectory() as folder:
+            objects = []
+            for name in (*SOURCES, 'page', 'frame'):
+                own = frame if name == 'frame' else ['-Oz']
+                objects.append(f'{folder}/{name}.o')
+                source = f'native/{name}.cpp'
+                command = [*zig, 'c++', *options, *own, '-c', source, '-o', objects[-1]]
+                subprocess.run(command, cwd=ROOT, check=True)
+            Path(folder, 'math').write_text('\n'.join(MATH), encoding='utf-8')
+            linked = ['--no-entry', f'--allow-undefined-file={folder}/math', '--stack-first', '-s']
+            linked += [f'--export={name}' for name in EXPORTS]
+            linked += ['-z', 'stack-size=65536', '-o', f'{folder}/wasm']
+            subprocess.run([*zig, 'wasm-ld', *linked, *objects], check=True)
+            made = Path(folder, 'wasm').read_bytes()
+        if not self.check:
+            (ROOT / WASM).write_bytes(made)
+        elif made != (ROOT / WASM).read_bytes():
+            raise SystemExit(f'{WASM} is of other sources: python setup.py build_wasm')
+
+
+commands = {'build_ext': BuildNative, 'build_wasm': BuildWasm}
 if bdist_wheel is not None:
 
     class AnyPython(bdist_wheel):
@@ -194,6 +256,8 @@ NUMBA = (
 extras = {
     # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
+    # The compiler of the page's core (python setup.py build_wasm).
+    'wasm': [f'ziglang=={ZIG}'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
     # The real rclpy and Fast DDS as wheels; `pip -c .ci/constraints-ros-jazzy.txt` pins the rest.

@@ -63,6 +63,7 @@ NEEDS = {
     'coverage': ('test',),
     **dict.fromkeys(('ruff', 'mypy', 'codespell', 'pre-commit'), ('lint',)),
     'sphinx-build': ('docs',),
+    'python setup.py': ('wasm',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
 NEEDS_OF_FILES = {

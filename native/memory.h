@@ -17,13 +17,13 @@ class Memory {
   // `is_short` is set and nothing is returned.
   template <class T>
   __attribute__((always_inline))
-  T *take(size_t count) {
+  T *take(uint64_t count) {
     const size_t room = sizeof(Block) + LINE;
     if (is_short || count > (SIZE_MAX - room) / sizeof(T)) {
       is_short = true;
       return nullptr;
     }
-    const size_t size = count * sizeof(T);
+    const size_t size = static_cast<size_t>(count) * sizeof(T);
     Block *block = static_cast<Block *>(calloc(1, size + room));
     if (!block) {
       is_short = true;

@@ -64,6 +64,13 @@ constexpr int N_MEANINGS = sizeof(MEANINGS) / sizeof(*MEANINGS);
 // No tree has a number of this magnitude, in SI, nor single precision a greater one.
 constexpr double LARGEST = 1e38;
 
+// Coordinates of whole vectors, of doubles and of singles, on every target of the machine.
+#if defined(__wasm__)
+constexpr int64_t WHOLE = 4;
+#else
+constexpr int64_t WHOLE = 16;
+#endif
+
 // Numbers of coordinates and key rotations beyond which a file is none of a tree.
 constexpr int64_t MOST_COORDINATES = 1 << 16, MOST_SEGMENTS = 1 << 26;
 
@@ -302,7 +309,7 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.delays = has_limbs && a.limb_spread && a.crown_coherence ? a.size[-SIZE_delays] : 0;
   sizes.is_stepped = by_table;
   model.rows = a.size[-SIZE_k];
-  model.padded = (sizes.coordinates + 15) / 16 * 16;
+  model.padded = (sizes.coordinates + WHOLE - 1) / WHOLE * WHOLE;
   for (int axis = 0; axis < 3; axis++) {
     model.drag_law[axis] = a.drag_law ? a.drag_law[axis] : 0.0;
     model.root[axis] = a.tree_start ? a.tree_start[axis] : 0.0;

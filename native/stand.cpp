@@ -130,7 +130,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
       stand.has_crowns = true;
       stand.stride += CROWN + 1;  // an even number
     }
-  stand.states = stand.memory.take<double>(stand.n_trees * stand.stride);
+  stand.states = stand.memory.take<double>(static_cast<uint64_t>(stand.n_trees) * stand.stride);
   for (size_t i = 0; i < stand.n_rooms; i++)
     open_room(stand.memory, models, stand.n_models, stand.rooms[i]);
   for (size_t i = 0; i < stand.n_models; i++)

@@ -141,6 +141,7 @@ def test_a_table_of_wind_blows_and_another_file_is_refused(
         ('scene', lambda text: text[: len(text) // 2]),
         ('scene', lambda _: 'no base64!'),
         ('modules', lambda text: text[:-400]),
+        ('core', lambda text: text[:-400]),
     ],
 )
 def test_a_damaged_file_says_so(

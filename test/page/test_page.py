@@ -742,6 +742,19 @@ def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     visit(script)
 
 
+def test_without_webassembly_it_says_which_browser_to_take(live: Live, browser_class: Any) -> None:
+    async def whole() -> None:
+        async with browser_class() as browser:
+            lacking = 'WebAssembly.validate = () => false'
+            await browser.call('Page.addScriptToEvaluateOnNewDocument', source=lacking)
+            await browser.open(live.server.url)
+            await browser.until("document.getElementById('notice')?.hidden === false")
+            text = await browser.run("document.getElementById('notice').innerText")
+            assert 'no WebAssembly with SIMD' in text and 'Chrome 91' in text  # noqa: PT018
+
+    asyncio.run(whole())
+
+
 def test_without_webgl_it_says_why_and_what_to_do(live: Live, browser_class: Any) -> None:
     async def whole() -> None:
         async with browser_class() as browser:

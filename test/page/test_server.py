@@ -316,7 +316,9 @@ def test_health_and_headers(server: PageServer) -> None:
         async with viewer.session.get(f'{server.url}healthz') as answer:
             assert (await answer.json())['status'] == 'ok'
         async with viewer.session.get(server.url) as answer:
-            assert answer.headers['Content-Security-Policy'].startswith("default-src 'self'")
+            policy = answer.headers['Content-Security-Policy']
+            assert policy.startswith("default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; ")
+            assert policy.count('unsafe') == 1
             assert '<!doctype html>' in (await answer.text()).lower()
         async with viewer.session.get(f'{server.url}static/../server.py') as answer:
             assert answer.status == 404

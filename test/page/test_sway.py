@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The solver in JavaScript against the one in Python, on the tables that both are given."""
+"""The solver of the page against the one in Python, on the tables that both are given."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 import json
 from pathlib import Path
@@ -22,8 +21,6 @@ from tree_sway_lab.example_trees import leafy_sapling  # noqa: E402
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
-from tree_sway.core.oscillators.propagator import propagator  # noqa: E402
-from tree_sway.core.run.modal_coordinates import middle_of_step, Propagators  # noqa: E402
 from tree_sway.core.scene import shared_tables  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
@@ -38,7 +35,7 @@ from tree_sway.stream.tables import tables_of  # noqa: E402
 
 HERE = Path(__file__).parent
 ROUNDING = 1e-6
-"""The native core adds products of single precision up in that precision, JavaScript does not."""
+"""Lanes of another number add up products of single precision in another order."""
 SCAN = HERE.parent / 'files' / 'data'
 DT, STEPS, EVERY = 1.0 / 60.0, 1200, 50
 
@@ -155,27 +152,6 @@ def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
         assert (eta[20 - int(left_out) :] == 0.0).all()
     received.reset()
     assert (received.stand.states.left_out == 0.0).all()
-
-
-def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
-    javascript: Callable[..., Any],
-) -> None:
-    circular = 2.0 * np.pi * np.geomspace(0.2, 2000.0, 60)
-    stiffness, damping = circular**2, 0.2 * circular
-    whole, half = (propagator(1.0, damping, stiffness, span) for span in (DT, 0.5 * DT))
-    sway = (HERE.parents[1] / 'tree_sway' / 'page' / 'static' / 'sway.js').as_uri()
-    program = f"""
-      import {{ toMiddle }} from "{sway}";
-      const [stiffness, damping, time] = {json.dumps([[*stiffness], [*damping], 0.5 * DT])};
-      const found = toMiddle(Float64Array.from(stiffness), Float64Array.from(damping), time);
-      console.log(JSON.stringify([...found]));
-    """
-    found = np.array(javascript(program)).reshape(-1, 6).T
-    middle = middle_of_step(Propagators(damping, stiffness, whole, half), DT)
-    assert (middle[5] > 0.0).all()
-    size = np.abs(middle).max(axis=1, keepdims=True)
-    assert np.abs(found - middle).max() <= 1e-11 * size.max()
-    assert found[5] == pytest.approx(middle[5], rel=1e-9)
 
 
 def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:

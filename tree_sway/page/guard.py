@@ -37,7 +37,10 @@ STATIC = Path(str(resources.files('tree_sway.page'))) / 'static'
 """Folder of the page's files."""
 
 _HEADERS = {
-    'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
+    'Content-Security-Policy': (
+        "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' data:; "
+        "frame-ancestors 'none'"
+    ),
     'X-Content-Type-Options': 'nosniff',
     'Referrer-Policy': 'no-referrer',
     'Cache-Control': 'no-cache',

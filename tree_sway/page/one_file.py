@@ -30,6 +30,7 @@ _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)
 _LEAVES = 1000
 _BOOT = 'boot.js'
+_CORE = 'sway.wasm'
 _BITS = 14
 """Bits of the fraction of each number: errors of drawing are some hundredths of a millimetre."""
 
@@ -72,6 +73,7 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
         '<link rel="stylesheet" href="static/style.css" />': lambda: f'<style>\n{style}</style>',
         '<script type="module" src="static/app.js"></script>': lambda: (
             f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
+            f'    <script type="text/plain" id="core">{_packed((folder / _CORE).read_bytes())}</script>\n'
             f'    <script type="text/plain" id="scene">{packed}</script>'
         ),
         '</body>': lambda: (
@@ -116,10 +118,10 @@ def _modules(folder: Path) -> bytes:
     files = {}
     for path in sorted(folder.rglob('*.*')):
         name = path.relative_to(folder)
-        text = path.read_text(encoding='utf-8')
         if path.suffix in ('.json', '.glsl'):
-            files[name.as_posix()] = text
+            files[name.as_posix()] = path.read_text(encoding='utf-8')
         elif path.suffix == '.js' and path.name not in (_BOOT, 'film.js'):
+            text = path.read_text(encoding='utf-8')
             modules[f'tree-sway/{name.as_posix()}'] = _with_full_names(text, name.parent)
     return json.dumps({'modules': modules, 'files': files}).encode()
 

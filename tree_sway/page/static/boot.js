@@ -10,6 +10,7 @@
     return new Response(packed.stream().pipeThrough(new DecompressionStream("gzip")));
   };
   const { modules, files } = await unpacked("modules").json();
+  files["sway.wasm"] = await unpacked("core").arrayBuffer();
   Object.assign(window, { treeSwayFiles: files, treeSwayScene: () => unpacked("scene").arrayBuffer() });
   const imports = Object.entries(modules).map(([name, source]) =>
     [name, `data:text/javascript;charset=utf-8,${encodeURIComponent(source)}`]);
@@ -21,6 +22,6 @@
 })().catch((error) => {
   const notice = /** @type {HTMLElement} */ (document.getElementById("notice"));
   notice.hidden = false;
-  notice.textContent = `This file is damaged, or this browser is older than Chrome 89, Safari 16.4 and Firefox 113 `
+  notice.textContent = `This file is damaged, or this browser is older than Chrome 91, Safari 16.4 and Firefox 113 `
     + `(${error}). Get the file again from where it came, or take a newer browser.`;
 });

@@ -126,7 +126,7 @@ export class OwnLine {
     this._reported = now;
     const { trees, outside, dt } = this.stand;
     this.listeners.onMessage({ status: {
-      model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
+      model: trees[0].table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
       wind: this._source(),
       ...(this._wind instanceof Recorded && { record_time: this._wind.time }),
     } });

@@ -1,23 +1,18 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** From streamed coordinates to poses: coordinates -> key rotations -> bent branches -> segments, from the root on. The
- * law is the solver's own (doc/streaming.md, "From a frame to poses"). */
+/** From streamed coordinates to poses, by the native core: it is given the arrays of some branches of a kind as a model
+ * (doc/streaming.md, "From a frame to poses"). */
 
-import { addTurned, fromHalf, multiply } from "./quaternions.js";
-
-/** Work arrays: a place, half a rotation vector, the quaternions of a bend and of a segment. */
-const [at, half, turn, whole] = [3, 3, 4, 4].map((size) => new Float64Array(size));
-/** Squared angles [rad^2] up to which a slope is stretched, and between which the shape blends into that of a load at
- * the tip. */
-const [STRETCH_TO, BLEND_FROM, BLEND_TO] = [2, 6, 4].map((part) => (Math.PI / part) ** 2);
-
-/** Half of the slope over the angle of a branch. @param {number} square of the angle @param {number} skew */
-const stretch = (square, skew) => 0.5 * (1 + Math.min(square, STRETCH_TO) * skew);
+import { need } from "./checks.js";
+import { Block, core, Model, owned } from "./core.js";
 
 /** Numbers per pose: x y z [m] of the root-side node, the tree's scale, then the quaternion x y z w. */
 export const STRIDE = 8;
 
 export const AT_ORIGIN = [0, 0, 0, 0, 1];
+
+/** Largest memory for the turns of the segments of a kind [bytes]. */
+const MOST_MEMORY = 512 * 2 ** 20;
 
 /** Place in the scene of a point of a kind. @param {number[]} place @param {ArrayLike<number>} point */
 export function placed([x, y, z, yaw, scale], point) {
@@ -34,6 +29,8 @@ export function beyond(values, count) {
 }
 
 const NONE = /** @type {Map<number, number>} */ (new Map());
+/** Coordinates of the tree that is placed. */
+const own = new Block(Float32Array, 65536);
 
 /** Places all segments of a scene, tree after tree. */
 export class Placer {
@@ -44,7 +41,7 @@ export class Placer {
     this._placers = description.kinds.map((kind) => new KindPlacer(kind));
   }
 
-  /** Rebuild the poses, the same array each time. @param {ArrayLike<number>} coordinates */
+  /** Rebuild the poses, the same array each time. @param {Float32Array} coordinates */
   place(coordinates) {
     const turns = beyond(coordinates, this.description.nCoordinates);
     for (const { kind, place, firstSegment, firstCoordinate, firstKey } of this.description.trees) {
@@ -59,102 +56,117 @@ export class Placer {
 export class KindPlacer {
   /** @param {Kind} kind @param {Int32Array | null} [order] of its branches, parents before their children */
   constructor(kind, order = null) {
-    const { arrays, nBranches } = kind;
+    const { arrays: { branch_first: first }, nBranches } = kind;
     this.kind = kind;
     this.order = order ?? Int32Array.from({ length: nBranches }, (_, i) => i);
     /** Row of each segment when branches are placed in this order. */
     this.slots = new Int32Array(kind.nSegments);
     /** Number of segments of the first branches of the order. */
-    this.reached = new Int32Array(nBranches + 1);
+    this.reached = new Int32Array(this.order.length + 1);
     this.order.forEach((branch, i) => {
-      const [from, end] = [arrays.branch_first[branch], arrays.branch_first[branch + 1]];
-      for (let s = from; s < end; s++) this.slots[s] = this.reached[i] + s - from;
-      this.reached[i + 1] = this.reached[i] + end - from;
+      for (let s = first[branch]; s < first[branch + 1]; s++) this.slots[s] = this.reached[i] + s - first[branch];
+      this.reached[i + 1] = this.reached[i] + first[branch + 1] - first[branch];
     });
-    const { segment_rest: rest } = arrays; // w x y z
-    this._rest = Float32Array.from(rest, (_, i) => rest[i % 4 < 3 ? i + 1 : i - 3]);
-    /** Key rotations [rad], and the rotation of each branch at its base. */
-    this._keys = new Float32Array(kind.nKeys);
-    this._bases = new Float64Array(4 * nBranches);
+    this._parts = /** @type {Map<number, Part>} */ (new Map());
   }
 
-  /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
-   * @param {ArrayLike<number>} place of the tree @param {number} count of branches, in the order
+  /** Place a tree. @param {Float32Array | Float64Array} coordinates of all trees @param {number} from its first
+   * @param {number[]} place of the tree @param {number} count of branches, in the order
    * @param {Float32Array} poses written @param {number} to row of its first segment
    * @param {Map<number, number>} [turns] `beyond` @param {number} [firstKey] its first there */
-  place(coordinates, from, place, count, poses, to, turns = NONE, firstKey = 0) {
-    const { arrays, nCoordinates } = this.kind;
-    const { basis_matrix: matrix, branch_coordinate: first, branch_keys: keys } = arrays;
-    for (const branch of this.order.subarray(0, count)) {
-      let entry = first[branch] * nCoordinates;
-      for (let key = first[branch]; key < first[branch] + keys[branch]; key++) {
-        let sum = (turns.size && turns.get(firstKey + key)) || 0;
-        for (let c = 0; c < nCoordinates; c++) sum += matrix[entry++] * coordinates[from + c];
-        this._keys[key] = sum;
+  place(coordinates, from, [x, y, z, yaw, scale], count, poses, to, turns = NONE, firstKey = 0) {
+    const part = this._parts.get(count) ?? new Part(this.kind, this.order.subarray(0, count), this.reached);
+    this._parts.set(count, part);
+    own.values.set(coordinates.subarray(from, from + this.kind.nCoordinates));
+    const { turned, count: nTurned } = turns.size ? part.turnedBy(turns, firstKey) : { turned: 0, count: 0 };
+    core.page_place(part.at, own.at, x, y, z, yaw, scale, turned, nTurned, part.poses.at);
+    poses.set(part.poses.values, STRIDE * to);
+  }
+}
+
+/** The first branches of an order, as a model of the core. */
+class Part {
+  /** @param {Kind} kind @param {Int32Array} branches @param {Int32Array} reached number of segments of the first of them */
+  constructor(kind, branches, reached) {
+    /** Key rotations of the kind that the model has, in its own order. */
+    this._keys = rows(branches, kind.arrays.branch_coordinate, (branch) => kind.arrays.branch_keys[branch]);
+    this._model = new Model(arraysOf(kind, branches, reached, this._keys));
+    this.at = owned(this, core.page_placer_open(this._model.at), "page_placer_close");
+    this.poses = new Block(Float32Array, STRIDE * reached[branches.length]);
+    this._turned = /** @type {Block<Float64Array> | null} */ (null);
+  }
+
+  /** Write what some key rotations are turned by. @param {Map<number, number>} turns @param {number} first key of the tree */
+  turnedBy(turns, first) {
+    this._turned ??= new Block(Float64Array, 2 * this._keys.length);
+    const found = Array.from(this._keys, (key, i) => [i, turns.get(first + key) ?? 0]).filter(([, turn]) => turn);
+    this._turned.values.set(found.flat());
+    return { turned: this._turned.at, count: found.length };
+  }
+}
+
+/** Rows that belong to branches, one branch after the other. @param {Int32Array} branches
+ * @param {ArrayLike<number>} first row of each branch @param {(branch: number) => number} count its rows */
+const rows = (branches, first, count) =>
+  Array.from(branches, (branch) => Array.from({ length: count(branch) }, (_, i) => first[branch] + i)).flat();
+
+/** Arrays of doc/sway_model.md of some branches of a kind, and its basis in place of the shapes of coordinates.
+ * @param {Kind} kind @param {Int32Array} branches parents before their children @param {Int32Array} reached number of
+ * segments of the first of them @param {number[]} keyRows its key rotations */
+function arraysOf({ arrays, nCoordinates: m, nBranches }, branches, reached, keyRows) {
+  const { branch_first: first, branch_keys: keys, branch_parent: parents, turn, branch_frame: frame } = arrays;
+  const segmentRows = rows(branches, first, (branch) => first[branch + 1] - first[branch]);
+  const [b, n] = [branches.length, segmentRows.length];
+  const room = branches.reduce((most, branch) => Math.max(most, keys[branch]), 2);
+  need(48 * room * n <= MOST_MEMORY, "size of a kind when laid out");
+  const numbers = new Int32Array(nBranches).fill(-1);
+  branches.forEach((branch, i) => (numbers[branch] = i));
+  /** @param {ArrayLike<number>} values @param {number} [size] */
+  const whole = (values, size) => ({ values: BigInt64Array.from(Array.from(values, BigInt)), shape: [size ?? values.length] });
+  /** @param {number[]} shape */
+  const zeros = (...shape) => ({ values: new Float64Array(shape.reduce((a, c) => a * c)), shape });
+  /** @param {string} name @param {ArrayLike<number>} chosen rows @param {number[]} shape of a row */
+  const of = (name, chosen, ...shape) => {
+    const found = zeros(chosen.length, ...shape);
+    const width = found.values.length / Math.max(chosen.length, 1);
+    for (let i = 0; i < chosen.length; i++) {
+      found.values.set(arrays[name].subarray(width * chosen[i], width * (chosen[i] + 1)), width * i);
+    }
+    return found;
+  };
+  const [twist, turns] = [zeros(b, room, 6), zeros(n, room, 3)];
+  branches.forEach((branch, i) => {
+    const [parent, base, bend] = [parents[branch], arrays.branch_base_turn[branch], arrays.branch_turn[branch]];
+    for (let k = 0; base >= 0 && k < keys[parent]; k++) {
+      twist.values.set(turn.subarray(3 * (base + k), 3 * (base + k + 1)), 6 * (room * i + k) + 3);
+    }
+    for (let row = reached[i], s = first[branch]; row < reached[i + 1]; row++, s++) {
+      for (let k = 0; bend >= 0 && k < keys[branch]; k++) {
+        const from = 3 * (bend + (s - first[branch]) * keys[branch] + k);
+        turns.values.set(turn.subarray(from, from + 3), 3 * (room * row + k));
       }
-      this._placeBase(branch, place, poses, to);
-      this._placeSegments(branch, place[4], poses, to);
+      // Without rows of its own it bends about the two axes across its chord.
+      for (let c = 0; bend < 0 && c < 3; c++) {
+        turns.values[3 * room * row + c] = arrays.segment_slope[s] * frame[9 * branch + 6 + c];
+        turns.values[3 * room * row + 3 + c] = -arrays.segment_slope[s] * frame[9 * branch + 3 + c];
+      }
     }
-  }
-
-  /** Add half the rotation vector that the key rotations of a branch give at a place. @param {number} branch
-   * @param {number} stretched `stretch` of the first two @param {number} row of the place in `turn` */
-  _addTurns(branch, stretched, row) {
-    const { turn: turns, branch_coordinate: first, branch_keys: keys } = this.kind.arrays;
-    for (let k = 0; k < keys[branch]; k++, row++) {
-      const own = (k < 2 ? stretched : 0.5) * this._keys[first[branch] + k];
-      for (let c = 0; c < 3; c++) half[c] += own * turns[3 * row + c];
-    }
-  }
-
-  /** Find the base of a branch and its rotation there, by the branch that carries it.
-   * @param {number} branch @param {ArrayLike<number>} place @param {Float32Array} poses @param {number} to */
-  _placeBase(branch, place, poses, to) {
-    const { kind: { arrays }, _bases: bases, _keys: keys } = this;
-    const parent = arrays.branch_parent[branch];
-    if (parent < 0) {
-      for (let c = 0; c < 3; c++) at[c] = place[c];
-      bases[4 * branch + 2] = Math.sin(place[3] / 2);
-      bases[4 * branch + 3] = Math.cos(place[3] / 2);
-      return;
-    }
-    const first = arrays.branch_coordinate[parent];
-    half.fill(0);
-    const stretched = stretch(keys[first] ** 2 + keys[first + 1] ** 2, arrays.branch_skew[2 * parent]);
-    this._addTurns(parent, stretched, arrays.branch_base_turn[branch]);
-    fromHalf(half, turn);
-    multiply(bases, 4 * parent, turn, 0, bases, 4 * branch);
-    const under = STRIDE * (to + this.slots[arrays.branch_base_segment[branch]]);
-    for (let c = 0; c < 3; c++) at[c] = poses[under + c];
-    addTurned(poses, under + 4, arrays.branch_offset, 3 * branch, place[4], at);
-  }
-
-  /** Place the segments of a branch from its base on: bent by one slope about the axes across its chord, or by all key
-   * rotations. @param {number} branch @param {number} scale @param {Float32Array} poses
-   * @param {number} to */
-  _placeSegments(branch, scale, poses, to) {
-    const { kind: { arrays }, _bases: bases, _rest: rest, _keys: keys } = this;
-    const { branch_frame: frame, branch_skew: skews, segment_slope: slope, segment_chord: chord } = arrays;
-    const first = arrays.branch_coordinate[branch];
-    const [kx, ky] = [keys[first], keys[first + 1]];
-    const t = kx * kx + ky * ky;
-    const blend = Math.min(Math.max((t - BLEND_FROM) / (BLEND_TO - BLEND_FROM), 0), 1);
-    const stretched = stretch(t, skews[2 * branch] + blend * (skews[2 * branch + 1] - skews[2 * branch]));
-    const [sx, sy, f] = [stretched * kx, stretched * ky, 9 * branch];
-    const [begin, end] = [arrays.branch_first[branch], arrays.branch_first[branch + 1]];
-    const row = arrays.branch_turn[branch];
-    let o = STRIDE * (to + this.slots[begin]);
-    for (let s = begin; s < end; s++, o += STRIDE) {
-      const far = blend * (arrays.segment_tip_slope[s] - slope[s]);
-      const main = row < 0 ? slope[s] + far : far;
-      for (let c = 0; c < 3; c++) half[c] = main * (sx * frame[f + 6 + c] - sy * frame[f + 3 + c]);
-      if (row >= 0) this._addTurns(branch, stretched, row + (s - begin) * arrays.branch_keys[branch]);
-      fromHalf(half, turn);
-      multiply(bases, 4 * branch, turn, 0, whole);
-      for (let c = 0; c < 3; c++) poses[o + c] = at[c];
-      poses[o + 3] = scale;
-      multiply(whole, 0, rest, 4 * s, poses, o + 4);
-      addTurned(whole, 0, chord, 3 * s, scale, at);
-    }
-  }
+  });
+  let key = 0;
+  return {
+    tree_start: zeros(n, 3), tree_end: zeros(n, 3), tree_base_diameter: zeros(n), tree_tip_diameter: zeros(n),
+    branch_first: whole(reached.subarray(0, b + 1)),
+    branch_parent: whole(branches.map((branch) => (parents[branch] < 0 ? -1 : numbers[parents[branch]]))),
+    branch_base_segment: whole(branches.map((branch) => {
+      const parent = parents[branch];
+      return parent < 0 ? -1 : reached[numbers[parent]] + arrays.branch_base_segment[branch] - first[parent];
+    })),
+    branch_coordinate: whole(branches.map((branch) => (key += keys[branch]) - keys[branch])),
+    branch_keys: whole(branches.map((branch) => keys[branch])),
+    branch_frame: of("branch_frame", branches, 3, 3), branch_skew: of("branch_skew", branches, 2),
+    branch_offset: of("branch_offset", branches, 3), branch_twist: twist,
+    segment_slope: of("segment_slope", segmentRows), segment_tip_slope: of("segment_tip_slope", segmentRows),
+    segment_chord: of("segment_chord", segmentRows, 3), segment_rest: of("segment_rest", segmentRows, 4),
+    segment_turn: turns, shapes: of("basis_matrix", keyRows, m), stiffness: zeros(m),
+  };
 }

@@ -26,18 +26,6 @@ export function addTurned(q, i, v, j, scale, out) {
   out[2] += z + qw * tz + qx * ty - qy * tx;
 }
 
-/** Of half a rotation vector [rad]. @param {Numbers} half @param {Numbers} out */
-export function fromHalf(half, out) {
-  const x = half[0], y = half[1], z = half[2];
-  const square = x * x + y * y + z * z;
-  const angle = Math.sqrt(square);
-  const sinc = square > 1e-8 ? Math.sin(angle) / angle : 1 - square / 6;
-  out[0] = sinc * x;
-  out[1] = sinc * y;
-  out[2] = sinc * z;
-  out[3] = square > 1e-8 ? Math.cos(angle) : 1 - square / 2;
-}
-
 /** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
 export function turned(q, v, i = 0) {
   const out = [0, 0, 0];

@@ -68,29 +68,33 @@ export class Touch {
     return Array.from(poses.subarray(STRIDE * placer.slots[segment], STRIDE * placer.slots[segment] + 3));
   }
 
-  /** Add the pushes to a step that was just made. @param {import("./sway.js").TreeState} state
-   * @param {Float64Array} coordinates streamed ones of this tree @param {Float64Array} half
-   * @param {Float64Array} whole as of the step @param {number} dt [s] @returns {boolean} whether any push is left */
-  step(state, coordinates, half, whole, dt) {
+  /** Add the pushes to a step that was just made. @param {() => ReturnType<import("./sway.js").Stand["rows"]>} rowsNow
+   * the state @param {import("./sway.js").Table} table @param {Float64Array} coordinates streamed ones of this tree
+   * @param {ReturnType<import("./sway.js").Table["steps"]>} steps as of the step @param {number} dt [s]
+   * @returns {boolean} whether any push is left */
+  step(rowsNow, table, coordinates, { whole, half, width }, dt) {
     const { _turns: turns, tree: { place: { 4: scale } } } = this;
+    const [byForce, rateByForce] = [2, 5].map((row) => whole.subarray(row * width));
     const settled = 1 - Math.exp(-dt / SETTLES);
     const settledTurn = settled / scale ** 3; // share of the residual rotation in this step
     // Per force; the step was implicit in the damping of each coordinate.
-    const accelerations = state.table.scratch[3].map((own, i) => 1 / (1 - own * half[6 * i + 5]) / scale ** 3);
-    const displacements = accelerations.map((each, i) => whole[6 * i + 2] * each);
+    const accelerations = rowsNow().diagonal.slice(0, table.m)
+      .map((own, i) => 1 / (1 - own * half[5 * width + i]) / scale ** 3);
+    const displacements = accelerations.map((each, i) => byForce[i] * each);
     for (const [key, turn] of turns) turns.set(key, (1 - settled) * turn);
     const added = /** @type {number[][]} */ ([]);
     for (const [segment, each] of this._pushes) {
       const at = this.place(segment, coordinates);
-      if (each.renewedIn <= 0) this._renew(segment, each, state.table, coordinates);
+      if (each.renewedIn <= 0) this._renew(segment, each, table, coordinates);
       const { keys, axes, push } = each;
       const share = Math.min(1, each.left / dt); // of the step, in which it acts
       const force = push.to ? springForce(at, push.to, push.stiffness ?? 0, share, axes, displacements, settledTurn)
         : (push.force ?? [0, 0, 0]).map((f) => share * f);
+      const state = rowsNow();
       accelerations.forEach((acceleration, i) => {
         const f = acceleration * dot(force, axes.map(({ lever }) => lever[i]));
-        state.eta[i] += whole[6 * i + 2] * f;
-        state.rate[i] += whole[6 * i + 5] * f;
+        state.eta[i] += byForce[i] * f;
+        state.rate[i] += rateByForce[i] * f;
         state.force[i] += f;
       });
       added.push(...keys.map((key, i) => [key, settledTurn * dot(force, axes.map(({ residual }) => residual[i]))]));
