@@ -32,10 +32,14 @@ from tree_sway.files.column_names import (
 )
 from tree_sway.files.text_file import finite, why_no_number
 
+SEPARATORS = '\t;|,'
+"""Signs between cells; of two that a header has as often, the first."""
 _MAX_COLUMNS = 10_000
 _MOST_LINES = 50
 """Lines of a row at most."""
 _MEND = 'correct the cell or remove the row'
+_NAME = 'write the names of its columns above it, with their units, as time,ax [g] or time,dbh [cm]'
+_STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 
@@ -286,7 +290,10 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
-    separator = max(('\t', ';', ','), key=header.count)
+    if not any(map(str.isalpha, _STAMP_LETTERS.sub('', header))):
+        what = f"no header: the first line, '{header[:40]}', has no names"
+        raise FormatError(what, where=f'{source}:{numbers[0]}', cure=_NAME)
+    separator = max(SEPARATORS, key=header.count)
     if any('"' in text for text in texts):
         numbers, texts = whole_rows(numbers, texts, separator)
     # A line of one cell is a remark, with numbers of its own.

@@ -24,7 +24,8 @@ def _date_and_time(parts: Sequence[str]) -> str:
 
 
 def _date_and_hour(parts: Sequence[str]) -> str:
-    return f'{parts[0]} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
+    day = parts[0].partition('T00:')[0]
+    return f'{day} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
 
 
 def _date_and_digits(parts: Sequence[str]) -> str:

@@ -13,12 +13,12 @@ from dataclasses import replace
 import re
 
 from tree_sway.files.column_names import name_and_unit, rank_of, unit_known
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import parse_table, SEPARATORS, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
 _HEAD = 40
 _MOST_COLUMNS = 200
-_CELL = re.compile(r'[,;\t](?=(?:[^"]*"[^"]*")*[^"]*$)')
+_CELL = re.compile(rf'[{SEPARATORS}](?=(?:[^"]*"[^"]*")*[^"]*$)')
 _NUMBER = re.compile(r'[-+\d.,:]+')
 _PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _WIND = ('wind_speed', 'wind_direction', 'wind_x', 'gust')
