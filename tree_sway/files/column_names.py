@@ -20,17 +20,20 @@ import unicodedata
 
 _KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
 
-COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
-"""Names of the column of a quantity, and its kind of unit."""
-
 MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
-"""Names of columns of a tree's motion; each quantity has its own kind of unit."""
+"""Names of columns of a tree's motion, folded; each quantity has its own kind of unit."""
+
+COLUMNS: dict[str, dict[str, Any]] = {
+    **_KNOWN['columns'],
+    **{quantity: {'unit': quantity, 'names': []} for quantity in MOTIONS},
+}
+"""Names of the column of a quantity, and its kind of unit."""
 
 _UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
-_ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?')
+_ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
 _SHAPEFILE_NAME = 10
@@ -120,6 +123,17 @@ def rank_of(column: str, quantity: str) -> int | None:
     return None
 
 
+@lru_cache(4096)
+def motion_of(column: str) -> tuple[str, str, str] | None:
+    """Quantity of a column of a motion, its name and its axis; None for another column."""
+    for quantity, pattern in MOTIONS.items():
+        name = name_and_unit(column, quantity)[0]
+        plain = _without_unit(name, quantity)[0] or folded(name)
+        if found := pattern.fullmatch(plain):
+            return quantity, plain[: found.start('axis')], found['axis'] or ''
+    return None
+
+
 def _is_cut(column: str, known: str) -> bool:
     """Whether a column's name is the beginning of a known one, cut off by a shapefile."""
     if len(column.strip()) != _SHAPEFILE_NAME:
@@ -142,7 +156,8 @@ def unit_in_name(name: str, quantity: str) -> str:
     """Return the unit in a column's name, as in ``x_m`` and ``ws_mph_avg``; empty without one."""
     kind = COLUMNS[quantity]['unit']
     glued = (_glued_unit(name, each, kind) for each in _NAMES[quantity])
-    return _without_unit(name, kind)[1] or next(filter(None, glued), '')
+    in_words = _without_unit(name, kind)[1] or next(filter(None, glued), '')
+    return in_words or _KNOWN['own_units'].get(folded(name), '')
 
 
 @lru_cache(4096)
@@ -150,19 +165,20 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
     """
     Return a name without the words that are a unit, folded, and the unit; both may be empty.
 
-    A unit of one letter, or ``in``, is the last word; the first word is none unless it has a sign.
+    A unit of one letter, or ``in``, is the last word; the first word is one only of a known name.
     """
     words = re.split(r'[\s_]+|\.(?=\D)', name.strip().lower())
+    whole = folded(name)
     found = '', ''
     for end in range(len(words), 0, -1):
         for begin in range(end - 1, max(end - 4, -1), -1):
             inside = words[begin:end]
             for unit in ('/'.join(inside), ''.join(inside)):
                 is_last = end == len(words) or (len(unit) > 1 and unit != 'in')
-                if unit_known(kind, unit) and is_last and (begin or not unit.isalnum()):
+                if unit_known(kind, unit) and is_last and (begin or whole in _ALL_NAMES):
                     rest = re.sub(r'\s(in|en)$', '', ' '.join(words[:begin] + words[end:]))
                     found = found if found[1] else (folded(rest), unit)
-                    if _ALL_NAMES & {folded(rest), folded(name)}:
+                    if _ALL_NAMES & {folded(rest), whole}:
                         return folded(rest), unit  # dd_10_deg is a dd_10 and no dd in 10 deg
     return found
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 from contextlib import ExitStack
 from pathlib import Path
+import sys
 import tempfile
 import webbrowser
 
@@ -24,6 +25,7 @@ from tree_sway.commands.wind_arguments import (
     simulated_speed,
 )
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
@@ -83,8 +85,10 @@ def run(arguments: argparse.Namespace) -> int:
         if not arguments.no_page:
             _serve_page(nodes, arguments)
         ending.limit = LONGEST
-        watch(monitor, seconds, continues)
+        short = shorter_than(watch(monitor, seconds, continues), seconds, 'the demo')
         print(summary(monitor.totals, arguments.rate), flush=True)
+        if short:
+            print(f'note: {short}', file=sys.stderr)
     return 0
 
 
