@@ -81,14 +81,14 @@ def run(arguments: argparse.Namespace) -> int:
 
         monitor.expect_silence()
         for name, values in _nodes(arguments, _tree_of(scene, arguments, files)).items():
-            nodes.add(name, values)
+            node = nodes.add(name, values)
+            if name == 'player' and (short := shorter_than(node.length, seconds)):
+                print(f'note: {short}', file=sys.stderr)
         if not arguments.no_page:
             _serve_page(nodes, arguments)
         ending.limit = LONGEST
-        short = shorter_than(watch(monitor, seconds, continues), seconds, 'the demo')
+        watch(monitor, seconds, continues)
         print(summary(monitor.totals, arguments.rate), flush=True)
-        if short:
-            print(f'note: {short}', file=sys.stderr)
     return 0
 
 

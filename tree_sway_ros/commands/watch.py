@@ -19,9 +19,9 @@ _LOG_PERIOD = 2.0
 
 def watch(
     monitor: StreamMonitor, seconds: float, check: Callable[[], bool], *, patience: float = 30.0
-) -> float:
+) -> None:
     """
-    Receive for a time [s] from the first poses on, print statistics, and return how long it was.
+    Receive for a time [s] from the first poses on, and print statistics.
 
     ``check`` is called repeatedly: it raises on a failure, and returns True to continue. A
     `TransportError` is raised if no poses arrive within the ``patience`` [s].
@@ -51,4 +51,3 @@ def watch(
         pass
     if is_live:
         print()
-    return time.monotonic() - begin
