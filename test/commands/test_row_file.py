@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 import socket
+import time
 
 import pytest
 
@@ -25,6 +27,25 @@ def test_a_row_is_on_the_disk_when_it_is_written(tmp_path: Path) -> None:
     assert path.read_text() == 'time,u\n1,1\n2,2\n'
     assert rows.count == 2
     rows.close()
+
+
+@pytest.mark.parametrize(('seconds', 'is_said'), [(60.0, True), (3.0, False), (math.inf, False)])
+def test_rows_of_a_shorter_time_than_asked_are_said(
+    seconds: float,
+    is_said: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    now = iter([10.0, 11.0, 12.0])
+    monkeypatch.setattr(time, 'monotonic', lambda: next(now))
+    rows = RowFile(tmp_path / 'wind.csv')
+    for value in '123':
+        rows.write(['time', 'u'], [value, value])
+    rows.close()
+    rows.say_short(seconds)
+    said = 'note: wind.csv has 3 s of the 60 s that were asked for\n'
+    assert capfd.readouterr().err == (said if is_said else '')
 
 
 def test_without_a_row_an_older_file_stays(tmp_path: Path) -> None:

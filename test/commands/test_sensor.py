@@ -95,8 +95,11 @@ def test_live_wind_is_recorded_as_a_table_that_is_read_again(
     out = tmp_path / 'wind.csv'
     line = ['record', '--sensor', instrument.address, '-o', str(out), '--seconds', '1.5']
     assert main(line) == 0
-    assert 'samples of udp://' in capfd.readouterr().out
+    said = capfd.readouterr()
+    assert 'samples of udp://' in said.out
     record = read_wind(out)
+    is_short = record.duration < 1.4
+    assert ('note: wind.csv has' in said.err) or not is_short
     assert len(record.time) > 10
     assert record.velocity[:, 0] == pytest.approx(6.4)
     assert record.epoch is not None

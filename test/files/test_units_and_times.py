@@ -14,7 +14,7 @@ import pytest
 from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import shorter_than
-from tree_sway.files.column_names import COLUMNS, is_name, name_and_unit, trailing_unit, UNITS
+from tree_sway.files.column_names import COLUMNS, is_name, name_and_unit, unit_in_name, UNITS
 from tree_sway.files.scenes.inventory.cell_number import stems_number
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.table_file import parse_table, TextTable
@@ -72,7 +72,7 @@ def test_a_unit_counts_in_camel_case(column: str, quantity: str, unit: str) -> N
 
 def test_a_bracket_of_a_name_is_no_unit() -> None:
     assert is_name('avg wind speed (10min)', 'wind_speed')
-    assert trailing_unit('stem_diameter', 'stem dia', 'length') == ''
+    assert unit_in_name('stem_diameter', 'diameter') == ''
 
 
 @pytest.mark.parametrize('first', [46174.5, 740000.5, 2461000.25, 60600.5])

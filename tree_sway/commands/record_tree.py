@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 _LOOK = 0.1
 _COLUMNS = {
-    'acceleration': ('ax', 'ay', 'az'),
-    'rate': ('gx', 'gy', 'gz'),
+    'acceleration': ('ax [m/s^2]', 'ay [m/s^2]', 'az [m/s^2]'),
+    'rate': ('gx [rad/s]', 'gy [rad/s]', 'gz [rad/s]'),
     'orientation': ('qx', 'qy', 'qz', 'qw'),
 }
 """Columns of each quantity."""
@@ -108,6 +108,9 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:
         raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
+    for rows_of in (wind_table.rows, *(each.rows for each in tables)):
+        if rows_of is not None and rows_of.count:
+            rows_of.say_short(seconds)
     rows = ', '.join(f'{count} samples of {each.source} at {each.at}' for each, count in came)
     print(f'{folder}: {wind_table.count} rows of wind of {wind.name}, {rows}')
     return 0

@@ -66,6 +66,7 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     table.close()
     if not table.count:
         raise TransportError(problem or 'no wind came', where='--sensor')
+    table.rows.say_short(seconds)
     print(f'{path}: {table.count} {"means" if table.is_of_means else "samples"} of {wind.name}')
     return 0
 

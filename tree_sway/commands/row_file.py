@@ -7,8 +7,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 import csv
 from pathlib import Path
+import sys
+import time
 from typing import TextIO
 
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.errors import FormatError
 
 
@@ -32,6 +35,7 @@ class RowFile:
         self.failure = ''
         """Why a row could not be written; empty without a failure."""
         self._path = path
+        self._written = (0.0, 0.0)
         self._file: TextIO | None = None
 
     def write(self, header: Sequence[str], row: Sequence[object]) -> None:
@@ -47,7 +51,16 @@ class RowFile:
         except OSError as error:
             self.failure = error.strerror or str(error)
             return
+        now = time.monotonic()
+        self._written = (self._written[0] if self.count else now, now)
         self.count += 1
+
+    def say_short(self, seconds: float) -> None:
+        """Print a note where rows came for a shorter time [s]; each stands for its period."""
+        begin, end = self._written
+        length = (end - begin) * self.count / max(self.count - 1, 1)
+        if short := shorter_than(length, seconds, self._path.name):
+            print(f'note: {short}', file=sys.stderr)
 
     def close(self) -> None:
         """Close the file; a `FormatError` if a row could not be written."""

@@ -11,6 +11,7 @@ name of ten letters may be the beginning of a known one, as shapefiles cut it: `
 
 from __future__ import annotations
 
+from functools import lru_cache
 from importlib.resources import files
 import json
 import re
@@ -19,24 +20,27 @@ import unicodedata
 
 _KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
 
-COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
+MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
+"""Names of columns of a tree's motion, folded; each quantity has its own kind of unit."""
+
+COLUMNS: dict[str, dict[str, Any]] = {
+    **_KNOWN['columns'],
+    **{quantity: {'unit': quantity, 'names': []} for quantity in MOTIONS},
+}
 """Names of the column of a quantity, and its kind of unit."""
 
-MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
-"""Names of columns of a tree's motion; each quantity has its own kind of unit."""
-
 _UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
-_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
+_BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
-_ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?')
+_ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
 _SHAPEFILE_NAME = 10
 """Length at which the names of columns of shapefiles are cut off."""
 _SHORTEST_CUT = 8
 """Letters that the beginning of a known name has at least."""
-_IN = re.compile(r'^(in|en)_?(?=\w)')
+_IN = re.compile(r'^(in|en)(?=\w)')
 """Word between a name and its unit."""
 
 
@@ -60,7 +64,10 @@ UNITS: dict[str, dict[str, float]] = {
 """Units of each kind of quantity as `folded_unit` writes them, and their factors to SI."""
 
 _NAMES = {
-    quantity: tuple(dict.fromkeys(folded(name) for name in known['names']))
+    quantity: tuple(
+        # Names of one letter last, as t may be a time and a temperature.
+        sorted(dict.fromkeys(map(folded, known['names'])), key=lambda name: len(name) == 1)
+    )
     for quantity, known in COLUMNS.items()
 }
 
@@ -99,15 +106,31 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
 
 
 def rank_of(column: str, quantity: str) -> int | None:
-    """Place of a column's name among the names of a quantity; None if it is not one of them."""
+    """
+    Place of a column's name among the names of a quantity; None if it is not one of them.
+
+    Of a name within groups, as ``metric.windSpeed.value``, the last part counts alone.
+    """
     kind = COLUMNS[quantity]['unit']
     name, _ = name_and_unit(column, kind)
+    inner = name.removesuffix('.value').rpartition('.')[2]
     whole = folded(name)
-    found = (whole, folded(column))
+    found = (whole, folded(column), folded(inner), _without_unit(inner, kind)[0])
     for rank, known in enumerate(_NAMES[quantity]):
-        follows = whole.startswith(known) and trailing_unit(name, known, kind)
+        follows = whole.startswith(known) and _glued_unit(name, known, kind)
         if known in found or follows or _is_cut(column, known):
             return rank
+    return None
+
+
+@lru_cache(4096)
+def motion_of(column: str) -> tuple[str, str, str] | None:
+    """Quantity of a column of a motion, its name and its axis; None for another column."""
+    for quantity, pattern in MOTIONS.items():
+        name = name_and_unit(column, quantity)[0]
+        plain = _without_unit(name, quantity)[0] or folded(name)
+        if found := pattern.fullmatch(plain):
+            return quantity, plain[: found.start('axis')], found['axis'] or ''
     return None
 
 
@@ -130,25 +153,42 @@ def is_name(column: str, quantity: str) -> bool:
 
 
 def unit_in_name(name: str, quantity: str) -> str:
-    """Return the unit at the end of a column's name, as in ``x_m``; empty without one."""
+    """Return the unit in a column's name, as in ``x_m`` and ``ws_mph_avg``; empty without one."""
     kind = COLUMNS[quantity]['unit']
-    return next((u for each in _NAMES[quantity] if (u := trailing_unit(name, each, kind))), '')
+    glued = (_glued_unit(name, each, kind) for each in _NAMES[quantity])
+    in_words = _without_unit(name, kind)[1] or next(filter(None, glued), '')
+    return in_words or _KNOWN['own_units'].get(folded(name), '')
 
 
-def trailing_unit(name: str, known: str, kind: str) -> str:
-    """Return the unit of a kind that follows a known name, as ``cm`` in ``dbh_cm``; or nothing."""
+@lru_cache(4096)
+def _without_unit(name: str, kind: str) -> tuple[str, str]:
+    """
+    Return a name without the words that are a unit, folded, and the unit; both may be empty.
+
+    A unit of one letter, or ``in``, is the last word; the first word is one only of a known name.
+    """
+    words = re.split(r'[\s_]+|\.(?=\D)', name.strip().lower())
     whole = folded(name)
-    if whole == known or not whole.startswith(known):
-        return ''
-    words = re.split(r'[\s_.]+', name.lower())
-    for count in range(1, len(words)):
-        if folded(''.join(words[:count])) == known:
-            unit = '_'.join(words[count:])
-            for each in (unit.replace('_', '/'), unit.replace('_', ''), _IN.sub('', unit)):
-                if unit_known(kind, each):
-                    return each
+    found = '', ''
+    for end in range(len(words), 0, -1):
+        for begin in range(end - 1, max(end - 4, -1), -1):
+            inside = words[begin:end]
+            for unit in ('/'.join(inside), ''.join(inside)):
+                is_last = end == len(words) or (len(unit) > 1 and unit != 'in')
+                if unit_known(kind, unit) and is_last and (begin or whole in _ALL_NAMES):
+                    rest = re.sub(r'\s(in|en)$', '', ' '.join(words[:begin] + words[end:]))
+                    found = found if found[1] else (folded(rest), unit)
+                    if _ALL_NAMES & {folded(rest), whole}:
+                        return folded(rest), unit  # dd_10_deg is a dd_10 and no dd in 10 deg
+    return found
+
+
+def _glued_unit(name: str, known: str, kind: str) -> str:
+    """Return the unit of a kind that follows a known name without a sign: ``windspeedmph``."""
+    whole = folded(name)
     end = whole[len(known) :]
-    if len(end) > len(folded(words[-1])):
+    last = re.split(r'[\s_.]+', name)[-1]
+    if not end or not whole.startswith(known) or len(end) > len(folded(last)):
         return ''  # stem_diam_m is in m, and not a 'stem dia' in mm
     if whole not in _WITH_UNIT and (len(known) < _SHORTEST_GLUED or whole in _ALL_NAMES):
         return ''  # stem_diameter is a name of its own, and not a 'stem dia' in meters

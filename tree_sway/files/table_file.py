@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 import csv
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 import re
 
 import numpy as np
@@ -32,12 +32,15 @@ from tree_sway.files.column_names import (
 )
 from tree_sway.files.text_file import finite, why_no_number
 
+SEPARATORS = '\t;|,'
+"""Signs between cells; of two that a header has as often, the first."""
 _MAX_COLUMNS = 10_000
 _MOST_LINES = 50
 """Lines of a row at most."""
 _MEND = 'correct the cell or remove the row'
+_NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
+_STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
-_UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,26 +85,6 @@ class TextTable:
                 return index
         what = f"no column '{name}' among {', '.join(self.columns[:20])}"
         raise self.error(what, cure='export it with its header line, unchanged')
-
-    @cached_property
-    def headings(self) -> list[tuple[str, str]]:
-        """Name in lower case, with _ for spaces, and unit of each column."""
-        return [self._heading(index, name) for index, name in enumerate(self.columns)]
-
-    def _heading(self, index: int, column: str) -> tuple[str, str]:
-        begin = min((i for c in '[(' if (i := column.find(c)) > 0), default=len(column))
-        inside = _UNIT.fullmatch(column[begin:].strip())
-        if inside is None:
-            return column.strip().lower(), ''
-        unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else '')
-        return column[:begin].strip().lower().replace(' ', '_'), unit.strip()
-
-    def factor(self, index: int, kind: str, default: float = 1.0) -> float:
-        """Factor of the unit of a column, a `FormatError` if it is not one of this kind."""
-        unit = self.headings[index][1]
-        if not unit or not UNITS.get(kind):
-            return default
-        return self._known(kind, unit)
 
     def _known(self, kind: str, unit: str) -> float:
         """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
@@ -271,7 +254,7 @@ def filled_lines(lines: Sequence[str]) -> tuple[list[int], list[str]]:
     filled = [
         number
         for number, line in enumerate(lines, start=1)
-        if line.strip() and not line.lstrip().startswith('#')
+        if line.strip() and not line.lstrip().startswith(('#', 'sep='))
     ]
     return filled, [lines[number - 1] for number in filled]
 
@@ -286,7 +269,10 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
-    separator = max(('\t', ';', ','), key=header.count)
+    if not any(map(str.isalpha, _STAMP_LETTERS.sub('', header))):
+        what = f"no header: the first line, '{header[:40]}', has no names"
+        raise FormatError(what, where=f'{source}:{numbers[0]}', cure=_NAME)
+    separator = max(SEPARATORS, key=header.count)
     if any('"' in text for text in texts):
         numbers, texts = whole_rows(numbers, texts, separator)
     # A line of one cell is a remark, with numbers of its own.

@@ -107,11 +107,15 @@ def read_text(path: Path) -> str:
     try:
         return read_bytes(path).decode('utf-8-sig')
     except UnicodeDecodeError as error:
-        raise FormatError(
-            f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}',
-            where=str(path),
-            cure='save it as UTF-8',
-        ) from None
+        raise _no_text(error, path) from None
+
+
+def _no_text(error: UnicodeDecodeError, path: Path) -> FormatError:
+    """Make the error of a file that is not text."""
+    if error.object.startswith(b'PK\x03\x04'):
+        return FormatError('a zip archive', where=str(path), cure='unpack it, and name its table')
+    what = f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}'
+    return FormatError(what, where=str(path), cure='save it as UTF-8')
 
 
 def read_lines(path: Path) -> list[str]:
@@ -124,8 +128,7 @@ def read_table_lines(path: Path) -> list[str]:
     try:
         return _lines(decoded(read_bytes(path)), path)
     except UnicodeDecodeError as error:
-        what = f'not text: byte {error.start} is {error.object[error.start]:#04x}'
-        raise FormatError(what, where=str(path), cure='save it as UTF-8') from None
+        raise _no_text(error, path) from None
 
 
 def _lines(text: str, path: Path) -> list[str]:

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 import time
 from typing import Any
 
 from tree_sway.commands.ending import Ending
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.files.recording.bag_writer import BagWriter
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import (
@@ -46,6 +48,8 @@ def record_bag(arguments: argparse.Namespace, seconds: float) -> int:
         ending.look()
         while not ending.is_asked and recorder.recorded < seconds:
             recorder.spin(_LOOK)
+    if short := shorter_than(recorder.covered, seconds, arguments.output):
+        print(f'note: {short}', file=sys.stderr)
     written = ', '.join(f'{count} of {name}' for name, count in bag.counts.items())
     print(f'{arguments.output}: {written or "nothing was sent"}')
     return 0
@@ -60,6 +64,8 @@ class Recorder(Listener):
         super().__init__('tree_sway_record', namespace, context)
         self._bag = bag
         self._began: float | None = None
+        self.covered = 0.0
+        """Time from the first message to the last [s]."""
         self._wanted = {self.node.resolve_topic_name(topic.name): topic for topic in topics}
 
     @property
@@ -83,6 +89,7 @@ class Recorder(Listener):
             self._bag.write(name, time.time_ns(), data)
             if self._began is None:
                 self._began = time.monotonic()
+            self.covered = self.recorded
 
         message = message_class(topic, kind)
         profile = qos_profile(topic, is_input=True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 from contextlib import ExitStack
 from pathlib import Path
+import sys
 import tempfile
 import webbrowser
 
@@ -24,6 +25,7 @@ from tree_sway.commands.wind_arguments import (
     simulated_speed,
 )
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.wind.limits import shorter_than
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
@@ -79,7 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
 
         monitor.expect_silence()
         for name, values in _nodes(arguments, _tree_of(scene, arguments, files)).items():
-            nodes.add(name, values)
+            node = nodes.add(name, values)
+            if name == 'player' and (short := shorter_than(node.length, seconds)):
+                print(f'note: {short}', file=sys.stderr)
         if not arguments.no_page:
             _serve_page(nodes, arguments)
         ending.limit = LONGEST

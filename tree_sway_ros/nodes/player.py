@@ -57,6 +57,11 @@ class PlayerNode(TreeSwayNode):
         )  # fmt: skip
         self.report_with(self._record.source, self._report)
 
+    @property
+    def length(self) -> float:
+        """Time from the start of the playback to the end of the record [s]."""
+        return self._record.duration - float(self.values['start'])
+
     def activate(self) -> None:
         """Play from the start, once there is a subscriber."""
         self.run_worker(self._playback)

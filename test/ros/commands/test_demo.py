@@ -83,6 +83,18 @@ def test_it_runs_for_the_seconds_it_was_given(environment: dict[str, str]) -> No
     assert number(r'mean (\+\d+\.\d) east', out) > 0.0  # a westerly bends it to the east
 
 
+def test_a_record_shorter_than_what_was_asked_is_said(
+    environment: dict[str, str], tmp_path: Path
+) -> None:
+    wind = tmp_path / 'wind.csv'
+    rows = ''.join(f'{0.1 * k:.1f},3.0,0.0\n' for k in range(31))
+    wind.write_text(f'time,u [m/s],v [m/s]\n{rows}')
+    process = start(environment, 'demo', 'goldcrest', '--wind', str(wind), '--seconds', '9')
+    _, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0, err
+    assert 'note: the wind has 3 s of the 9 s that were asked for' in err
+
+
 @pytest.mark.long
 @pytest.mark.skipif(not SONIC.exists(), reason=f'needs the record {SONIC}')
 def test_a_second_process_receives_every_pose_of_a_recorded_wind(

@@ -19,8 +19,8 @@ _WHOLE = 0.99
 """Share of the time that is asked for from which a wind is long enough."""
 
 
-def shorter_than(length: float, seconds: float | None) -> str:
+def shorter_than(length: float, seconds: float | None, what: str = 'the wind') -> str:
     """Return a note where a wind of a length [s] is shorter than what is asked for; or nothing."""
-    if seconds is None or length >= _WHOLE * seconds:
+    if seconds is None or seconds == math.inf or length >= _WHOLE * seconds:
         return ''
-    return f'the wind has {length:.3g} s of the {seconds:g} s that were asked for'
+    return f'{what} has {length:.3g} s of the {seconds:g} s that were asked for'

@@ -4,10 +4,11 @@
 Tables of a motion sensor: a time, and three columns of acceleration or angular rate, or both.
 
 ``time,ax,ay,az,gx,gy,gz``, the exports of phyphox (``"Acceleration x (m/s^2)"``, ``"Gyroscope x
-(rad/s)"``) and others with units behind their names; axes that are called ``x``, ``y`` and ``z``
-are known by their unit (``x-axis (g)``). An orientation has the columns ``qx``, ``qy``, ``qz`` and
-``qw``. A cell that is no number is kept as not a number, so that the sensor refuses and counts its
-row.
+(rad/s)"``) and others with units behind their names, in any layout of `layouts.known`. Axes ``x``,
+``y`` and ``z`` are known by their unit (``x-axis (g)``), by the name of the file
+(``Gyroscope.csv``), or by gravity, which tells a missing unit of accelerations too. An orientation
+has the columns ``qx``, ``qy``, ``qz`` and ``qw``. A cell that is no number is kept as not a
+number, so that the sensor refuses and counts its row.
 """
 
 from __future__ import annotations
@@ -19,20 +20,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import folded, MOTIONS, unit_factor
+from tree_sway.files.column_names import folded, motion_of, name_and_unit, unit_known
 from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.time_stamps import Times
+from tree_sway.files.wind.layouts.known import layout_of
+from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.row_times import row_times, time_columns
 
-_AXES = 'xyz'
-_BARE_AXIS = re.compile(r'([xyz])(?:[ _-]?axis)?')
-_ORIENTATION = ('qx', 'qy', 'qz', 'qw')
+_AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
+_BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis)?')
+_GRAVITY = (
+    ((8.5, 11.2), 1.0, ''),
+    ((0.87, 1.14), 9.80665, 'g'),
+    ((870.0, 1140.0), 0.00980665, 'mg'),
+)
+"""Ranges of the median of accelerations with gravity, the factor of their unit, and its name."""
+_FASTEST = 35.0
+"""Largest angular rate that a sensor measures [rad/s]."""
 _DEVICES = frozenset({'devicename', 'device', 'deviceid', 'sensorname', 'sensorid', 'address'})
 """Names of columns that tell which of several sensors a row is of."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
+_SHORTEST = 5e-4
+"""Time between samples that no motion sensor falls below [s]."""
 _NAMES = (
     'call the columns time or time [ms], ax, ay, az, and gx, gy, gz for an angular rate, or give '
     'x, y, z a unit, as x [m/s^2]'
@@ -47,29 +59,30 @@ def read_motion_table(path: Path) -> MotionRecord:
     ------
     FormatError
         No time, no three axes of acceleration or angular rate and no orientation, an unknown
-        unit, rows of several sensors, or times that cannot be those of samples.
+        unit, rows of several sensors, or times or values that cannot be those of samples.
 
     """
-    table = parse_table(read_table_lines(path), str(path))
-    names = [name for name, _ in table.headings]
+    lines = read_table_lines(path)
+    table = (layout_of(lines) or PLAIN).read(lines, str(path))
     clock = time_columns(table)
-    picked = {quantity: _axes(table, names, quantity) for quantity in ('acceleration', 'rate')}
-    if all(each in names for each in _ORIENTATION):
-        picked['orientation'] = [names.index(each) for each in _ORIENTATION]
-    if clock is None or not any(picked.values()):
+    picked = _axes(table) or _bare_axes(table, folded(path.stem))
+    if clock is None or not picked:
         what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
         raise table.error(what, cure=_NAMES)
-    _refuse_several(table, names)
+    _refuse_several(table)
     times = row_times(table, *clock, list(range(len(table.texts))))
-    values = {
-        quantity: table.values(columns) * [table.factor(each, quantity) for each in columns]
-        for quantity, columns in picked.items()
-        if columns
-    }
+    values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     first_cell = table.cells(clock[0][0], [0])[0]
     _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
     read = ', '.join(table.columns[each] for columns in picked.values() for each in columns)
-    notes = [f'{path.name}: read {read}', *([times.note] if times.note else [])]
+    notes = [f'{path.name}: read {read}', times.note]
+    for quantity, columns in picked.items():
+        factors = [table.factor_of(each, quantity) for each in columns]
+        if quantity != 'orientation' and not table.unit_of(columns[0], quantity):
+            factor, note = _without_unit(table, columns[0], quantity, values[quantity])
+            factors = [factor] * len(columns)
+            notes.append(note)
+        values[quantity] = values[quantity] * factors
     return MotionRecord(
         np.asarray(times.seconds),
         values.get('acceleration'),
@@ -77,34 +90,79 @@ def read_motion_table(path: Path) -> MotionRecord:
         values.get('orientation'),
         str(path),
         times.epoch,
-        tuple(notes),
+        tuple(filter(None, notes)),
     )
 
 
-def _axes(table: TextTable, names: list[str], quantity: str) -> list[int]:
-    """Three columns of a quantity, by their names or else by their unit; none without all."""
-    found = [
-        next((i for i, name in enumerate(names) if _is_axis(name, quantity, axis)), None)
-        for axis in _AXES
-    ]
-    if None in found:
-        bare = {
-            axis[1]: i
-            for i, (name, unit) in enumerate(table.headings)
-            if (axis := _BARE_AXIS.fullmatch(name)) and unit and unit_factor(quantity, unit)
-        }
-        found = [bare.get(axis) for axis in _AXES]
-    columns = [each for each in found if each is not None]
-    return columns if len(columns) == len(_AXES) else []
+def _axes(table: TextTable) -> dict[str, list[int]]:
+    """Columns of the axes of each quantity: of several with one name the first that has all."""
+    found: dict[tuple[str, str], dict[str, int]] = {}
+    for index, column in enumerate(table.columns):
+        quantity, name, axis = motion_of(column) or ('', '', '')
+        if axis:
+            found.setdefault((quantity, name), {}).setdefault(axis, index)
+    picked: dict[str, list[int]] = {}
+    for (quantity, _), axes in found.items():
+        wanted = _AXES.get(quantity, '')
+        numbered = sorted(axes) if not axes.keys() & set('wxyz') else []
+        names = wanted if axes.keys() >= set(wanted) else numbered
+        if wanted and len(names) == len(wanted):
+            picked.setdefault(quantity, [axes[axis] for axis in names])
+    return picked
 
 
-def _is_axis(name: str, quantity: str, axis: str) -> bool:
-    return name.endswith(axis) and MOTIONS[quantity].fullmatch(name) is not None
+def _bare_axes(table: TextTable, stem: str) -> dict[str, list[int]]:
+    """Columns x, y and z of the quantity of their unit, of the file's name or with gravity."""
+    axes: dict[str, int] = {}
+    for index, column in enumerate(table.columns):
+        if axis := _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0])):
+            axes.setdefault(axis[1], index)
+    if len(axes) < 3:
+        return {}
+    columns = [axes[axis] for axis in 'xyz']
+    for quantity, word in (('rate', 'gyro'), ('acceleration', 'acc')):
+        units = [table.unit_of(each, quantity) for each in columns]
+        if all(unit_known(quantity, unit) for unit in units):
+            return {quantity: columns}
+        if not any(units) and word in stem:
+            return {quantity: columns}
+    has_gravity = not any(units) and _gravity(table.values(columns)) is not None
+    return {'acceleration': columns} if has_gravity else {}
 
 
-def _refuse_several(table: TextTable, names: list[str]) -> None:
+def _gravity(values: Floats) -> tuple[float, str] | None:
+    """Factor to SI and unit of accelerations in which gravity is; None without it."""
+    size = _size(values)
+    return next(
+        ((factor, unit) for (least, most), factor, unit in _GRAVITY if least < size < most), None
+    )
+
+
+def _size(values: Floats) -> float:
+    """Return the median length of vectors; 0 without one."""
+    size = np.linalg.norm(values, axis=1)
+    return float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0
+
+
+def _without_unit(
+    table: TextTable, column: int, quantity: str, values: Floats
+) -> tuple[float, str]:
+    """Factor to SI of values without a unit, and what was assumed; else a `FormatError`."""
+    name = table.columns[column]
+    if quantity == 'acceleration' and (found := _gravity(values)) is not None:
+        said = f'no unit of {name} in the header: taken in {found[1]}, as gravity is in it'
+        return found[0], said if found[1] else ''
+    unit = 'm/s^2' if quantity == 'acceleration' else 'rad/s'
+    size = _size(values)
+    if size > (_GRAVITY[0][0][1] if unit == 'm/s^2' else _FASTEST):
+        what = f'{name} without a unit is {size:.4g} as a median, which is no {unit}'
+        raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
+    return 1.0, f'no unit of {name} in the header: taken in {unit}'
+
+
+def _refuse_several(table: TextTable) -> None:
     """Refuse a table with rows of several sensors."""
-    for column, name in enumerate(names):
+    for column, name in enumerate(table.columns):
         if folded(name) in _DEVICES:
             cells = table.cells(column, range(len(table.texts)))
             found = sorted({*cells} - {'', table.columns[column]})
@@ -131,8 +189,9 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
         what = f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before'
         raise table.error(what, cure='export times with fractions of a second')
     step = float(np.median(steps)) if len(steps) else 0.0
-    if step > _SLOWEST:
-        what = f'a sample every {step:.6g} s, too few to tell how a tree sways'
+    if step > _SLOWEST or 0.0 < step <= _SHORTEST:
+        size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
+        what = f'a sample every {step:.6g} s, too {size}'
         cure = 'name the unit of time, as time [ms]; a sensor sends 20 samples per second or more'
         raise table.error(what, cure=cure)
 

@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
-from tree_sway.files.column_names import folded, name_and_unit
+from tree_sway.files.column_names import folded, name_and_unit, rank_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.time_stamps import Times, times_of
 
@@ -24,7 +24,8 @@ def _date_and_time(parts: Sequence[str]) -> str:
 
 
 def _date_and_hour(parts: Sequence[str]) -> str:
-    return f'{parts[0]} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
+    day = parts[0].partition('T00:')[0]
+    return f'{day} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
 
 
 def _date_and_digits(parts: Sequence[str]) -> str:
@@ -67,6 +68,8 @@ PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
     (('date', 'pst'), _date_and_time),
 )
 """Columns that make a time together, and how."""
+_LOOKED_AT = 20
+"""Rows that are looked at for which of several columns has the time."""
 
 _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
@@ -77,8 +80,16 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
     for wanted, join in PARTS:
         if all(name in names for name in wanted):
             return [names.index(name) for name in wanted], join, 1.0
-    clock = table.find('time')
-    return None if clock is None else ([clock.index], None, clock.factor)
+    ranks = [(rank_of(column, 'time'), index) for index, column in enumerate(table.columns)]
+    clocks = [index for _, index in sorted((rank, i) for rank, i in ranks if rank is not None)]
+    first = range(min(len(table.texts), _LOOKED_AT))
+    for index in [i for i in clocks if _has_times(table.cells(i, first))] or clocks[:1]:
+        return [index], None, table.factor_of(index, 'time')
+    return None
+
+
+def _has_times(cells: Sequence[str]) -> bool:
+    return any(map(str.strip, cells)) and bool(np.isfinite(times_of(cells).seconds).any())
 
 
 def row_times(

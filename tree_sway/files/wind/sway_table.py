@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import COLUMNS, MOTIONS
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.column_names import motion_of
+from tree_sway.files.table_file import Column, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import times_of
 
@@ -74,14 +74,13 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
 
     """
     table = parse_table(lines, source)
-    names = [name for name, _ in table.headings]
-    clock = next((names.index(each) for each in COLUMNS['time']['names'] if each in names), None)
-    motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
+    clock = table.find('time')
+    motion = [(i, found[0]) for i, name in enumerate(table.columns) if (found := motion_of(name))]
     if clock is None or not motion:
         what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
         cure = 'call the columns time, x, y or time, tilt_x or time, ax, ay in the header'
         raise table.error(what, cure=cure)
-    if 'seconds_elapsed' in names:  # Sensor Logger has axes x, y, z for all its sensors
+    if 'seconds_elapsed' in table.columns:  # Sensor Logger has axes x, y, z for all its sensors
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
     if quantities == ['acceleration', 'rate']:  # of an IMU: both have the same frequencies
@@ -90,7 +89,7 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     if len(quantities) > 1:
         what = f'{" and ".join(quantities)} in one file'
         raise table.error(what, cure='keep the columns of one quantity')
-    factors = [table.factor(i, quantities[0]) for i, _ in motion]
+    factors = [table.factor_of(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     with np.errstate(over='ignore'):
@@ -102,14 +101,10 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
 
-def _quantity(name: str) -> str | None:
-    return next((q for q, pattern in MOTIONS.items() if pattern.fullmatch(name)), None)
-
-
-def _times(table: TextTable, clock: int) -> Floats:
+def _times(table: TextTable, clock: Column) -> Floats:
     """Seconds of each row, from numbers or from dates."""
-    stamps = table.cells(clock, range(len(table.texts)))
-    times = times_of(stamps, table.factor(clock, 'time')).seconds
+    stamps = table.cells(clock.index, range(len(table.texts)))
+    times = times_of(stamps, clock.factor).seconds
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
         raise table.error(what, row, 'correct the cell or remove the row')

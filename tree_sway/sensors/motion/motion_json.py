@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.files.column_names import COLUMNS, folded, MOTIONS
+from tree_sway.files.column_names import folded, motion_of, rank_of
 from tree_sway.files.time_stamps import dates
 from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
 from tree_sway.sensors.readers.json_path import parse_json
@@ -37,8 +37,6 @@ _MOST = 500
 _LONGEST = 40
 _MOST_NAMES = 64
 _DEEPEST = 2
-_TIMES = frozenset({*map(folded, COLUMNS['time']['names']), 'millis', 'micros'})
-_UNITS_BEHIND = ('s', 'ms', 'us', 'ns')
 _WHOLES = {
     'acceleration': {'acceleration', 'accel', 'acc', 'linearacceleration', 'accelerometer'},
     'rate': {'rate', 'gyro', 'gyroscope', 'angularvelocity', 'angularrate', 'rotationrate'},
@@ -125,21 +123,7 @@ def _whole(name: str) -> str:
 @lru_cache(4096)
 def _place(name: str) -> tuple[str, str] | None:
     """Quantity and axis of a name; None for any other."""
-    whole, dot, axis = name.partition('.')
-    if dot and whole in _WHOLES and axis in ('x', 'y', 'z', 'w'):
-        return whole, axis
-    plain = name.strip().lower()
-    if folded(plain) in _TIMES or _is_time_with_unit(plain):
+    if rank_of(name, 'time') is not None:
         return 'time', ''
-    if len(plain) == 2 and plain[0] == 'q' and plain[1] in 'xyzw':
-        return 'orientation', plain[1]
-    for quantity in ('acceleration', 'rate'):
-        if plain[-1:] in ('x', 'y', 'z') and MOTIONS[quantity].fullmatch(plain):
-            return quantity, plain[-1]
-    return None
-
-
-def _is_time_with_unit(name: str) -> bool:
-    """Whether a name is that of a time with its unit behind, as t_ms."""
-    first, _, unit = name.rpartition('_')
-    return unit in _UNITS_BEHIND and folded(first) in _TIMES
+    quantity, _, axis = motion_of(name) or ('', '', '')
+    return (quantity, axis) if quantity in _WHOLES and axis in tuple('xyzw') else None

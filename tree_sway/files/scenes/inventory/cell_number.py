@@ -16,7 +16,12 @@ _GROUPED = re.compile(
 )
 """A number of thousands with a fraction, ``1.234,5`` or ``1,234.5``."""
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
-_SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&|]|,\s)\s*\d')
+_AND = r'[+;&|]|,\s|\s(?:and|und|et|y|en|e|och|og)\s'
+_SEVERAL = re.compile(rf'\d(?:\D{{0,4}}?(?:{_AND})|\s)\s*\d')
+_TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*]\s*(\d+(?:[.,]\d+)?)')
+"""A number of stems of one size, as in ``2 x 35``."""
+_BETWEEN = re.compile(r"[^\W\d_]+|[-–—~/]|\.\.")
+"""What stands between the two numbers of a range."""
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
 """Letter of a class before its range, as in ``c. 9 tot 12 m.``."""
 _AND_MORE = re.compile(
@@ -25,10 +30,8 @@ _AND_MORE = re.compile(
     re.IGNORECASE,
 )
 """End of the highest class, as in ``24 m. en hoger``: its number is the least of the class."""
-_SPLIT = re.compile(r'[+;&|/]|,\s')
-_SLASHES = re.compile(
-    r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?'
-)
+_SPLIT = re.compile(rf'(?:{_AND}|/|(?<=\d)\s)(?=\s*\d)')
+_SLASHES = re.compile(r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?')
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
 
@@ -45,6 +48,8 @@ def cell_number(text: str) -> tuple[float, str] | None:
         return None
     text = _GROUPED.sub(_without_groups, _AND_MORE.sub('', _CLASS.sub('', text)))
     numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
+    if len(numbers) == 2 and not _BETWEEN.search(_NUMBER.split(text)[1]):
+        return None
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None
     found = _UNIT.search(text)
@@ -67,6 +72,7 @@ def stems_number(text: str) -> tuple[float, str] | None:
     Stems such as ``320, 280``, ``30+25`` or ``20/18/15`` are one of the sum of their sections;
     ``18/20`` is a class of nurseries, a range.
     """
+    text = _TIMES.sub(lambda found: '+'.join([found[2]] * int(found[1])), text)
     slashes = _SLASHES.match(text)
     is_class = slashes is None or (
         slashes[3] is None

@@ -17,6 +17,10 @@ from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_numb
 from tree_sway.files.table_file import Column, TextTable
 
 
+_NUMBERED = re.compile(r'(?<=[^\W\d])[ _]?[1-9](?=$|[ _(\[])')
+"""Number of a stem in the name of a column."""
+
+
 class InventoryColumns:
     """
     Columns of a table by their quantity, with its used ones, assumptions, and rows left out.
@@ -67,6 +71,11 @@ class InventoryColumns:
         """Places of all columns of a quantity, in the order of their names in `COLUMNS`."""
         ranks = [(rank_of(name, quantity), i) for i, name in enumerate(self.table.columns)]
         return [i for _, i in sorted((rank, i) for rank, i in ranks if rank is not None)]
+
+    def numbered(self, quantity: str) -> list[int]:
+        """Places of columns of the stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2 (cm)``."""
+        names = [_NUMBERED.sub('', name) for name in self.table.columns]
+        return [i for i, name in enumerate(names) if rank_of(name, quantity) is not None]
 
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""

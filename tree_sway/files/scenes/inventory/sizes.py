@@ -40,11 +40,15 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
     """Diameters at breast height [m], NaN without one; None if no column has them."""
     found: Floats | None = None
     for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
-        index = columns.index_of(quantity)
-        if index is None:
+        stems = [index for index in [columns.index_of(quantity)] if index is not None]
+        stems = stems or columns.numbered(quantity)
+        if not stems:
             continue
+        index = stems[0]
         in_header = columns.table.unit_of(index, quantity)
         values, unit = columns.numbers(index, stems=True, unit=in_header)
+        for each in stems[1:]:
+            values = np.hypot(values, np.nan_to_num(columns.numbers(each, unit=unit)[0]))
         factor = unit_factor('length', unit) if unit else None
         if factor is None:
             factor, why = _stem_unit(values / over, columns, is_in_states)

@@ -42,14 +42,29 @@ def _is_json(lines: Sequence[str]) -> bool:
 def read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
     try:
-        document = json.loads('\n'.join(lines))
+        document = _document(lines)
     except (ValueError, RecursionError) as error:
         raise FormatError(f'not JSON: {error}', where=source, cure='save it again whole') from None
     tables = list(_tables(document, {}, source, 0))
     if not tables:
         cure = 'give columns or records with a time, a speed and a direction'
         raise FormatError('no table in the JSON', where=source, cure=cure)
-    return max(tables, key=lambda table: len(table.texts))
+    return max(tables, key=lambda table: (_has_speed(table), len(table.texts)))
+
+
+def _has_speed(table: TextTable) -> bool:
+    return any(table.find(each) for each in ('wind_speed', 'wind_x'))
+
+
+def _document(lines: list[str]) -> Any:
+    """Return a document of several lines, or a list of those that are one each."""
+    try:
+        return json.loads('\n'.join(lines))
+    except ValueError:
+        filled = [line for line in lines if line.strip()]
+        if not filled[0].rstrip().endswith('}'):
+            raise
+        return [json.loads(line) for line in filled]
 
 
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:
@@ -73,9 +88,8 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield _of_states(states, source)
         elif node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        else:
-            for each in node:
-                yield from _tables(each, units, source, depth + 1)
+        for each in [] if states else node:
+            yield from _tables(each, units, source, depth + 1)
 
 
 def _said_units(node: dict[str, Any]) -> Cells:
@@ -123,8 +137,19 @@ def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, 
         whole = f'{before}{name}'
         if isinstance(each, dict) and depth < _DEEPEST:
             yield from _flat(each, f'{whole}.', depth + 1)
-        elif not isinstance(each, list):
+        elif isinstance(each, list):
+            for item in filter(_is_named_value, each):
+                label = next(text for text in item.values() if isinstance(text, str))
+                yield from _flat(item, f'{label}.', depth + 1)
+        else:
             yield whole, _text(each)
+
+
+def _is_named_value(item: Any) -> bool:
+    """Whether an item of a list is a value beside its name, as in Frost."""
+    return isinstance(item, dict) and 'value' in item and any(
+        isinstance(each, str) for each in item.values()
+    )
 
 
 def _unit_beside(record: Cells, name: str) -> str | None:

@@ -13,14 +13,17 @@ from dataclasses import replace
 import re
 
 from tree_sway.files.column_names import name_and_unit, rank_of, unit_known
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import parse_table, SEPARATORS, TextTable
+from tree_sway.files.text_file import finite
 from tree_sway.files.wind.layouts.layout import Layout
 
 _HEAD = 40
 _MOST_COLUMNS = 200
-_CELL = re.compile(r'[,;\t](?=(?:[^"]*"[^"]*")*[^"]*$)')
+_CELL = re.compile(rf'[{SEPARATORS}](?=(?:[^"]*"[^"]*")*[^"]*$)')
 _NUMBER = re.compile(r'[-+\d.,:]+')
 _PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
+_KINDS = ('speed', 'acceleration', 'rate')
+"""Kinds of units of which a row of units has at least one."""
 _WIND = ('wind_speed', 'wind_direction', 'wind_x', 'gust')
 
 
@@ -83,9 +86,8 @@ def _with_units_below(table: TextTable) -> TextTable:
     The row may have names too, as in ``風速(m/s)`` below ``WS``.
     """
     cells = [_unit_below(cell) for cell in table.split(table.texts[0])]
-    pairs = zip(table.columns, cells, strict=False)
-    speeds = [cell for name, cell in pairs if rank_of(name, 'wind_speed') is not None]
-    if not any(unit_known('speed', cell) for cell in speeds):
+    is_unit = any(unit_known(kind, cell) for cell in cells for kind in _KINDS)
+    if not is_unit or any(finite(cell) is not None for cell in cells):
         return table
     units = [
         '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
@@ -105,7 +107,7 @@ def _unit_below(cell: str) -> str:
     name, unit = name_and_unit(cell, 'speed')
     if name == cell:
         return cell
-    return unit if unit_known('speed', unit) or unit_known('angle', unit) else ''
+    return unit if any(unit_known(kind, unit) for kind in ('angle', *_KINDS)) else ''
 
 
 PLAIN = Layout('table', _is_table, _read)

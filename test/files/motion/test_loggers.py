@@ -1,0 +1,216 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Forms in which loggers and phones give motion: read in their units, or refused by cause."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+import zipfile
+
+import numpy as np
+import pytest
+
+from tree_sway.errors import FormatError
+from tree_sway.files.motion.motion_file import read_motion
+
+GRAVITY = 9.80665
+DEGREE = np.pi / 180.0
+EPOCH = 1_772_359_200
+COUNT = 40
+STEP = 0.02
+
+
+def table(head: str, row: str, *, below: str = '') -> str:
+    """
+    Return a header, maybe a line below it, and rows 0.02 s apart.
+
+    In a row ``{s}``, ``{ms}``, ``{us}``, ``{ns}`` are its time, ``{unix}`` and ``{date}`` those of
+    a clock, ``{a}`` an acceleration along x in [m/s^2], ``{g}`` in g, and ``{k}`` its number.
+    """
+    rows = []
+    for k in range(COUNT):
+        after = round(k * STEP, 3)
+        rows.append(row.format(
+            k=k, s=after, ms=20 * k, us=20_000 * k, ns=20_000_000 * k,
+            unix=f'{EPOCH + after:.3f}', unix_ms=1000 * EPOCH + 20 * k,
+            unix_ns=(1000 * EPOCH + 20 * k) * 1_000_000,
+            date=f'2026-03-01 10:00:{after:06.3f}', day=f'01-Mar-2026 10:00:{after:06.3f}',
+            a=0.1 * (k % 5), g=0.1 * (k % 5) / GRAVITY,
+        ))  # fmt: skip
+    return '\n'.join([head, *([below] if below else []), *rows]) + '\n'
+
+
+ACCELERATION = 'acceleration'
+RATE = 'rate'
+BOTH = (ACCELERATION, RATE)
+READ: dict[str, tuple[str, tuple[str, ...], str]] = {
+    'phyphox': (
+        'Raw Data.csv', (ACCELERATION,),
+        table('"Time (s)","Linear Acceleration x (m/s^2)","Linear Acceleration y (m/s^2)",'
+            '"Linear Acceleration z (m/s^2)","Absolute acceleration (m/s^2)"',
+            '{s},{a},0.0,9.80665,9.9'),
+    ),
+    'phyphox with tabs and decimal commas': (
+        'Raw Data.csv', (ACCELERATION,),
+        table('"Time (s)"\t"Acceleration x (m/s^2)"\t"Acceleration y (m/s^2)"\t'
+            '"Acceleration z (m/s^2)"', '{s}\t{a}\t0.0\t9.80665').replace('.', ','),
+    ),
+    'sensor logger': (
+        'Accelerometer.csv', (ACCELERATION,),
+        table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},9.80665,0.0,{a}'),
+    ),
+    'sensor logger, gyroscope': (
+        'Gyroscope.csv', (RATE,),
+        table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},0.0,0.5,0.0'),
+    ),
+    'sensor log of ios': (
+        'motion.csv', BOTH,
+        table('loggingTime(txt),loggingSample(N),accelerometerTimestamp_sinceReboot(s),'
+            'accelerometerAccelerationX(G),accelerometerAccelerationY(G),'
+            'accelerometerAccelerationZ(G),motionUserAccelerationX(G),'
+            'motionUserAccelerationY(G),motionUserAccelerationZ(G),gyroRotationX(rad/s),'
+            'gyroRotationY(rad/s),gyroRotationZ(rad/s)',
+            '{date} +0100,{k},{s},{g},0.0,1.0,0.0,0.0,0.0,0.0,0.5,0.0'),
+    ),
+    'physics toolbox': (
+        'motion.csv', (ACCELERATION,),
+        table('time,gFx,gFy,gFz,TgF', '{s},{g},0.0,1.0,1.0'),
+    ),
+    'physics toolbox, linear': (
+        'motion.csv', (ACCELERATION,),
+        table('time,ax (m/s^2),ay (m/s^2),az (m/s^2),aT (m/s^2)', '{s},{a},0.0,9.80665,9.8'),
+    ),
+    'matlab mobile': (
+        'motion.csv', (ACCELERATION,), table('Timestamp,X,Y,Z', '{day},{a},0.0,9.80665'),
+    ),
+    'metawear': (
+        'motion.csv', (ACCELERATION,),
+        table('epoch (ms),time (01:00),elapsed (s),x-axis (g),y-axis (g),z-axis (g)',
+            '{unix_ms},2026-03-01T10.00.00,{s},{g},0.0,1.0'),
+    ),
+    'movella dot': (
+        'motion.csv', (ACCELERATION,),
+        'sep=,\nDeviceTag:,Dot1\nFirmwareVersion:,2.0.0\n' + table(
+            'PacketCounter,SampleTimeFine,Quat_W,Quat_X,Quat_Y,Quat_Z,Acc_X,Acc_Y,Acc_Z,',
+            '{k},{us},1.0,0.0,0.0,0.0,{a},0.0,9.80665,'),
+    ),
+    'witmotion': (
+        'motion.txt', BOTH,
+        'StartTime: 2026-03-01 10:00:00.000\n' + table('Address\tTime(s)\tax(g)\tay(g)\taz(g)\t'
+            'wx(deg/s)\twy(deg/s)\twz(deg/s)\tAngleX(deg)\tT(°)',
+            '0x50\t{s}\t{g}\t0.0\t1.0\t0.0\t28.64788975654116\t0.0\t0.0\t20.1'),
+    ),
+    'toa5 of an accelerometer': (
+        'motion.dat', (ACCELERATION,),
+        '"TOA5","CR6","CR6","1","CR6.Std","CPU:sway.CR6","1","Sway"\n'
+        + table('"TIMESTAMP","RECORD","Accel_X","Accel_Y","Accel_Z"',
+            '"{date}",{k},{g},0.0,1.0', below='"TS","RN","g","g","g"\n"","","Smp","Smp","Smp"'),
+    ),
+    'androsensor': (
+        'motion.csv', BOTH,
+        table('ACCELEROMETER X (m/s²);ACCELEROMETER Y (m/s²);ACCELEROMETER Z (m/s²);'
+            'GYROSCOPE X (rad/s);GYROSCOPE Y (rad/s);GYROSCOPE Z (rad/s);'
+            'Time since start in ms ;YYYY-MO-DD HH-MI-SS_SSS',
+            '{a};0.0;9.80665;0.0;0.5;0.0;{ms};2026-03-01 10:00:00:000'),
+    ),
+    'plotjuggler': (
+        'motion.csv', (ACCELERATION,),
+        table('__time,/imu/data/linear_acceleration/x,/imu/data/linear_acceleration/y,'
+            '/imu/data/linear_acceleration/z', '{unix},{a},0.0,9.80665'),
+    ),
+    'px4': (
+        'motion.csv', BOTH,
+        table('timestamp [us],gyro_rad[0],gyro_rad[1],gyro_rad[2],accelerometer_m_s2[0],'
+            'accelerometer_m_s2[1],accelerometer_m_s2[2]', '{us},0.0,0.5,0.0,{a},0.0,9.80665'),
+    ),
+    'arduino with a header': (
+        'motion.csv', (ACCELERATION,), table('millis,ax,ay,az', '{ms},{g},0.0,1.0'),
+    ),
+    'shimmer with a name for its time': (
+        'motion.csv', (ACCELERATION,),
+        'sep=\t\n' + table('time\tShimmer_8665_Accel_LN_X_CAL\tShimmer_8665_Accel_LN_Y_CAL\t'
+            'Shimmer_8665_Accel_LN_Z_CAL', '{unix_ms}\t{a}\t0.0\t9.80665',
+            below='ms\tm/(s^2)\tm/(s^2)\tm/(s^2)'),
+    ),
+    'units as words': (
+        'motion.csv', (ACCELERATION,),
+        table('t_ms,acc_x_mg,acc_y_mg,acc_z_mg', '{ms},{g}e3,0.0,1000.0'),
+    ),
+    'ros topic as csv': (
+        'motion.csv', (ACCELERATION,),
+        table('stamp,linear_acceleration.x,linear_acceleration.y,linear_acceleration.z',
+            '{unix},{a},0.0,9.80665'),
+    ),
+}  # fmt: skip
+"""Name of a file, what is in it, and its text."""
+
+REFUSED: dict[str, tuple[str, str]] = {
+    'shimmer': (
+        'sep=\t\n' + table('Shimmer_8665_Timestamp_Unix_CAL\tShimmer_8665_Accel_LN_X_CAL\t'
+            'Shimmer_8665_Accel_LN_Y_CAL\tShimmer_8665_Accel_LN_Z_CAL',
+            '{unix_ms}\t{a}\t0.0\t9.80665', below='ms\tm/(s^2)\tm/(s^2)\tm/(s^2)'),
+        'no time among Shimmer_8665_Timestamp_Unix_CAL',
+    ),
+    'axivity without a header': (table('{date},0.0,0.0,1.0', '{date},{g},0.0,1.0'), 'no header'),
+    'serial monitor': (
+        '10:00:00.000 -> 0.01,0.02,9.81\n10:00:00.020 -> 0.02,0.02,9.81\n', 'no header',
+    ),
+    'counts of a converter': (
+        table('millis,ax,ay,az', '{ms},{k},0,16384'), 'without a unit is 1.638e',
+    ),
+    'degrees that are no radians': (
+        table('millis,gx,gy,gz', '{ms},0,400,0'), 'which is no rad/s',
+    ),
+    'a magnetometer': (
+        table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},40.0,0.0,20.0'), 'no motion among',
+    ),
+    'ticks of 0.1 ms': (
+        table('PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z', '{k},{ms}0,{a},0.0,9.80665'),
+        'too many for a motion sensor',
+    ),
+}  # fmt: skip
+"""Texts of files, and a part of the reason of their refusal."""
+
+
+@pytest.mark.parametrize('name', READ)
+def test_a_logger_is_read_in_its_units(name: str, tmp_path: Path) -> None:
+    file, quantities, text = READ[name]
+    path = tmp_path / file
+    path.write_text(text, encoding='utf-8')
+    record = read_motion(path)
+    assert record.time[-1] - record.time[0] == pytest.approx(STEP * (COUNT - 1), abs=1e-6)
+    assert (record.acceleration is not None) == (ACCELERATION in quantities)
+    assert (record.rate is not None) == (RATE in quantities)
+    if record.acceleration is not None:
+        expected = [[0.1 * (k % 5), 0.0, GRAVITY] for k in range(COUNT)]
+        np.testing.assert_allclose(record.acceleration, expected, atol=1e-9)
+    if record.rate is not None:
+        np.testing.assert_allclose(record.rate, [[0.0, 0.5, 0.0]] * COUNT, atol=1e-9)
+
+
+@pytest.mark.parametrize('name', REFUSED)
+def test_a_logger_is_refused_by_cause(name: str, tmp_path: Path) -> None:
+    text, why = REFUSED[name]
+    path = tmp_path / 'motion.csv'
+    path.write_text(text.replace('{date}', '2026-03-01 09:59:59.980'), encoding='utf-8')
+    with pytest.raises(FormatError, match=why) as caught:
+        read_motion(path)
+    assert caught.value.cure
+
+
+def test_a_zip_is_to_be_unpacked(tmp_path: Path) -> None:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, 'w', zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr('Raw Data.csv', READ['phyphox'][2])
+    path = tmp_path / 'phyphox.zip'
+    path.write_bytes(data.getvalue())
+    with pytest.raises(FormatError, match='a zip archive'):
+        read_motion(path)
+
+
+@pytest.mark.parametrize('name', ['physics toolbox', 'arduino with a header'])
+def test_a_unit_that_gravity_tells_is_said(name: str, tmp_path: Path) -> None:
+    path = tmp_path / 'motion.csv'
+    path.write_text(READ[name][2].replace('gFx,gFy,gFz', 'ax,ay,az'), encoding='utf-8')
+    assert any('taken in g, as gravity is in it' in note for note in read_motion(path).notes)
