@@ -187,24 +187,31 @@ def test_a_worker_that_lies_or_fails_is_told(apart: SeparateCluster) -> None:
             list(run_all(distributed, client, int, [('piece 2', ('x',))]))
 
 
-def test_a_worker_that_hangs_ends_the_study_and_keeps_what_is_done() -> None:
+def study_that_hangs(done: list[None], deadline: float) -> None:
+    """Do four pieces of work, of which the first does not end by itself."""
     work = [('piece 0', (DEADLINE,)), *((f'piece {k}', (0.0,)) for k in range(1, 4))]
+    with cluster.cluster(2) as (distributed, client):
+        assert list(run_all(distributed, client, abs, [('first', (1,))])) == [1]
+        for each in run_all(distributed, client, time.sleep, work, deadline=deadline):
+            done.append(each)
+            if len(done) == 3 and deadline == cluster.DEADLINE:
+                threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,)).start()
+
+
+@pytest.mark.parametrize(
+    ('deadline', 'error', 'said'),
+    [
+        (2.0, TransportError, 'within 2 s; 1 pieces of work are left, the first piece 0;.*--d'),
+        (cluster.DEADLINE, KeyboardInterrupt, None),
+    ],
+)
+def test_work_that_hangs_is_ended_by_the_deadline_or_ctrl_c_and_keeps_what_is_done(
+    deadline: float, error: type[BaseException], said: str | None
+) -> None:
     done: list[None] = []
-    told = r'anything within 2 s; 1 pieces of work are left, the first piece 0.*--deadline'
-    with pytest.raises(TransportError, match=told):
-        with cluster.cluster(2) as (distributed, client):
-            assert list(run_all(distributed, client, abs, [('first', (1,))])) == [1]
-            for each in run_all(distributed, client, time.sleep, work, deadline=2.0):
-                done.append(each)
+    with pytest.raises(error, match=said):
+        study_that_hangs(done, deadline)
     assert len(done) == 3
-    until(lambda: not multiprocessing.active_children())
-
-
-def test_ctrl_c_ends_work_that_hangs() -> None:
-    with pytest.raises(KeyboardInterrupt):
-        with cluster.cluster(1) as (distributed, client):
-            threading.Timer(2.0, signal.raise_signal, (signal.SIGINT,)).start()
-            list(run_all(distributed, client, time.sleep, [('piece 0', (DEADLINE,))]))
     until(lambda: not multiprocessing.active_children())
 
 

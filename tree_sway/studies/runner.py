@@ -109,7 +109,7 @@ def result_path(folder: Path, case: Case) -> Path:
 
 
 def stored_row(case: Case, folder: Path) -> Plain | None:
-    """Return the row of a case; None if it has no file, or a damaged one, as a full disk leaves."""
+    """Return the row of a case; None if it has no file, or a damaged one."""
     try:
         with result_path(folder, case).open('rb') as file:
             row = json.loads(file.read(_LARGEST_ROW))

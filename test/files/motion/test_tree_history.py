@@ -82,7 +82,9 @@ def test_a_row_that_a_full_disk_cut_off_stays_alone(tmp_path: Path) -> None:
     'content',
     [b'\xff\xfe', b'\x00' * 9, b'"' + b'a' * 200_000, b'time' + b'a' * 200_000, b'\n', b'\r,'],
 )
-def test_a_damaged_table_is_refused_by_its_name_with_a_cure(tmp_path: Path, content: bytes) -> None:
+def test_a_damaged_table_is_refused_by_its_name_with_a_cure(
+    tmp_path: Path, content: bytes
+) -> None:
     path = tmp_path / 'oak.csv'
     path.write_bytes(content)
     with pytest.raises(FormatError, match=r'oak\.csv: has other columns; name another file'):
