@@ -74,9 +74,10 @@ def test_info_shows_the_frequency_that_was_given(
     ]
     assert cli.main([*command, '-o', str(out)]) == 0
     text = capsys.readouterr().out
-    assert "-> 1.2 Hz, most in branch 'stem'" in text
+    assert "-> 1.2 Hz (to and fro in 0.833 s), most in branch 'stem'" in text
     assert f'damping    0.06 -> 0.09 {"in leaf" if leaves == "on" else "bare"}' in text
-    assert 'includes that of the air' in text
+    assert 'in wide swings it is too high, as air brakes too' in text
+    assert text.splitlines()[-1].startswith(f'Next: tree-sway show {out}')
     facts = info(out, capsys, '--leaves', leaves)
     assert facts['frequencies'][0] == pytest.approx(1.2, rel=1e-6)
     assert facts['modes'][0]['damping_ratio'] == pytest.approx(0.09)
@@ -96,7 +97,9 @@ def test_a_pull_and_release_gives_the_tree_back(
     out = tmp_path / 'fitted.yaml'
     command = ['calibrate', str(tree), '--modulus', '2e10', '--record', str(tmp_path / 'pull.csv')]
     assert cli.main([*command, '-o', str(out)]) == 0
-    assert 'displacement in x [mm], y [mm], release (' in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert f'Measured in {tmp_path / "pull.csv"}: displacement of x [mm], y [mm], ' in text
+    assert ': each swing is 31 % smaller than the one before' in text
     facts = info(out, capsys)
     assert facts['frequencies'][0] == pytest.approx(float(sim.frequencies()[0]), rel=5e-3)
     assert facts['modes'][0]['damping_ratio'] == pytest.approx(0.06, rel=0.05)
@@ -111,7 +114,9 @@ def test_the_wood_of_the_tree_is_kept_but_for_what_was_measured(
         cli.main(['calibrate', str(tree), '--density', '777', '--frequency', '1', '-o', str(out)])
         == 0
     )
-    assert 'damping    0.06 -> 0.06 bare' in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert 'damping    stays 0.06 bare, as it was not measured: --damping' in text
+    assert 'far from usual' not in text
     before, after = open_tree(tree), open_tree(out)
     assert after.species.density == 777.0
     assert (after.species.damping_bare, after.species.damping_in_leaf) == (0.06, 0.06)
@@ -139,7 +144,8 @@ def test_a_modulus_that_no_wood_has_is_said(
         cli.main(['calibrate', str(tree), '--frequency', '9', '-o', str(tmp_path / 'x.yaml')]) == 0
     )
     out, err = capsys.readouterr()
-    assert "7.03 times the table's for ash" in out
+    assert '7.03 times the usual one of ash' in out
+    assert 'that is far from usual: first check the diameters' in out
     assert 'warning: a modulus of 66.8 GPa' in err
 
 

@@ -131,11 +131,25 @@ def test_other_versions_are_refused_by_a_sentence(
     monkeypatch.setattr(cluster, 'own_version', differs)
 
     class Client:
-        def run(self, _: object) -> dict[str, dict[str, str]]:
+        _run = None
+
+        def sync(self, *_: object, **__: object) -> dict[str, dict[str, str]]:
             return {'tcp://there:1': {**other, 'tree_sway_ros': '0.1.0'}}
 
     with pytest.raises(TransportError, match=r'there:1 has tree_sway_ros 0\.1\.0 inst.* 9\.9'):
         run(Client(), 'tcp://there:2')
+
+
+def test_a_worker_that_does_not_answer_at_first_is_told(
+    start_cluster: StartCluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stopped = start_cluster(1)
+    stopped.wait_for_workers()
+    monkeypatch.setattr(cluster, '_PATIENCE', 2.0)
+    stopped.workers[0].send_signal(signal.SIGSTOP)
+    with pytest.raises(TransportError, match='a worker does not answer within 2 s; end workers'):
+        with cluster.cluster(1, stopped.address):
+            pass
 
 
 @pytest.mark.parametrize('address', ['host:8786', 'tcp://host', 'http://host:1', 'tcp://host:0'])
@@ -171,6 +185,34 @@ def test_a_worker_that_lies_or_fails_is_told(apart: SeparateCluster) -> None:
             list(run_all(distributed, client, str, work, lambda result, _: result == 'y'))
         with pytest.raises(TransportError, match=r'piece 2: a worker failed .ValueError'):
             list(run_all(distributed, client, int, [('piece 2', ('x',))]))
+
+
+def study_that_hangs(done: list[None], deadline: float) -> None:
+    """Do four pieces of work, of which the first does not end by itself."""
+    work = [('piece 0', (DEADLINE,)), *((f'piece {k}', (0.0,)) for k in range(1, 4))]
+    with cluster.cluster(2) as (distributed, client):
+        assert list(run_all(distributed, client, abs, [('first', (1,))])) == [1]
+        for each in run_all(distributed, client, time.sleep, work, deadline=deadline):
+            done.append(each)
+            if len(done) == 3 and deadline == cluster.DEADLINE:
+                threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,)).start()
+
+
+@pytest.mark.parametrize(
+    ('deadline', 'error', 'said'),
+    [
+        (2.0, TransportError, 'within 2 s; 1 pieces of work are left, the first piece 0;.*--d'),
+        (cluster.DEADLINE, KeyboardInterrupt, None),
+    ],
+)
+def test_work_that_hangs_is_ended_by_the_deadline_or_ctrl_c_and_keeps_what_is_done(
+    deadline: float, error: type[BaseException], said: str | None
+) -> None:
+    done: list[None] = []
+    with pytest.raises(error, match=said):
+        study_that_hangs(done, deadline)
+    assert len(done) == 3
+    until(lambda: not multiprocessing.active_children())
 
 
 def study_with_another(started: list[multiprocessing.process.BaseProcess]) -> None:

@@ -196,7 +196,7 @@ def written(path: Path) -> list[Row]:
         return list(csv.DictReader(file))
 
 
-def by_power_laws(work, *, workers, scheduler):
+def by_power_laws(work, *, workers, scheduler, deadline):
     """Yield rows as `risk_rows` does, the last kind first."""
     for kind in reversed(work.kinds):
         rows = rows_of_kind(work, power_result(kind))
@@ -247,7 +247,7 @@ def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
     source, table = tmp_path / 'trees.csv', tmp_path / 'risk.csv'
     source.write_text(INVENTORY)
 
-    def two_kinds_only(work, *, workers, scheduler):
+    def two_kinds_only(work, *, workers, scheduler, deadline):
         for number, kind in enumerate(work.kinds):
             if number == 2:
                 raise KeyboardInterrupt

@@ -69,8 +69,10 @@ def test_a_case_whose_file_is_cut_off_is_computed_again(tmp_path):
         compute_to_file(case, tmp_path)
     result_path(tmp_path, first).write_text('{"tip_rms [m]": 0.0')
     assert missing_cases([first, second], tmp_path) == [first]
-    result_path(tmp_path, first).write_text('')
-    assert missing_cases([first, second], tmp_path) == [first]
+    too_long = b'{"a": "' + b' ' * 2**20 + b'"}'
+    for damaged in (b'', b'\xff\xfe', b'[' * 50_000, b'{}', b'[1]', too_long):
+        result_path(tmp_path, first).write_bytes(damaged)
+        assert missing_cases([first, second], tmp_path) == [first]
 
 
 def watched(after, do):
@@ -148,10 +150,10 @@ def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys, mon
     compute_to_file(read_study(study)[0], folder)
     said = []
 
-    def outcomes(missing, workers, scheduler):
+    def outcomes(missing, workers, scheduler, deadline):
         said.append(capsys.readouterr().err)
         assert workers == 2
-        assert scheduler is None
+        assert (scheduler, deadline) == (None, 14_400.0)
         return compute_batch(missing, {})  # in this process: others take long to start
 
     monkeypatch.setattr(runner, '_outcomes', outcomes)

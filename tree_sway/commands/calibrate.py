@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
+import shlex
 import sys
 import time
 
@@ -39,6 +40,8 @@ _PERIOD = 1.0
 """Interval of reading the measurement of a phone [s]."""
 _WOOD = (0.3e9, 200e9)
 """A modulus outside of this [Pa] is ten times beyond any green wood's."""
+_UNUSUAL = 1.5
+"""Factor on the usual modulus of a species beyond which the cause is mostly elsewhere."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -113,9 +116,10 @@ def run(arguments: argparse.Namespace) -> int:
         stem = tree_file.tree.branch_names[0]
         print(f'note: this sway is of a limb; one measured on the stem: --branch {stem}',
               file=sys.stderr)  # fmt: skip
-    for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
+    for line in _changes(tree_file.species, fitted, error, damping, in_leaf=in_leaf):
         print(line)
     write_tree_file(output, tree_file.tree, fitted.species)
+    print(f'Next: tree-sway show {shlex.quote(str(output))}  # shows how it sways now')
     return 0
 
 
@@ -143,12 +147,16 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
     with inside(record.source):
         found = estimate_sway(record.time, record.motion, band)
     print(
-        f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
-        f'release ({found.cycles:.0f} cycles)'
+        f'Measured in {record.source}: {record.quantity} of {", ".join(record.columns)}, '
+        f'{found.cycles:.0f} swings after the release'
     )
     print(
-        f'  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, '
-        f'damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}'
+        f'  swing      {_swing(found.frequency)}'
+        f'{_within(found.frequency_error / found.frequency)}'
+    )
+    print(
+        f'  damping    {found.damping_ratio:.3g}{_within(found.damping_error / max(found.damping_ratio, 1e-9))}: '
+        f'each swing is {_shrinks(found.damping_ratio)} smaller than the one before'
     )
     return found
 
@@ -171,27 +179,59 @@ def _recorded(source: str, seconds: float) -> SwayRecord:
             time.sleep(_PERIOD)
 
 
-def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
-    """Print the changes; `error` is the relative standard error of the frequency."""
+def _changes(
+    before: Species, fitted: Calibration, error: float, damping: float | None, *, in_leaf: bool
+) -> list[str]:
+    """Tell what changed; `error` is the relative standard error of the frequency."""
     after = fitted.species
     table = species_named(before.key)
     was_stable = fitted.frequency_before is not None
-    was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'
-    spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
-    season = 'damping_in_leaf' if in_leaf else 'damping_bare'
-    roots = []
+    was = _swing(fitted.frequency_before) if was_stable else 'could not stand'
+    usual = after.modulus / table.modulus
+    season, leaves = ('damping_in_leaf', 'in leaf') if in_leaf else ('damping_bare', 'bare')
+    lines = [
+        'Changed, so that the tree of the file sways as measured; its shape stays:',
+        f"  swing      {was} -> {_swing(fitted.frequency)}, most in branch '{fitted.branch}'",
+        f'  stiffness  modulus of the wood {before.modulus / 1e9:.3g} -> '
+        f'{after.modulus / 1e9:.4g} GPa{_within(fitted.sensitivity * error)}: {usual:.3g} times '
+        f"the usual one of {table.title}{' (an estimate)' if table.is_estimate else ''}",
+    ]
+    if not 1.0 / _UNUSUAL <= usual <= _UNUSUAL:
+        lines.append(
+            '             that is far from usual: first check the diameters, the leaves, and '
+            'whether this branch swayed'
+        )
     if math.isfinite(after.root_stiffness):
-        roots = [
+        lines.append(
             f'  roots      {before.root_stiffness:.3g} -> {after.root_stiffness:.3g} N m/rad, '
             'in proportion to the modulus'
-        ]
-    return [
-        f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
-        f'  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, '
-        f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
-        f'{" (an estimate)" if table.is_estimate else ""}',
-        *roots,
-        f'  damping    {getattr(before, season):.3g} -> {getattr(after, season):.3g} '
-        f'{"in leaf" if in_leaf else "bare"}; '
-        'a measured one includes that of the air, whose drag the solver adds',
-    ]
+        )
+    own = getattr(after, season)
+    if damping is None:
+        lines.append(
+            f'  damping    stays {own:.3g} {leaves}, as it was not measured: --damping, or '
+            '--record of a release'
+        )
+    else:
+        lines.append(
+            f'  damping    {getattr(before, season):.3g} -> {own:.3g} {leaves}: how soon it comes '
+            'to rest; measured in wind or in wide swings it is too high, as air brakes too'
+        )
+    return lines
+
+
+def _swing(frequency: float | None) -> str:
+    """Return a frequency [Hz] with the time of a swing; there is one."""
+    assert frequency is not None
+    return f'{frequency:.4g} Hz (to and fro in {1.0 / frequency:.3g} s)'
+
+
+def _within(error: float) -> str:
+    """Return a relative error as words, empty for none."""
+    return f' within {max(100.0 * error, 0.1):.1f} %' if error > 0.0 else ''
+
+
+def _shrinks(damping: float) -> str:
+    """Return the share by which a swing is smaller than the one before."""
+    share = 1.0 - math.exp(-math.tau * damping / math.sqrt(max(1.0 - damping**2, 1e-9)))
+    return f'{100.0 * share:.0f} %'

@@ -94,7 +94,8 @@ def read_yaml(
         where = f'{source}:{mark.line + 1}' if mark is not None else source
         raise FormatError(f'not YAML: {error.problem}', where=where, cure='correct it') from None
     except yaml.YAMLError as error:
-        raise FormatError(f'not YAML: {str(error).splitlines()[0]}', where=source) from None
+        what = f'not YAML: {str(error).splitlines()[0]}'
+        raise FormatError(what, where=source, cure='restore it from a copy') from None
     if root is None:
         raise FormatError('no document', where=source, cure=f'describe {expected} in it')
     document = YamlDocument(_value(root, schema, schema, source), source, root, schema)

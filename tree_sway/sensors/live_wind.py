@@ -23,6 +23,7 @@ from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.files.wind.units import Velocity
+from tree_sway.sensors.every_other import EveryOther
 from tree_sway.sensors.live_source import LiveSource
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
 from tree_sway.sensors.registry import OpenedSource
@@ -95,6 +96,8 @@ class LiveWind(LiveSource):
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
         self.lacks_direction = opened.is_without_vane
         """Whether the newest reading has no direction of its own."""
+        self.every_other = EveryOther()
+        """Whether its speeds look like those of two senders, which nothing else tells apart."""
         self._opened = opened
         self._taken = taken
         self._heard = heard
@@ -248,6 +251,10 @@ class LiveWind(LiveSource):
             self._log(f'wind comes: {text}; {self._gusts_text(reading)}')
         elif is_guess:
             self._log(f'{self._opened.name}: {self._gusts_text(reading)}')
+        total = self.every_other.total
+        self.every_other.note(reading.speed)
+        if self.every_other.total and not total:
+            self._log(f'{self._opened.name}: {self.every_other.problem}')
         if self.is_mean:
             return
         if self._taken is not None:

@@ -19,6 +19,7 @@ from multiprocessing import active_children, resource_tracker
 import signal
 import sys
 import threading
+import time
 from types import FrameType
 from typing import Any
 
@@ -30,11 +31,15 @@ from tree_sway.studies.lost_workers import told_lost_workers
 
 ATTEMPTS = 4
 """Number of workers that may die of one piece of work before the study ends."""
+DEADLINE = 14_400.0
+"""Time without a finished piece of work after which a worker is taken to hang [s]."""
 ROOMS = 'core', 'files', 'studies'
 """Rooms whose source and tables determine the results."""
 _LONGEST_REASON = 400
 _PATIENCE = 15.0
 """Longest wait for a scheduler and for its first worker [s]."""
+_LOOK = 0.05
+"""Interval at which finished work is looked for [s]."""
 _REPEAT = 2.0
 """Time after which Ctrl-C that had no effect is repeated [s]."""
 _KILL_PERIOD = 0.05
@@ -153,7 +158,13 @@ def _refuse_other_versions(client: Any, scheduler: str) -> None:
     """Raise a `TransportError` for a worker with other versions than here."""
     here = own_version()
     try:
-        found: dict[str, dict[str, str]] = client.run(own_version)
+        found: dict[str, dict[str, str]] = client.sync(
+            client._run, own_version, callback_timeout=_PATIENCE
+        )
+    except TimeoutError:
+        what = f'a worker does not answer within {_PATIENCE:g} s'
+        cure = 'end workers that hang, and run it again'
+        raise TransportError(what, where=scheduler, cure=cure) from None
     except Exception as error:  # what a worker raises is of any kind
         cure = f'install it there: pip install {PACKAGE}=={own_version()[PACKAGE]}'
         what = f'its workers cannot run tree_sway ({type(error).__name__}: {error})'
@@ -176,6 +187,8 @@ def run_all(
     function: Callable[..., Any],
     work: Sequence[tuple[str, tuple[Any, ...]]],
     is_answer: Callable[..., bool] = lambda result, *arguments: True,
+    *,
+    deadline: float = DEADLINE,
 ) -> Iterator[Any]:
     """
     Yield the results of a function for pieces of work, in the order in which they are finished.
@@ -183,7 +196,7 @@ def run_all(
     Each piece has a name, which has to be its own, and arguments. What a lost worker had is done
     by another, which is reported on standard error. Raises a `TransportError` for a piece that
     ends `ATTEMPTS` workers, for a result that is no answer to its arguments, for what a worker
-    raises, or when the scheduler is lost.
+    raises, when the scheduler is lost, or when nothing was finished within the deadline [s].
     """
     with told_lost_workers(client, [name for name, _ in work]):
         futures = [
@@ -192,11 +205,11 @@ def run_all(
         waiting = set(futures)
         asked = dict(work)
         try:
-            for future in distributed.as_completed(futures):
+            for future in _completed(distributed, futures, deadline):
                 error = future.exception()
                 if error is not None:
                     _refuse_error(distributed, future.key, error)
-                result = future.result()
+                result = future.result(deadline)
                 if not is_answer(result, *asked[future.key]):
                     raise TransportError(
                         f'a worker returned a {type(result).__name__} that is no answer to it',
@@ -206,6 +219,14 @@ def run_all(
                 waiting.discard(future)
                 future.release()  # its result is not kept on the cluster
                 yield result
+        except (TimeoutError, distributed.TimeoutError):
+            names = sorted(future.key for future in waiting)
+            raise TransportError(
+                f'no worker finished anything within {deadline:g} s; {len(names)} pieces of work '
+                f'are left, the first {names[0]}',
+                cure='end workers that hang and run it again, what is finished is kept; or give a '
+                'longer --deadline',
+            ) from None
         except distributed.KilledWorker as error:
             raise TransportError(
                 f'a case took down {ATTEMPTS} workers in turn',
@@ -223,6 +244,20 @@ def run_all(
         finally:
             with suppress(Exception):  # the study has ended in another way, which counts
                 client.cancel(list(waiting), force=True)
+
+
+def _completed(distributed: Any, futures: Sequence[Any], deadline: float) -> Iterator[Any]:
+    """Yield futures as they are done; a `TimeoutError` if none is within the deadline [s]."""
+    completed = distributed.as_completed(futures)
+    latest = time.monotonic()
+    while completed.count():
+        if done := completed.next_batch(block=False):
+            yield from done
+            latest = time.monotonic()
+        elif time.monotonic() - latest > deadline:
+            raise TimeoutError
+        else:
+            time.sleep(_LOOK)
 
 
 def _refuse_error(distributed: Any, name: str, error: BaseException) -> None:

@@ -23,7 +23,7 @@ from tree_sway.core.strength.strength_band import root_band, wood_band
 from tree_sway.core.wind.exposure import Exposure
 from tree_sway.files.scenes.inventory.read_inventory import Inventory
 from tree_sway.files.scenes.kind_classes import kind_classes
-from tree_sway.studies.cluster import cluster, run_all
+from tree_sway.studies.cluster import cluster, DEADLINE, run_all
 from tree_sway.studies.risk_kind import (
     compute_kind,
     KindResult,
@@ -102,7 +102,7 @@ def risk_work(
 
 
 def risk_rows(
-    work: RiskWork, *, workers: int, scheduler: str | None = None
+    work: RiskWork, *, workers: int, scheduler: str | None = None, deadline: float = DEADLINE
 ) -> Iterator[tuple[int, list[Row]]]:
     """
     Yield the number of trees and their rows, a kind at a time, in the order that kinds are done.
@@ -111,7 +111,9 @@ def risk_rows(
     """
     pieces = [(f'kind {number}', (kind,)) for number, kind in enumerate(work.kinds)]
     with cluster(min(workers, max(len(pieces), 1)), scheduler) as (distributed, client):
-        for result in run_all(distributed, client, compute_kind, pieces, is_result):
+        for result in run_all(
+            distributed, client, compute_kind, pieces, is_result, deadline=deadline
+        ):
             rows = rows_of_kind(work, result)
             yield len(rows), rows
 

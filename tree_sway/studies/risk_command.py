@@ -23,8 +23,7 @@ from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import inventory_of
 from tree_sway.files.text_file import read_head
 from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
-from tree_sway.studies.cluster import refuse_wrong_address
-from tree_sway.studies.command import add_scheduler_argument
+from tree_sway.studies.command import add_cluster_arguments, refuse_wrong_cluster
 from tree_sway.studies.risk import risk_rows, risk_work, RiskWork, Row
 from tree_sway.studies.runner import cores
 
@@ -44,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
-    add_scheduler_argument(parser)
+    add_cluster_arguments(parser)
     add_exposure_arguments(parser, with_anemometer=False)
     parser.add_argument(
         '--seed', type=int, default=0, metavar='N', help='of grown trees and gusts (%(default)s)'
@@ -59,8 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     within('--seed', arguments.seed, 0, 2**31)
     if arguments.spacing is not None:
         within('--spacing', arguments.spacing, 0.1, 100.0, 'm')
-    if arguments.scheduler is not None:
-        refuse_wrong_address(arguments.scheduler)
+    refuse_wrong_cluster(arguments)
     output = path_of(arguments.output)
     if output.suffix.lower() != '.csv':
         raise ParameterError(f"'{output}' is no table", where='--output', cure='end it with .csv')
@@ -83,7 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    rows = _written(output, work, workers, arguments.scheduler)
+    results = _each_tree(work, workers, arguments.scheduler, arguments.deadline)
+    rows = _written(output, results, len(inventory.names))
     _sort(output, rows)
     n_failed = sum(row['critical_wind_10m [m/s]'] is None for row in rows)
     failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
@@ -91,13 +90,12 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _written(output: Path, work: RiskWork, workers: int, scheduler: str | None) -> list[Row]:
+def _written(output: Path, results: Iterator[Row], n_trees: int) -> list[Row]:
     """Write rows as their kinds are done, so that an interrupted table can be read."""
     rows = list[Row]()
     file = RowFile(output)
-    results = _each_tree(work, workers, scheduler)
     try:
-        for _, row in zip(bar(range(len(work.inventory.names)), 'trees'), results, strict=True):
+        for _, row in zip(bar(range(n_trees), 'trees'), results, strict=True):
             file.write(list(row), list(row.values()))
             rows.append(row)
             if file.failure:
@@ -107,8 +105,10 @@ def _written(output: Path, work: RiskWork, workers: int, scheduler: str | None) 
     return rows
 
 
-def _each_tree(work: RiskWork, workers: int, scheduler: str | None) -> Iterator[Row]:
-    for _, rows in risk_rows(work, workers=workers, scheduler=scheduler):
+def _each_tree(
+    work: RiskWork, workers: int, scheduler: str | None, deadline: float
+) -> Iterator[Row]:
+    for _, rows in risk_rows(work, workers=workers, scheduler=scheduler, deadline=deadline):
         yield from rows
 
 

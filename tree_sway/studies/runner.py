@@ -21,7 +21,7 @@ from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.studies.cluster import cluster, run_all
+from tree_sway.studies.cluster import cluster, DEADLINE, run_all
 from tree_sway.studies.plan import Case, Plain
 
 _LARGEST_ROW = 1 << 16
@@ -41,6 +41,7 @@ def run_study(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
+    deadline: float = DEADLINE,
 ) -> list[Plain]:
     """
     Compute missing cases of a study, and return all rows.
@@ -55,6 +56,8 @@ def run_study(
         Number of processes here; one per core if None.
     scheduler
         Address of a Dask scheduler whose workers compute instead, such as ``tcp://host:8786``.
+    deadline
+        Time without a finished case after which a worker is taken to hang [s].
 
     Returns
     -------
@@ -66,14 +69,16 @@ def run_study(
     TreeSwayError
         The first case that failed, with its name; the others are stored.
     TransportError
-        Workers that end repeatedly, no scheduler, or workers of another version.
+        Workers that end repeatedly or hang, no scheduler, or workers of another version.
     ModuleNotFoundError
         Cases to compute without dask.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = missing_cases(cases, folder)
-    outcomes = _outcomes(missing, workers or cores(), scheduler) if missing else iter(())
+    outcomes: Iterator[Outcome] = iter(())
+    if missing:
+        outcomes = _outcomes(missing, workers or cores(), scheduler, deadline)
     failed = list[TreeSwayError]()
     for _, (case, row) in zip(bar(missing, 'cases'), outcomes, strict=True):
         if isinstance(row, TreeSwayError):
@@ -104,12 +109,13 @@ def result_path(folder: Path, case: Case) -> Path:
 
 
 def stored_row(case: Case, folder: Path) -> Plain | None:
-    """Return the row of a case; None if it has no file, or one that a full disk cut off."""
+    """Return the row of a case; None if it has no file, or a damaged one."""
     try:
-        row = json.loads(result_path(folder, case).read_text(encoding='utf-8'))
-    except (OSError, ValueError):
+        with result_path(folder, case).open('rb') as file:
+            row = json.loads(file.read(_LARGEST_ROW))
+    except (OSError, ValueError, RecursionError):
         return None
-    return row if isinstance(row, dict) else None
+    return row if isinstance(row, dict) and row else None
 
 
 def store_row(case: Case, row: Plain, folder: Path) -> None:
@@ -179,12 +185,16 @@ def files_of(cases: Sequence[Case], opened: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _outcomes(cases: list[Case], workers: int, scheduler: str | None) -> Iterator[Outcome]:
+def _outcomes(
+    cases: list[Case], workers: int, scheduler: str | None, deadline: float
+) -> Iterator[Outcome]:
     """Yield each finished case with its row or its error."""
     opened: dict[str, Any] = {}
     work = [(part[0].name, (part, files_of(part, opened))) for part in batches(cases, workers)]
     with cluster(workers, scheduler) as (distributed, client):
-        for outcomes in run_all(distributed, client, compute_batch, work, is_outcome):
+        for outcomes in run_all(
+            distributed, client, compute_batch, work, is_outcome, deadline=deadline
+        ):
             yield from outcomes
 
 

@@ -94,6 +94,7 @@ class SensorNode(TreeSwayNode):
             'accepted': wind.accepted,
             'other messages': wind.other,
             'gusts about means': wind.is_mean,
+            'messages as of two senders': wind.every_other.total,
             **{f'refused: {cause}': count for cause, count in sorted(wind.refused.items())},
         }
         if not wind.accepted or not link.is_up:
@@ -103,4 +104,6 @@ class SensorNode(TreeSwayNode):
             return [Status('link', WARN, text, values)]
         if wind.state == 'stale':
             return [Status('link', WARN, f'{reading}; none for {wind.age:.0f} s', values)]
+        if problem := wind.every_other.problem:
+            return [Status('link', WARN, f'{reading}; {problem}', values)]
         return [Status('link', OK, reading, values)]

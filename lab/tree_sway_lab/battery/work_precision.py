@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 import time
 from typing import Any
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
 
@@ -111,12 +111,18 @@ def flops_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) -> i
     return flops(tally)
 
 
-@njit  # type: ignore[untyped-decorator, unused-ignore]
-def _repeat(
-    step: Any, table: Array, state: Array, loads: Array, dt: float, options: Array
-) -> None:
-    for k in range(len(loads)):
-        step(table, state, loads[k], dt, options)
+@cache
+def _compiled_loop() -> Any:
+    """Return a loop over the steps of any method, compiled; only here is numba needed."""
+    from numba import njit
+
+    def repeat(
+        step: Any, table: Array, state: Array, loads: Array, dt: float, options: Array
+    ) -> None:
+        for k in range(len(loads)):
+            step(table, state, loads[k], dt, options)
+
+    return njit(repeat)
 
 
 def seconds_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) -> float:
@@ -126,7 +132,7 @@ def seconds_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) ->
     for attempt in range(4):
         state = method.start(chain, np.zeros(n), np.zeros(n), loads[0, 0], dt)
         started = time.perf_counter()
-        _repeat(type(method).kernel, chain.table, state, loads, dt, options)
+        _compiled_loop()(type(method).kernel, chain.table, state, loads, dt, options)
         if attempt:  # the first call compiles
             best = min(best, time.perf_counter() - started)
     return best / len(loads)

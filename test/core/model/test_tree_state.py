@@ -138,3 +138,17 @@ def test_a_state_of_a_tree_that_is_tuned_otherwise_is_refused(tree_of, model):
 @pytest.fixture(scope='module')
 def tree_of(fork):
     return fork()
+
+
+@pytest.mark.parametrize(
+    'change',
+    [list, str, np.ndarray.tolist, lambda _: None, lambda v: v[:, None], lambda v: v * 1j,
+     lambda v: v.astype(str), lambda v: v.astype(object), lambda v: v * 1e200],
+)  # fmt: skip
+def test_a_state_of_other_values_is_refused_and_the_old_one_stays(fork, change):
+    sim = make_simulator(fork())
+    sim.step((5.0, 0.0, 0.0), DT)
+    before = sim.state()
+    with pytest.raises(StateError, match='set what state'):
+        sim.set_state(replace(before, values=change(before.values)))
+    assert sim.state().values.tobytes() == before.values.tobytes()

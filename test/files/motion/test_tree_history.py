@@ -62,9 +62,6 @@ def test_a_table_that_cannot_be_gone_on_with_is_refused(tmp_path: Path) -> None:
         TreeHistory(str(tmp_path / 'none' / 'oak.csv'), ['phone'])
     with pytest.raises(ParameterError, match='no motion sensor'):
         TreeHistory(str(path), [])
-    path.write_bytes(b'\xff\xfe\x00')
-    with pytest.raises(FormatError, match='cannot be read'):
-        TreeHistory(str(path), ['phone'])
 
 
 def test_a_row_that_a_full_disk_cut_off_stays_alone(tmp_path: Path) -> None:
@@ -79,3 +76,28 @@ def test_a_row_that_a_full_disk_cut_off_stays_alone(tmp_path: Path) -> None:
     rows = rows_of(path)
     assert len(rows) == 2
     assert all(row['time'].endswith('Z') and None not in row for row in rows)
+
+
+@pytest.mark.parametrize(
+    'content',
+    [b'\xff\xfe', b'\x00' * 9, b'"' + b'a' * 200_000, b'time' + b'a' * 200_000, b'\n', b'\r,'],
+)
+def test_a_damaged_table_is_refused_by_its_name_with_a_cure(
+    tmp_path: Path, content: bytes
+) -> None:
+    path = tmp_path / 'oak.csv'
+    path.write_bytes(content)
+    with pytest.raises(FormatError, match=r'oak\.csv: has other columns; name another file'):
+        TreeHistory(str(path), ['phone'])
+    assert path.read_bytes() == content
+
+
+@pytest.mark.usefixtures('little_effort')
+def test_of_a_huge_table_only_the_first_line_is_read(tmp_path: Path) -> None:
+    path = tmp_path / 'oak.csv'
+    TreeHistory(str(path), ['phone'])
+    path.touch()
+    with path.open('r+b') as file:
+        file.truncate(2**33)
+    with pytest.raises(FormatError, match='has other columns'):
+        TreeHistory(str(path), ['phone'])

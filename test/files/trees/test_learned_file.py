@@ -13,7 +13,7 @@ from tree_sway.commands.cli import main
 from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.tree_fit import TreeFit
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_tree
@@ -123,3 +123,41 @@ def test_what_was_learned_outlives_a_conversion(tmp_path: Path) -> None:
     # Of another wood nothing was learned.
     assert main(['convert', path, '-o', again, '--force', '-q', '--modulus', '5e9']) == 0
     assert open_tree(again).learned is None
+
+
+@pytest.mark.usefixtures('little_effort')
+@pytest.mark.parametrize(
+    ('old', 'new'),
+    [
+        (b'modulus: ', b'modulus: 1e7'),
+        (b'stiffness: 0.8', b'stiffness: 1e17'),
+        (b'stiffness: 0.8', b'stiffness: .nan'),
+        (b'frequency: 1.0', b'frequency: 1e300'),
+        (b'hours: 1.0', b'hours: many'),
+        (b'learned: {', b'learned: ['),
+        (b'name', b'na\x00me'),
+        (b'name', b'na\xffme'),
+        (b'branches', b''),
+    ],
+)
+def test_a_damaged_file_is_refused_by_its_name_with_a_cure(
+    tmp_path: Path, old: bytes, new: bytes
+) -> None:
+    opened = open_tree('goldcrest')
+    path = tmp_path / 'own.twin.yaml'
+    LearnedFile(str(path), opened).write(ONCE)
+    content = path.read_bytes()
+    assert old in content
+    path.write_bytes(content.replace(old, new, 1))
+    with pytest.raises(TreeSwayError, match=r'own\.twin\.yaml') as refused:
+        LearnedFile(str(path), opened)
+    assert refused.value.cure
+
+
+@pytest.mark.usefixtures('little_effort')
+def test_a_huge_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / 'own.twin.yaml'
+    with path.open('wb') as file:
+        file.truncate(2**33)
+    with pytest.raises(FormatError, match=r'own\.twin\.yaml: larger than'):
+        LearnedFile(str(path), open_tree('goldcrest'))

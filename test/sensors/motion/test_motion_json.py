@@ -276,3 +276,32 @@ def test_too_few_samples_are_told_with_the_cure() -> None:
 def test_addresses_that_are_none_are_refused(address: str, words: str) -> None:
     with pytest.raises(ParameterError, match=words):
         open_motion(address)
+
+
+@pytest.mark.parametrize('begins', [(0.0, 5_000.0), (7_000_000.0, 20.0)])
+def test_two_clocks_on_one_topic_are_named_and_one_is_followed(
+    monkeypatch: pytest.MonkeyPatch, begins: tuple[float, float]
+) -> None:
+    now = 0.0
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
+    said: list[str] = []
+    live = LiveMotion(open_motion('mqtt://broker/tree/imu'), said.append)
+    for k in range(2000):
+        now = 0.01 * k
+        feed(live, {'t': begins[k % 2] + 10.0 * k, 'acc': [k % 2, 0, 9.8]}, origin='tree/imu')
+    assert len({each.acceleration for each in live.drain()}) == 1
+    named = 'its times go back and forth, as those of two senders: give each an address of its own'
+    assert live.refused[named] > 900
+    assert live.note == named
+    assert said.count(f'tree/imu: {named}') == 1
+
+
+@pytest.mark.parametrize('delay', [0.0, 3.0])
+def test_a_clock_that_is_set_or_stalls_is_that_of_one_sender(delay: float) -> None:
+    clock = SenderClock()
+    for k in range(6000):
+        at = 0.01 * k
+        stamp = at - 10.0 * (at // 20.0)  # set back by ten seconds now and then
+        late = at + delay * (k % 500 < 100)  # held up, and then all at once
+        clock.note(stamp, late)
+        assert not clock.mixture

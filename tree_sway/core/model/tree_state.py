@@ -62,11 +62,15 @@ def refuse_other_state(state: TreeState, own: TreeState) -> None:
             where=own.tree,
             cure='set what state() of the same simulator returned',
         )
+    values = state.values
+    if not (isinstance(values, np.ndarray) and values.ndim == 1 and values.dtype.kind in 'fiu'):
+        what = 'a state whose values are no row of numbers'
+        raise StateError(what, where=own.tree, cure='set what state() of a simulator returned')
     for what, theirs, mine in (
         ('tree', state.tree, own.tree),
         ('model', state.model, own.model),
         ('settings', state.digest, own.digest),
-        ('number of values', len(state.values), len(own.values)),
+        ('number of values', len(values), len(own.values)),
     ):
         if theirs != mine:
             raise StateError(
@@ -74,7 +78,7 @@ def refuse_other_state(state: TreeState, own: TreeState) -> None:
                 where=own.tree,
                 cure='set a state of the same tree with the same species, settings and model',
             )
-    if not (np.abs(state.values) < GREATEST).all():
+    if not (np.abs(values) < GREATEST).all():
         what = 'a state with a number that no tree has, or that is not finite'
         raise StateError(what, where=own.tree, cure='set what state() of a simulator returned')
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import csv
 from datetime import datetime, timezone
+import io
 import os
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_report import sensor_reports
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_bytes
 from tree_sway.files.whole_file import refuse_unwritable
 
 PERIOD = 600.0
@@ -45,13 +47,19 @@ def refuse_no_history(path: str, names: Sequence[str]) -> None:
         raise ParameterError(what, where=path, cure='give a sensor and its place')
     refuse_unwritable(path)
     found = path_of(path)
-    try:
-        text = found.read_text(encoding='utf-8') if found.is_file() else ''
-    except (OSError, ValueError) as error:
-        raise FormatError(f'cannot be read: {error}', where=path) from None
-    if text and next(csv.reader(text.splitlines()[:1])) != _columns(names):
+    if not found.is_file():
+        return
+    line = _line_of(_columns(names)).encode()
+    head = read_bytes(found, at_most=len(line))
+    if head and head.rstrip() != line.rstrip():
         cure = 'name another file; sensors of one table keep their names and places'
         raise FormatError('has other columns', where=path, cure=cure)
+
+
+def _line_of(cells: Sequence[str]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator='\n').writerow(cells)
+    return text.getvalue()
 
 
 def _is_cut_off(path: Path) -> bool:
@@ -144,12 +152,11 @@ class TreeHistory:
         try:
             is_cut_off = _is_cut_off(self._path)
             with self._path.open('a', encoding='utf-8', newline='') as file:
-                writer = csv.writer(file, lineterminator='\n')
                 if is_cut_off:
                     file.write('\n')
                 if file.tell() == 0:
-                    writer.writerow(_columns(self._names))
-                writer.writerow([date, *cells])
+                    file.write(_line_of(_columns(self._names)))
+                file.write(_line_of([date, *cells]))
         except OSError as error:
             what = f'cannot be written: {error.strerror or error}'
             raise FormatError(what, where=str(self._path), cure='make room') from error

@@ -16,6 +16,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.paths import path_of
+from tree_sway.files.text_file import read_bytes
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.tree_yaml import read_yaml_tree
 from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
@@ -54,6 +55,8 @@ class LearnedFile:
     ------
     FormatError
         A file that cannot be written or read, is of another tree, or was not learned.
+    ParameterError
+        Wood in the file that no tree has.
 
     """
 
@@ -99,15 +102,12 @@ class LearnedFile:
 def _text_of(path: str) -> bytes | None:
     """Return the content of a file; None if there is none."""
     file = path_of(path)
-    try:
-        return file.read_bytes() if file.is_file() else None
-    except OSError as error:
-        raise FormatError(f'cannot be read: {error.strerror}', where=path) from None
+    return read_bytes(file) if file.is_file() else None
 
 
 def _learned_before(path: str, grown: GrownTree) -> TreeFile:
     """Read the file of a tree; a `FormatError` if it is of another, or was not learned."""
-    found = read_yaml_tree(path_of(path))
+    found = read_yaml_tree(path_of(path)).checked()
     if found.species.key != grown.species.key or not _are_equal(found.tree, grown.tree):
         what = f'is of another tree than {grown.tree.name}'
         raise FormatError(what, where=path, cure='name another file, or open its tree')

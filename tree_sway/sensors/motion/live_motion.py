@@ -126,7 +126,7 @@ class LiveMotion(LiveSource):
     @property
     def note(self) -> str:
         """Who else sends; empty if nobody does."""
-        return self._senders.problem
+        return self._senders.problem or self._clock.mixture
 
     def drain(self) -> list[MotionSample]:
         """Return the samples since the last call."""
@@ -166,7 +166,10 @@ class LiveMotion(LiveSource):
         stamps = [each.time for each in readings if each.time is not None]
         if stamps and not self._clock.note(max(stamps), now, min(stamps)):
             if self._clock.ticks is not None:
-                self._refuse('its clock jumped', len(readings))
+                mixture = self._clock.mixture
+                if mixture and mixture not in self.refused:
+                    self._log(f'{self.name}: {mixture}')
+                self._refuse(mixture or 'its clock jumped', len(readings))
             elif self._clock.problem:
                 self._refuse('its clock is of an unknown unit', len(readings))
             return

@@ -6,11 +6,13 @@ The clock of a sender, brought to that of this machine.
 A sender counts seconds, milliseconds, microseconds or nanoseconds from any moment. The unit is
 found from the first second of samples. The difference of both clocks is the smallest that was seen
 between the time of a sample and its arrival: the way over the network only adds to it. A minute
-later it is found again, so that clocks which drift stay together.
+later it is found again, so that clocks which drift stay together. Times that go back again and
+again are those of two senders, for a clock that is set goes back once, and a late message never.
 """
 
 from __future__ import annotations
 
+from collections import deque
 import math
 
 _UNITS = (1.0, 1e3, 1e6, 1e9)
@@ -23,6 +25,11 @@ _WINDOW = 30.0
 """Time [s] for which the smallest difference is kept, once and once more."""
 _JUMP, _PATIENCE = 1.0, 3.0
 """Difference [s] that is a jump, and time [s] after which the clock is taken as set anew."""
+_MIXED, _WITHIN = 5, 30.0
+"""Number of times that go back within some seconds [s], which two senders have."""
+_MIXTURE = (
+    'its times go back and forth, as those of two senders: give each an address of its own'
+)
 _SLEW = 0.05
 """Change of the difference in a second [s]: small, so that samples keep their order."""
 
@@ -45,6 +52,8 @@ class SenderClock:
         """Why no time can be told, and what to do; empty if it can, or not yet."""
         self.jumps = 0
         """Number of times that it was set anew."""
+        self._backs: deque[float] = deque(maxlen=_MIXED)
+        self._previous = self._arrival = -math.inf
         self._first: tuple[float, float] | None = None
         self._count = 0
         self._offset = self._low = self._low_before = math.inf
@@ -59,6 +68,10 @@ class SenderClock:
         A message of several samples has an earliest stamp, too. `local` is not known while the
         unit is being found, and after a jump until it has lasted.
         """
+        if self._previous - stamp > _JUMP * (self.ticks or 0.0):
+            self._backs.append(arrival)
+        self._previous = stamp
+        self._arrival = arrival
         if self.ticks is None and not self._find_ticks(stamp, arrival):
             return False
         assert self.ticks is not None
@@ -72,6 +85,13 @@ class SenderClock:
         self._follow(difference, arrival, (first - self._newest) / self.ticks)
         self._newest = max(self._newest, stamp)
         return True
+
+    @property
+    def mixture(self) -> str:
+        """What tells that two clocks are mixed, and what to do; empty if nothing does."""
+        backs = self._backs
+        is_mixed = len(backs) == _MIXED and self._arrival - backs[0] < _WITHIN
+        return _MIXTURE if is_mixed else ''
 
     def local(self, stamp: float) -> float:
         """Return the time of a stamp on the clock of arrivals in [s]."""
@@ -89,7 +109,7 @@ class SenderClock:
         ratio = (stamp - self._first[0]) / passed
         unit = min(_UNITS, key=lambda each: abs(math.log(max(ratio, 1e-300) / each)))
         if not 1.0 / _ODD < ratio / unit < _ODD:
-            self.problem = (
+            self.problem = self.mixture or (
                 f'its clock counts {ratio:.3g} in a second: send the time in s, ms, us or ns, or '
                 'leave it out'
             )

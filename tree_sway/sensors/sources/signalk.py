@@ -35,6 +35,8 @@ _PAIRS = (
     ('speedApparent', 'angleApparent', True),
 )
 """Speeds and angles, best first, and whether the angle counts from the bow."""
+_KNOWN = {_HEADING, *(_WIND + name for *pair, _ in _PAIRS for name in pair)}
+"""Paths that are kept; a server may send any number of others."""
 _KIND = 'Signal K'
 
 
@@ -54,7 +56,7 @@ class SignalKWind:
         found = list[Reading]()
         changed = dict[str, str]()
         for path, value, sender in _values(parse_json(message.data)):
-            if path != _HEADING and not path.startswith(_WIND):
+            if path not in _KNOWN:
                 continue
             known = number(value)
             if known is None:

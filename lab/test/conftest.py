@@ -1,0 +1,19 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""For all tests of the laboratory: its commands, also where it is not installed."""
+
+from importlib.metadata import entry_points, EntryPoint
+
+import pytest
+
+from tree_sway.commands import cli
+
+LABORATORY = EntryPoint('lab', 'tree_sway_lab.commands:COMMANDS', cli.GROUP)
+
+
+@pytest.fixture(scope='session', autouse=True)
+def commands_of_this_checkout():
+    """Find the commands of the laboratory of this checkout, whose folder is on the path."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cli, 'entry_points', lambda group: [LABORATORY, *entry_points(group=group)])
+        yield
