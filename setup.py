@@ -67,8 +67,8 @@ if 'bdist_wheel' in sys.argv:
 
 NATIVE = 'tree_sway.core.native._sway'
 SOURCES = (
-    'branch_loads', 'gusts', 'limp_layout', 'model', 'observe', 'place_layout', 'propagate', 'room',
-    'samples', 'stand', 'target',
+    'branch_loads', 'gusts', 'limp_layout', 'model', 'observe', 'place_layout', 'propagate',
+    'room', 'samples', 'stand', 'target',
 )  # fmt: skip
 #: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
 TARGETS = {
@@ -205,8 +205,9 @@ class BuildWasm(Command):
         if found != ZIG:
             raise SystemExit(f'ziglang is {found}: pip install ziglang=={ZIG}')
         # The headers are those of WASI; its library stays out.
-        options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128']
-        frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize', '-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
+        options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128', '-DSWAY_PAGE']
+        frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize']
+        frame += ['-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
         with TemporaryDirectory() as folder:
             objects = []
             for name in (*SOURCES, 'page', 'frame'):

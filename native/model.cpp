@@ -335,7 +335,7 @@ void lay_out(sway_model &model, const Arrays &a) {
     model.limb_spread = *a.limb_spread;
     model.crown_coherence = *a.crown_coherence;
   }
-  if (at_pose && lay_out_limp(model, a)) sizes.is_stepped = 2;
+  if (!ON_TABLES && at_pose && lay_out_limp(model, a)) sizes.is_stepped = 2;
 }
 
 }  // namespace

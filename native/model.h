@@ -132,8 +132,14 @@ struct sway_model {
 
 namespace sway {
 
+#ifdef SWAY_PAGE  // a page steps every tree on its table
+constexpr bool ON_TABLES = true;
+#else
+constexpr bool ON_TABLES = false;
+#endif
+
 inline __attribute__((always_inline)) bool is_limp(const sway_model &model) {
-  return model.sizes.is_stepped == 2;
+  return !ON_TABLES && model.sizes.is_stepped == 2;
 }
 
 }  // namespace sway

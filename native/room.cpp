@@ -45,7 +45,7 @@ void open_room(Memory &memory, const sway_model *const *models, size_t n_models,
     raise_to(segments, model.sizes.segments);
     raise_to(rows, model.rows);
     raise_to(padded, model.padded);
-    if (!model.limp.leading) continue;
+    if (ON_TABLES || !model.limp.leading) continue;
     raise_to(coordinates, model.sizes.coordinates);
     raise_to(limp.leading, model.limp.leading);
     raise_to(limp.row, model.limp.row);
@@ -62,7 +62,7 @@ void open_room(Memory &memory, const sway_model *const *models, size_t n_models,
   for (float **each : singles) *each = memory.take<float>(padded);
   room.distance = memory.take<float>(4 * padded);
   room.single_keys = memory.take<float>(16);
-  if (limp.leading) open_limp_room(memory, limp, coordinates, padded, room.limp);
+  if (!ON_TABLES && limp.leading) open_limp_room(memory, limp, coordinates, padded, room.limp);
 }
 
 }  // namespace sway
