@@ -33,7 +33,9 @@ _F = TypeVar('_F', bound=Callable[..., Any])
 _UNUSED = 30 * 86_400.0
 """Age after which what older source made is removed [s]."""
 
-_LOOSE = {'contract', 'reassoc', 'nsz'}
+_OPTIONS = {
+    'error_model': 'numpy', 'nogil': True, 'fastmath': {'contract', 'reassoc', 'nsz'}, '_nrt': False,
+}  # fmt: skip
 
 if (_folder := cache_folder()) is not None:
     _digest = source_digest(ROOT / 'core') + source_digest(Path(__file__).parent)
@@ -59,8 +61,7 @@ def fused(function: _F) -> _F:
 
     It is not for code that depends on rounding.
     """
-    options = {'error_model': 'numpy', 'nogil': True, 'cache': True, 'fastmath': _LOOSE}
-    return cast(_F, numba.njit(**options)(function))
+    return cast(_F, numba.njit(**_OPTIONS, cache=True)(function))
 
 
 def part(function: _F) -> _F:
@@ -69,7 +70,7 @@ def part(function: _F) -> _F:
 
     Outside of kernels it is the plain function.
     """
-    register_jitable(fastmath=_LOOSE, forceinline=True, error_model='numpy', nogil=True)(function)
+    register_jitable(**_OPTIONS, forceinline=True)(function)
     return function
 
 
