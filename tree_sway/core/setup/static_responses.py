@@ -19,7 +19,6 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import drag_density, DragLaw
 from tree_sway.core.native.branch_loads import BranchLoads
 from tree_sway.core.setup.load_derivatives import LoadSlopes
-from tree_sway.core.setup.tree_motion import base_motion, own_motion, projectors
 
 _SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
@@ -52,19 +51,8 @@ class WindMoments:
 
     def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
         """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
-        branches = self.branches
-        n_components = 3 * len(branches)
-        base = base_motion(branches, shapes)
-        moved = base[:, :3] + branches['coupling'].swapaxes(1, 2) @ base[:, 3:]
-        moved += own_motion(branches, 'load_mode', shapes)
-        projector = projectors(branches['projector'])
-        across = projector @ winds.T
-        square = np.maximum((across * winds.T).sum(axis=1), 0.0)
-        area = branches['area'] * branches['speed'] ** 2
-        per_velocity = area[:, None] * np.sqrt(square)
-        force = per_velocity[:, None] * across
-        by_wind = force.reshape(n_components, -1).T
-        return np.asarray(by_wind @ moved.reshape(n_components, -1))
+        rest = np.zeros((len(winds), self.n))
+        return np.asarray(self.at_poses(rest, winds) @ shapes)
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""

@@ -5,11 +5,15 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.beams.beam import BranchBeam, round_section
+from tree_sway.core.beams.beam import BranchBeam, N_POINTS, round_section
 from tree_sway.core.setup.reductions import TreeReductions
+
+_TO_BASE = np.linalg.pinv(np.vander((leggauss(N_POINTS)[0] + 1.0) / 2.0, 3))[-1]
+"""Weights of the points of a panel for the value at its begin of the nearest parabola."""
 
 
 class WoodStrain:
@@ -83,7 +87,5 @@ def _at_base_ends(beam: BranchBeam, curvature: Floats, base_diameter: Floats) ->
     """
     moment = round_section(beam.diameter)[..., None] * curvature
     first = np.searchsorted(beam.segment, np.arange(len(base_diameter)))
-    place = (beam.place[0] - beam.node[0]) / beam.length[0]
-    to_base = np.linalg.pinv(np.vander(place, 3))[-1]
-    at_base = np.einsum('g,mgi->mi', to_base, moment[first])
+    at_base = np.einsum('g,mgi->mi', _TO_BASE, moment[first])
     return np.asarray(at_base / round_section(base_diameter)[:, None])
