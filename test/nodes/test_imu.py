@@ -220,7 +220,7 @@ def test_a_status_warns_of_a_tree_that_sways_differently(monkeypatch):
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
     intake = ImuIntake(IntakeNode(), Run(twin, 60.0), twin, arrived=lambda: None)
     (track,) = twin.observer.tracks
-    monkeypatch.setattr(track, 'in_use', True)
+    monkeypatch.setattr(track.native, 'in_use', 1)
     (watch,) = twin.observer._fit.watches
     for ratio, level, said in ((1.01, OK, 'as before'), (1.2, WARN, 'differently')):
         monkeypatch.setattr(watch, 'change', SwayChange(ratio, 0.02, 3.0))

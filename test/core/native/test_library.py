@@ -18,7 +18,8 @@ from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
-from tree_sway.core.observe.sample_ring import _RING
+from tree_sway.core.observe.sample_ring import _RING, CAPACITY
+from tree_sway.core.observe.sensor_readings import _KEPT, LATEST
 
 NATIVE = Path(__file__).parents[3] / 'native'
 
@@ -37,7 +38,7 @@ LIBRARY_HEADER = code_of('library.h')
 def fields_of(structure: str) -> list[tuple[str, bool, int]]:
     """Return name, whether it is a number, and count of each field of a structure."""
     body = LIBRARY_HEADER.partition(f'struct {structure} {{')[2].partition('}')[0]
-    body = body.replace('SWAY_RING', str(4096))
+    body = body.replace('SWAY_RING', str(CAPACITY))
     found = []
     for line in filter(None, map(str.strip, body.split(';'))):
         of, names = re.match(r'((?:const )?\w+\b(?: \*const)?) ?(.*)', line, re.S).groups()
@@ -107,6 +108,8 @@ def test_structures_of_branches_are_those_of_the_header() -> None:
 
 
 def test_structures_are_those_of_the_header() -> None:
+    for name, number in {'RING': CAPACITY, 'SLOTS': _KEPT, 'LATEST': LATEST}.items():
+        assert f'enum {{ SWAY_{name} = {number} }};' in LIBRARY_HEADER
     structures = Structure.__subclasses__()
     assert len(structures) == 5
     for each in structures:

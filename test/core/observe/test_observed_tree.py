@@ -352,7 +352,6 @@ def test_a_tree_without_a_band_says_how_to_get_one() -> None:
     assert 'has_band' in str(caught.value.cure)
 
 
-@pytest.mark.compiled
 def test_a_step_with_a_sensor_makes_no_arrays() -> None:
     """In a process of its own: threads of others and what traces lines allocate too."""
     script = 'import test_observed_tree; test_observed_tree.print_memory_of_steps()'

@@ -34,8 +34,8 @@ def test_rows_are_means_of_ten_minutes_and_go_on_in_another_run(
         history = TreeHistory(str(path), ['phone'])
         (track,) = twin.observer.tracks
         assert not any(history.note(twin, 5000.0 + second) for second in range(0, 300, 5))
-        monkeypatch.setattr(track, 'excess', 9.0)
-        monkeypatch.setattr(track, 'in_use', True)
+        monkeypatch.setattr(track.native, 'excess', 9.0)
+        monkeypatch.setattr(track.native, 'in_use', 1)
         fit = TreeFit(0.8, 1.2, 0.02, 0.2, 0.9, 0.2, 1.0)
         monkeypatch.setattr(twin.observer._fit, 'found', fit)
         monkeypatch.setattr(twin.observer._fit.watches[0], 'change', SwayChange(1.2, 0.02, 2.0))
