@@ -185,8 +185,10 @@ class BuildWasm(Command):
     """Compile the native core for the page: WebAssembly without a run-time library."""
 
     description = f'compile {WASM} by ziglang=={ZIG}'
-    user_options = [('check', None, 'compare with the file that is there, and write nothing')]
-    boolean_options = ['check']
+    user_options = [  # noqa: RUF012
+        ('check', None, 'compare with the file that is there, and write nothing')
+    ]
+    boolean_options = ('check',)
 
     def initialize_options(self):
         """Write the file."""
@@ -206,6 +208,7 @@ class BuildWasm(Command):
             raise SystemExit(f'ziglang is {found}: pip install ziglang=={ZIG}')
         # The headers are those of WASI; its library stays out.
         options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128', '-DSWAY_PAGE']
+        # Lanes are those of vec.h.
         frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize']
         frame += ['-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
         with TemporaryDirectory() as folder:

@@ -69,11 +69,12 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     page = (folder / 'index.html').read_text(encoding='utf-8')
     style = (folder / 'style.css').read_text(encoding='utf-8')
     boot = (folder / _BOOT).read_text(encoding='utf-8')
+    core = _packed((folder / _CORE).read_bytes())
     parts: dict[str, Callable[[], str]] = {
         '<link rel="stylesheet" href="static/style.css" />': lambda: f'<style>\n{style}</style>',
         '<script type="module" src="static/app.js"></script>': lambda: (
             f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
-            f'    <script type="text/plain" id="core">{_packed((folder / _CORE).read_bytes())}</script>\n'
+            f'    <script type="text/plain" id="core">{core}</script>\n'
             f'    <script type="text/plain" id="scene">{packed}</script>'
         ),
         '</body>': lambda: (

@@ -237,16 +237,20 @@ export class Stand {
       this._write(number, coordinates, 0);
       if (!touch.step(() => this.rows(number), table, coordinates, table.steps(ownDt), this.dt)) this._touches.delete(number);
     }
-    if (this.outside) this.trees.forEach((_, number) => this._touches.has(number) || this._watchClamped(number));
+    if (!this.outside) return;
+    const [all, clamped] = [this._states.values, ROWS * this._width + 4];
+    this.trees.forEach((_, number) => {
+      if (all[number * this._stride + clamped] && !this._touches.has(number)) this._watchClamped(number);
+    });
   }
 
   /** Reset a tree whose steps stay clamped, with fewer coordinates. @param {number} number */
   _watchClamped(number) {
     const { eta, rate, force, more } = this.rows(number);
     const { table } = this.trees[number];
-    const [u, v, w, density, isClamped, leftOut] = more;
+    const [u, v, w, density, , leftOut] = more;
     // A wind that bends the tree so far is no fault.
-    if (!isClamped || density * (u * u + v * v + w * w) >= 0.5 * table.mostPressure) return;
+    if (density * (u * u + v * v + w * w) >= 0.5 * table.mostPressure) return;
     const watch = this._watches.get(number) ?? new ClampWatch();
     this._watches.set(number, watch);
     if (!watch.isStuck(this._steps, this.dt)) return;
