@@ -47,7 +47,8 @@ class BagContent:
         if len(found) == 1:
             return found[0]
         problem = f"no {what} on topic '{topic}'" if topic else f'{what} on {len(known)} topics'
-        cure = f'choose a topic: {", ".join(known)}' + (f', as {form}{known[0]}' if form else '')
+        example = f', as {form}{"".join(known[:1])}' if form else ''
+        cure = f'choose a topic: {", ".join(known)}{example}'
         if not known:
             there = ', '.join(f'{name} ({kind})' for name, kind in [*self.types.items()][:10])
             cure = f'there is {there or "nothing"}; {what} is one of {", ".join(kinds)}'
