@@ -29,6 +29,15 @@ COLUMNS: dict[str, dict[str, Any]] = {
 }
 """Names of the column of a quantity, and its kind of unit."""
 
+INVENTORY: dict[str, list[str]] = _KNOWN['inventory']
+"""Columns that an inventory needs: what they say, and the quantities that do together."""
+
+COMPASS: dict[str, str] = _KNOWN['compass']
+"""Words for north, east, south and west."""
+
+TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
+"""Columns that make a time together, and how."""
+
 _UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
@@ -62,6 +71,9 @@ UNITS: dict[str, dict[str, float]] = {
     for kind, units in _KNOWN['units'].items()
 }
 """Units of each kind of quantity as `folded_unit` writes them, and their factors to SI."""
+
+SENDERS = tuple(map(folded, _KNOWN['senders']))
+"""Names of what tells an instrument from another, folded."""
 
 _NAMES = {
     quantity: tuple(

@@ -6,29 +6,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_FOREIGN = {
-    '.obj .stl .ply .fbx .glb .gltf .usd .usda .usdc .usdz .blend .dae .3ds .x3d': (
-        'a mesh for drawing, without branches and diameters',
-        'give the file that it was made from',
-    ),
-    '.las .laz .pcd .e57 .pts .ptx .copc': (
-        'a point cloud',
-        'fit cylinders to it first, such as by TreeQSM (doc/scans.md)',
-    ),
-    '.xml .sdf .urdf': ('a model for a robot simulator', 'give the file that it was made from'),
-    '.html .htm': ('a page', 'give the file that it was made from'),
-    '.png .jpg .jpeg .gif .mp4 .webm .tif .tiff': ('a picture or a film', ''),
-    '.pdf .doc .docx .odt': ('a document', 'copy its table into a CSV file'),
-    '.xls .ods .numbers': ('a spreadsheet', 'save it as .xlsx or CSV'),
-    '.shp .dbf .shx .kml .kmz': ('a layer of a map', 'export it as GeoJSON, GeoPackage or CSV'),
-    '.zip .gz .tgz .7z .rar .bz2 .xz': ('a compressed file', 'unpack it first'),
-}  # fmt: skip
+from tree_sway.tables import table_beside
+
+_FOREIGN = table_beside(__file__, 'foreign_files.csv')
 
 
 def foreign_file(path: Path) -> tuple[str, str]:
     """Return what a file is and the cure; two empty texts if its suffix does not tell."""
     suffix = path.suffix.lower()
-    for suffixes, told in _FOREIGN.items():
-        if suffix in suffixes.split():
-            return told
-    return '', ''
+    found = (each for each in _FOREIGN if suffix in each['suffixes'].split())
+    told = next(found, {'what': '', 'cure': ''})
+    return told['what'], told['cure']

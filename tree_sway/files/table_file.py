@@ -97,12 +97,13 @@ class TextTable:
 
     def find(self, quantity: str) -> Column | None:
         """Return the column of a quantity of `COLUMNS` whose name comes first there, or None."""
+        found = self.find_all(quantity)
+        return Column(found[0], self.factor_of(found[0], quantity)) if found else None
+
+    def find_all(self, quantity: str) -> list[int]:
+        """Places of all columns of a quantity, in the order of their names in `COLUMNS`."""
         ranks = [(rank_of(column, quantity), index) for index, column in enumerate(self.columns)]
-        named = [(rank, index) for rank, index in ranks if rank is not None]
-        if not named:
-            return None
-        index = min(named)[1]
-        return Column(index, self.factor_of(index, quantity))
+        return [index for _, index in sorted(each for each in ranks if each[0] is not None)]
 
     def factor_of(self, index: int, quantity: str) -> float:
         """Factor to SI of a column of a quantity; a `FormatError` for an unknown unit."""

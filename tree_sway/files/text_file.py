@@ -15,6 +15,7 @@ from pathlib import Path
 import re
 
 from tree_sway.errors import FormatError
+from tree_sway.files.foreign_file import foreign_file
 
 MAX_BYTES = 256 * 1024 * 1024
 """Largest size of a file, so that no input fills the memory [bytes]."""
@@ -112,10 +113,9 @@ def read_text(path: Path) -> str:
 
 def _no_text(error: UnicodeDecodeError, path: Path) -> FormatError:
     """Make the error of a file that is not text."""
-    if error.object.startswith(b'PK\x03\x04'):
-        return FormatError('a zip archive', where=str(path), cure='unpack it, and name its table')
+    kind, cure = foreign_file(path)
     what = f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}'
-    return FormatError(what, where=str(path), cure='save it as UTF-8')
+    return FormatError(kind or what, where=str(path), cure=cure or 'save it as UTF-8')
 
 
 def read_lines(path: Path) -> list[str]:

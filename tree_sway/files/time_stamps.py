@@ -23,11 +23,12 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.text_file import finite
+from tree_sway.tables import table_beside
 
 _STAMP = re.compile(
     r'(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?', re.ASCII
 )
-_MONTHS = ('jan', 'feb', 'mar', 'apr', 'may', 'jun', 'jul', 'aug', 'sep', 'oct', 'nov', 'dec')
+_MONTHS = 'jan feb mar apr may jun jul aug sep oct nov dec'.split()
 _DATE = (
     r'(?:(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)'
     r'|(?P<first>\d\d?)(?P<sign>[-/.])(?P<second>\d\d?)[-/.](?P<last>\d{4}|\d\d)'
@@ -45,12 +46,7 @@ _DIGITS = re.compile(r'(19|20)\d\d(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])([01]\d|2[
 _SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
 """Least number that is a time since 1970, and its unit in [s]: each is of 1973 or later."""
 
-_DAYS = (
-    (25_569.0, 51_500.0, 25_569.0, "Excel's days since 1900"),
-    (51_500.0, 70_000.0, 40_587.0, 'modified Julian days'),
-    (719_529.0, 767_011.0, 719_529.0, "MATLAB's days"),
-    (2_440_587.5, 2_470_000.0, 2_440_587.5, 'Julian days'),
-)
+_DAYS = [tuple(row.values()) for row in table_beside(__file__, 'day_counts.csv')]
 """Least and largest number of a count of days, that of 1970-01-01, and its name."""
 _SERIALS = (
     (25_569.0, "Excel's days since 1900"),

@@ -17,10 +17,9 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.files.recording.bag_reader import read_bag
+from tree_sway.files.recording.bag_reader import header_of, read_bag
 
 IMU = 'sensor_msgs/msg/Imu'
-_BODY = 4
 _NUMBERS = 37
 """Numbers behind the header: a quaternion and two vectors, each with a covariance of nine."""
 
@@ -40,17 +39,10 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
 
     """
     bag = read_bag(path, (IMU,))
-    topics = sorted(name for name, kind in bag.types.items() if kind == IMU)
-    chosen = [each for each in topics if topic is None or each.lstrip('/') == topic.lstrip('/')]
-    if len(chosen) != 1:
-        cure = f'record a topic of {IMU}'
-        if topics:
-            cure = f'choose one of {", ".join(topics)}, as {path.name}?topic={topics[0]}'
-        what = f"no topic '{topic}'" if topic else f'{IMU} on {len(topics)} topics'
-        raise FormatError(what, where=str(path), cure=cure)
+    chosen = bag.chosen(topic, (IMU,), 'motion', path, f'{path.name}?topic=')
     rows = []
     frames = set[str]()
-    for recorded, data in bag.messages[chosen[0]]:
+    for recorded, data in bag.messages[chosen]:
         try:
             stamp, frame, numbers = _sample(data, recorded)
             rows.append((stamp, numbers))
@@ -58,11 +50,11 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
         except struct.error:
             rows.append((recorded, np.full(_NUMBERS, np.nan)))
     if not rows:
-        what = f'no message on {chosen[0]}'
+        what = f'no message on {chosen}'
         cure = 'record while the sensor publishes'
         raise FormatError(what, where=str(path), cure=cure)
     if len(frames) > 1:
-        what = f'{chosen[0]} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}'
+        what = f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}'
         raise FormatError(what, where=str(path), cure='record each sensor on a topic of its own')
     epoch = rows[0][0] * 1e-9
     time = np.array([(each - rows[0][0]) * 1e-9 for each, _ in rows])
@@ -71,7 +63,7 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     for first, size in ((25, 3), (13, 3), (0, 4)):
         is_absent = float(values[0, first + size]) == -1.0
         parts.append(None if is_absent else values[:, first : first + size])
-    notes = (f'topic {chosen[0]}, {IMU}',)
+    notes = (f'topic {chosen}, {IMU}',)
     return MotionRecord(time, parts[0], parts[1], parts[2], str(path), epoch, notes)
 
 
@@ -81,10 +73,6 @@ def _sample(data: bytes, recorded: int) -> tuple[int, str, Floats]:
 
     The stamp in [ns] is that of recording where it is zero; the frame and the numbers follow.
     """
-    order = '<' if data[1:2] == b'\1' else '>'
-    second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
-    at = -(-(12 + size) // 8) * 8
-    numbers = struct.unpack_from(f'{order}{_NUMBERS}d', data, _BODY + at)
-    stamp = second * 1_000_000_000 + nanosecond
-    frame = data[_BODY + 12 : _BODY + 12 + size].rstrip(b'\0').decode('utf-8', 'replace')
+    order, stamp, frame, at = header_of(data)
+    numbers = struct.unpack_from(f'{order}{_NUMBERS}d', data, at)
     return stamp or recorded, frame, np.array(numbers)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import folded, motion_of, name_and_unit, unit_known
+from tree_sway.files.column_names import folded, motion_of, name_and_unit, SENDERS, unit_known
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
@@ -31,16 +31,12 @@ from tree_sway.files.wind.row_times import row_times, time_columns
 
 _AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 _BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis)?')
-_GRAVITY = (
-    ((8.5, 11.2), 1.0, ''),
-    ((0.87, 1.14), 9.80665, 'g'),
-    ((870.0, 1140.0), 0.00980665, 'mg'),
-)
-"""Ranges of the median of accelerations with gravity, the factor of their unit, and its name."""
+_GRAVITY = (8.5, 11.2)
+"""Range of the median of accelerations with gravity [m/s^2]."""
+_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665}
+"""Units that gravity tells, of which none is that of SI."""
 _FASTEST = 35.0
 """Largest angular rate that a sensor measures [rad/s]."""
-_DEVICES = frozenset({'devicename', 'device', 'deviceid', 'sensorname', 'sensorid', 'address'})
-"""Names of columns that tell which of several sensors a row is of."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
 _SHORTEST = 5e-4
@@ -65,7 +61,7 @@ def read_motion_table(path: Path) -> MotionRecord:
     lines = read_table_lines(path)
     table = (layout_of(lines) or PLAIN).read(lines, str(path))
     clock = time_columns(table)
-    picked = _axes(table) or _bare_axes(table, folded(path.stem))
+    picked = _axes(table, folded(path.stem))
     if clock is None or not picked:
         what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
         raise table.error(what, cure=_NAMES)
@@ -94,48 +90,40 @@ def read_motion_table(path: Path) -> MotionRecord:
     )
 
 
-def _axes(table: TextTable) -> dict[str, list[int]]:
-    """Columns of the axes of each quantity: of several with one name the first that has all."""
+def _axes(table: TextTable, stem: str) -> dict[str, list[int]]:
+    """
+    Columns of the axes of each quantity: of several with one name the first that has all.
+
+    Those called x, y and z alone, where there are no others, are of the quantity of their unit, of
+    the name of the file, or of an acceleration with gravity.
+    """
     found: dict[tuple[str, str], dict[str, int]] = {}
     for index, column in enumerate(table.columns):
-        quantity, name, axis = motion_of(column) or ('', '', '')
-        if axis:
-            found.setdefault((quantity, name), {}).setdefault(axis, index)
+        bare = _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0]))
+        quantity, name, axis = ('', '', bare[1]) if bare else motion_of(column) or ('', '', '')
+        found.setdefault((quantity, name), {}).setdefault(axis, index)
+    bare_axes = found.pop(('', ''), {})
     picked: dict[str, list[int]] = {}
     for (quantity, _), axes in found.items():
         wanted = _AXES.get(quantity, '')
-        numbered = sorted(axes) if not axes.keys() & set('wxyz') else []
-        names = wanted if axes.keys() >= set(wanted) else numbered
-        if wanted and len(names) == len(wanted):
+        names = wanted if axes.keys() >= set(wanted) else ''.join(sorted(axes))
+        if wanted and len(names) == len(wanted) and (names == wanted or names.isdecimal()):
             picked.setdefault(quantity, [axes[axis] for axis in names])
+    columns = [bare_axes[axis] for axis in 'xyz' if axis in bare_axes]
+    for quantity, word in (('rate', 'gyro'), ('acceleration', 'acc'), ('acceleration', '')):
+        units = [table.unit_of(each, quantity) for each in columns]
+        is_named = not any(units) and word in stem and (word or _gravity(table.values(columns)))
+        if len(columns) == 3 and not picked:
+            if is_named or all(unit_known(quantity, unit) for unit in units):
+                picked[quantity] = columns
     return picked
 
 
-def _bare_axes(table: TextTable, stem: str) -> dict[str, list[int]]:
-    """Columns x, y and z of the quantity of their unit, of the file's name or with gravity."""
-    axes: dict[str, int] = {}
-    for index, column in enumerate(table.columns):
-        if axis := _BARE_AXIS.fullmatch(folded(name_and_unit(column, 'acceleration')[0])):
-            axes.setdefault(axis[1], index)
-    if len(axes) < 3:
-        return {}
-    columns = [axes[axis] for axis in 'xyz']
-    for quantity, word in (('rate', 'gyro'), ('acceleration', 'acc')):
-        units = [table.unit_of(each, quantity) for each in columns]
-        if all(unit_known(quantity, unit) for unit in units):
-            return {quantity: columns}
-        if not any(units) and word in stem:
-            return {quantity: columns}
-    has_gravity = not any(units) and _gravity(table.values(columns)) is not None
-    return {'acceleration': columns} if has_gravity else {}
-
-
-def _gravity(values: Floats) -> tuple[float, str] | None:
-    """Factor to SI and unit of accelerations in which gravity is; None without it."""
+def _gravity(values: Floats) -> tuple[str, ...]:
+    """Return the unit of accelerations in which gravity is; nothing without it."""
     size = _size(values)
-    return next(
-        ((factor, unit) for (least, most), factor, unit in _GRAVITY if least < size < most), None
-    )
+    units = _UNITS.items()
+    return tuple(unit for unit, each in units if _GRAVITY[0] < size * each < _GRAVITY[1])
 
 
 def _size(values: Floats) -> float:
@@ -149,12 +137,11 @@ def _without_unit(
 ) -> tuple[float, str]:
     """Factor to SI of values without a unit, and what was assumed; else a `FormatError`."""
     name = table.columns[column]
-    if quantity == 'acceleration' and (found := _gravity(values)) is not None:
-        said = f'no unit of {name} in the header: taken in {found[1]}, as gravity is in it'
-        return found[0], said if found[1] else ''
-    unit = 'm/s^2' if quantity == 'acceleration' else 'rad/s'
-    size = _size(values)
-    if size > (_GRAVITY[0][0][1] if unit == 'm/s^2' else _FASTEST):
+    unit, most = ('m/s^2', _GRAVITY[1]) if quantity == 'acceleration' else ('rad/s', _FASTEST)
+    for told in _gravity(values) if quantity == 'acceleration' else ():
+        said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
+        return _UNITS[told], said if told else ''
+    if (size := _size(values)) > most:
         what = f'{name} without a unit is {size:.4g} as a median, which is no {unit}'
         raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
     return 1.0, f'no unit of {name} in the header: taken in {unit}'
@@ -163,7 +150,7 @@ def _without_unit(
 def _refuse_several(table: TextTable) -> None:
     """Refuse a table with rows of several sensors."""
     for column, name in enumerate(table.columns):
-        if folded(name) in _DEVICES:
+        if folded(name) in SENDERS[:-1]:
             cells = table.cells(column, range(len(table.texts)))
             found = sorted({*cells} - {'', table.columns[column]})
             if len(found) > 1:

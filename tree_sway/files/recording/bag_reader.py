@@ -9,6 +9,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
+import struct
 
 import numpy as np
 
@@ -16,6 +17,10 @@ from tree_sway.errors import FormatError
 from tree_sway.files.bounded import Arrays, bounded_arrays
 
 _CURE = "if it was cut off, repair it with 'mcap recover' or 'sqlite3 FILE .recover'"
+
+
+BODY = 4
+"""Bytes of encapsulation, from which on numbers are aligned."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,26 @@ class BagContent:
 
     types: dict[str, str]
     messages: dict[str, list[tuple[int, bytes]]]
+
+    def chosen(
+        self, topic: str | None, kinds: Collection[str], what: str, path: Path, form: str = ''
+    ) -> str:
+        """
+        Return the topic of some types of a name, or the only one; else a `FormatError`.
+
+        ``what`` is on them; ``form`` is how one is chosen, before its name.
+        """
+        known = sorted(name for name, kind in self.types.items() if kind in kinds)
+        found = [name for name in known if not topic or name.lstrip('/') == topic.lstrip('/')]
+        if len(found) == 1:
+            return found[0]
+        problem = f"no {what} on topic '{topic}'" if topic else f'{what} on {len(known)} topics'
+        example = f', as {form}{"".join(known[:1])}' if form else ''
+        cure = f'choose a topic: {", ".join(known)}{example}'
+        if not known:
+            there = ', '.join(f'{name} ({kind})' for name, kind in [*self.types.items()][:10])
+            cure = f'there is {there or "nothing"}; {what} is one of {", ".join(kinds)}'
+        raise FormatError(problem, where=str(path), cure=cure)
 
 
 def read_bag(path: Path, types: Collection[str]) -> BagContent:
@@ -57,6 +82,14 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
     for row, (topic, stamp) in enumerate(rows):
         content.messages[topics[topic][0]].append((stamp, data[ends[row] : ends[row + 1]]))
     return content
+
+
+def header_of(data: bytes) -> tuple[str, int, str, int]:
+    """Order of bytes of a message of CDR, stamp [ns] and frame of its header, and its end."""
+    order = '<' if data[1:2] == b'\1' else '>'
+    second, nanosecond, size = struct.unpack_from(f'{order}iII', data, BODY)
+    frame = data[BODY + 12 : BODY + 12 + size].rstrip(b'\0').decode('utf-8', 'replace')
+    return order, second * 1_000_000_000 + nanosecond, frame, BODY - (-(12 + size) // 8) * 8
 
 
 def messages_of_bag(path: str, *types: str) -> Arrays:

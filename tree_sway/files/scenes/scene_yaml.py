@@ -38,7 +38,7 @@ from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocume
 
 OpenTree = Callable[..., TreeFile]
 
-_PLACE = ('x', 'y', 'z', 'yaw', 'leaf_on')
+_PLACE = 'x y z yaw leaf_on'.split()
 
 
 def read_scene_yaml(path: Path, open_tree: OpenTree, *, exact: bool = False) -> Scene:

@@ -15,8 +15,7 @@ from pathlib import Path
 import struct
 
 from tree_sway.core.wind.convention import WindConvention
-from tree_sway.errors import FormatError
-from tree_sway.files.recording.bag_reader import read_bag
+from tree_sway.files.recording.bag_reader import BODY, header_of, read_bag
 from tree_sway.files.wind.record import WindRecord, WindRows
 
 WIND_TYPES = tuple(
@@ -24,7 +23,6 @@ WIND_TYPES = tuple(
     for name in ('Vector3Stamped', 'TwistStamped', 'TwistWithCovarianceStamped', 'Vector3')
 )
 """Message types of wind."""
-_BODY = 4  # bytes of encapsulation, from which on numbers are aligned
 
 
 def read_bag_wind(
@@ -48,7 +46,7 @@ def read_bag_wind(
     WindConvention(direction_convention)  # refused before the file is read
     source = str(path)
     bag = read_bag(path, WIND_TYPES)
-    chosen = _chosen(bag.types, topic, source)
+    chosen = bag.chosen(topic, WIND_TYPES, 'wind', path)
     kind = bag.types[chosen]
     messages = bag.messages[chosen]
     rows = WindRows(source, row_name='message')
@@ -71,30 +69,10 @@ def read_bag_wind(
     )
 
 
-def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
-    of_wind = [name for name, kind in types.items() if kind in WIND_TYPES]
-    if topic is not None:
-        for name in (topic, f'/{topic}'):
-            if name in of_wind:
-                return name
-    elif len(of_wind) == 1:
-        return of_wind[0]
-    what = f"no wind on topic '{topic}'" if topic else f'wind on {len(of_wind)} topics'
-    cure = f'choose a topic: {", ".join(sorted(of_wind))}'
-    if not of_wind:
-        there = ', '.join(f'{name} ({kind})' for name, kind in [*types.items()][:10]) or 'nothing'
-        cure = f'there is {there}; wind is one of {", ".join(WIND_TYPES)}'
-    raise FormatError(what, where=source, cure=cure)
-
-
 def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
     """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
-    order = '<' if data[1:2] == b'\1' else '>'
-    at = 0
-    stamp = 0
+    order, stamp, at = '<' if data[1:2] == b'\1' else '>', 0, BODY
     if has_header:
-        second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
-        stamp = second * 1_000_000_000 + nanosecond
-        at = -(-(12 + size) // 8) * 8
-    x, y, z = struct.unpack_from(f'{order}3d', data, _BODY + at)
+        order, stamp, _, at = header_of(data)
+    x, y, z = struct.unpack_from(f'{order}3d', data, at)
     return stamp, (x, y, z)

@@ -10,24 +10,15 @@ import re
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.files.column_names import COMPASS
 from tree_sway.files.text_file import finite
 
 FULL_CIRCLE = 401.0
 """Largest direction in degrees: a little more than a circle, and less than the codes of errors."""
 
-_POINTS = (
-    'N', 'NNE', 'NE', 'ENE', 'E', 'ESE', 'SE', 'SSE',
-    'S', 'SSW', 'SW', 'WSW', 'W', 'WNW', 'NW', 'NNW',
-)  # fmt: skip
+_POINTS = 'N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW'.split()
 _DEGREES = {point: 22.5 * number for number, point in enumerate(_POINTS)}
-_WORDS = {
-    **dict.fromkeys(('north', 'nord', 'norte', 'nor'), 'N'),
-    **dict.fromkeys(('east', 'est', 'este', 'leste', 'ost'), 'E'),
-    **dict.fromkeys(('south', 'sud', 'süd', 'sur', 'sul'), 'S'),
-    **dict.fromkeys(('west', 'ouest', 'oeste', 'ovest'), 'W'),
-    **{'北': 'N', '東': 'E', '南': 'S', '西': 'W'},
-}
-_WORD = re.compile('|'.join(sorted(_WORDS, key=len, reverse=True)))
+_WORD = re.compile('|'.join(sorted(COMPASS, key=len, reverse=True)))
 
 
 def degrees_of(cells: Sequence[str]) -> Floats:
@@ -57,6 +48,6 @@ def velocity_to(speed: Floats, bearing: Floats) -> Floats:
 
 
 def _point(cell: str) -> str:
-    text = _WORD.sub(lambda word: _WORDS[word[0]], cell.strip().lower())
+    text = _WORD.sub(lambda word: COMPASS[word[0]], cell.strip().lower())
     text = text.replace('-', '').replace(' ', '').upper()
     return text if len(text) <= 3 and set(text) <= set('NESWO') else ''

@@ -18,6 +18,7 @@ import re
 import numpy as np
 
 from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.files.column_names import unit_factor
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
@@ -28,7 +29,6 @@ METAR = re.compile(
 )
 _MEAN = 600.0
 """Length of the mean of a report in [s] (WMO Manual on Codes 306, FM 15)."""
-_UNITS = {'KT': 1852.0 / 3600.0, 'MPS': 1.0, 'KMH': 1.0 / 3.6}
 
 
 def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> WindRecord:
@@ -52,7 +52,7 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
         if not report[5].isdigit() or not (report[4].isdigit() or report[5] == '00'):
             rows.refuse(number, f"no direction or speed in '{report[4]}{report[5]}'")
             continue
-        unit = _UNITS[report[7]]
+        unit = unit_factor('speed', report[7]) or 1.0
         bearing = radians(float(report[4])) if report[4].isdigit() else 0.0
         time = 86400.0 * passed + 3600.0 * hour + 60.0 * minute
         gusts.append(unit * float(report[6]) if report[6] else np.nan)

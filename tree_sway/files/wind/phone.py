@@ -17,7 +17,7 @@ from urllib.request import urlopen
 from tree_sway.errors import FormatError, TransportError
 from tree_sway.files.wind.sway_table import parse_sway, SwayRecord
 
-_QUANTITIES = ('acc_time', 'accX', 'accY', 'accZ')
+_QUANTITIES = 'acc_time accX accY accZ'.split()
 _TIMEOUT = 5.0
 _LARGEST = 2**26
 

@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
-from tree_sway.files.column_names import folded, name_and_unit, rank_of
+from tree_sway.files.column_names import folded, name_and_unit, TIME_PARTS
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.time_stamps import Times, times_of
 
@@ -45,28 +45,14 @@ def _numbers(parts: Sequence[str]) -> str:
     return f'{year + (1900 if 50 < year < 100 else 0)}-{month}-{day} {hour}:{minute:02d}'
 
 
-PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
-    (('yy', 'mm', 'dd', 'hh', 'minute'), _numbers),
-    (('year', 'month', 'day', 'hour', 'minute'), _numbers),
-    (('year', 'month', 'day', 'hour'), _numbers),
-    (('year', 'mo', 'dy', 'hr'), _numbers),
-    (('vuosi', 'kuukausi', 'paeivae', 'aika'), _date_and_clock),
-    (('vuosi', 'kk', 'pv', 'klo'), _date_and_clock),
-    (('yyyymmdd', 'hh'), _date_and_hour),
-    (('date', 'time'), _date_and_time),
-    (('datum', 'zeit'), _date_and_time),
-    (('datum', 'uhrzeit'), _date_and_time),
-    (('datum', 'tid'), _date_and_time),
-    (('fecha', 'hora'), _date_and_time),
-    (('fecha', 'horamin'), _date_and_digits),
-    (('date', 'heure'), _date_and_time),
-    (('date', 'timeutc'), _date_and_time),
-    (('data', 'horautc'), _date_and_time),
-    (('date', 'hour'), _date_and_hour),
-    (('date', 'mst'), _date_and_time),
-    (('date', 'est'), _date_and_time),
-    (('date', 'pst'), _date_and_time),
-)
+_JOINS: dict[str, Join] = {
+    'numbers': _numbers,
+    'date, hour': _date_and_hour,
+    'date, digits': _date_and_digits,
+    'date, time': _date_and_time,
+    'year, month, day, time': _date_and_clock,
+}
+PARTS = tuple((tuple(names.split()), _JOINS[join]) for names, join in TIME_PARTS.items())
 """Columns that make a time together, and how."""
 _LOOKED_AT = 20
 """Rows that are looked at for which of several columns has the time."""
@@ -80,12 +66,10 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
     for wanted, join in PARTS:
         if all(name in names for name in wanted):
             return [names.index(name) for name in wanted], join, 1.0
-    ranks = [(rank_of(column, 'time'), index) for index, column in enumerate(table.columns)]
-    clocks = [index for _, index in sorted((rank, i) for rank, i in ranks if rank is not None)]
     first = range(min(len(table.texts), _LOOKED_AT))
-    for index in [i for i in clocks if _has_times(table.cells(i, first))] or clocks[:1]:
-        return [index], None, table.factor_of(index, 'time')
-    return None
+    clocks = table.find_all('time')
+    clocks.sort(key=lambda index: not _has_times(table.cells(index, first)))
+    return ([clocks[0]], None, table.factor_of(clocks[0], 'time')) if clocks else None
 
 
 def _has_times(cells: Sequence[str]) -> bool:

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.files.column_names import folded, motion_of, rank_of
+from tree_sway.files.column_names import motion_of, rank_of
 from tree_sway.files.time_stamps import dates
 from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
 from tree_sway.sensors.readers.json_path import parse_json
@@ -37,12 +37,7 @@ _MOST = 500
 _LONGEST = 40
 _MOST_NAMES = 64
 _DEEPEST = 2
-_WHOLES = {
-    'acceleration': {'acceleration', 'accel', 'acc', 'linearacceleration', 'accelerometer'},
-    'rate': {'rate', 'gyro', 'gyroscope', 'angularvelocity', 'angularrate', 'rotationrate'},
-    'orientation': {'orientation', 'quaternion', 'quat', 'attitude', 'q'},
-}
-"""Names of all axes of a quantity together."""
+_QUANTITIES = ('acceleration', 'rate', 'orientation')
 
 
 def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
@@ -116,8 +111,9 @@ def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, 
 
 @lru_cache(4096)
 def _whole(name: str) -> str:
-    plain = folded(name)
-    return next((quantity for quantity, names in _WHOLES.items() if plain in names), '')
+    """Quantity of a name of all axes together, which is that of its axes without them."""
+    quantity = (motion_of(f'{name}_x') or ('',))[0]
+    return quantity if quantity in _QUANTITIES else ''
 
 
 @lru_cache(4096)
@@ -126,4 +122,4 @@ def _place(name: str) -> tuple[str, str] | None:
     if rank_of(name, 'time') is not None:
         return 'time', ''
     quantity, _, axis = motion_of(name) or ('', '', '')
-    return (quantity, axis) if quantity in _WHOLES and axis in tuple('xyzw') else None
+    return (quantity, axis) if quantity in _QUANTITIES and axis in tuple('xyzw') else None

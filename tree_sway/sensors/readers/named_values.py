@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from tree_sway.files.column_names import rank_of, unit_in_name
+from tree_sway.files.column_names import folded, rank_of, SENDERS, unit_in_name
 from tree_sway.sensors.readers.json_path import JsonPath
 from tree_sway.sensors.readers.values import bearing_of, is_calm, number, speed_factor
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
@@ -96,17 +96,12 @@ class WindNames:
 
 
 _ABSENT = object()
-_SENDERS = (
-    'serial_number', 'sn', 'serial', 'mac', 'device_id', 'deviceid', 'deveui', 'dev_eui',
-    'station_id', 'stationid', 'sensor_id', 'sensorid', 'id',
-)  # fmt: skip
-"""Names of what tells an instrument from another, in lower case."""
 
 
 def _sender(leaves: Mapping[str, Any]) -> str:
     """Return what a message says of its instrument; empty for nothing."""
-    named = {name.lower(): value for name, value in leaves.items()}
-    found = next((named[name] for name in _SENDERS if isinstance(named.get(name), str | int)), '')
+    named = {folded(name): value for name, value in leaves.items()}
+    found = next((named[name] for name in SENDERS if isinstance(named.get(name), str | int)), '')
     return str(found)[:_LONGEST]
 
 

@@ -20,7 +20,7 @@ from tree_sway.files.text_file import finite
 from tree_sway.sensors.readers.values import bearing_of, is_calm
 from tree_sway.sensors.reading import of_velocity, Reading, Refusal, WindReading
 
-COLUMNS = ('speed', 'direction', 'gust', 'u', 'v', 'w', '-')
+COLUMNS = 'speed direction gust u v w -'.split()
 """Meanings of a column; components point east, north and up, the way the air goes."""
 KIND_PLAIN = 'numbers'
 KIND_SDI12 = 'SDI-12'

@@ -32,7 +32,7 @@ _AND_MORE = re.compile(
 """End of the highest class, as in ``24 m. en hoger``: its number is the least of the class."""
 _SPLIT = re.compile(rf'(?:{_AND}|/|(?<=\d)\s)(?=\s*\d)')
 _SLASHES = re.compile(r'\s*(\d+(?:[.,]\d+)?)\s*/\s*(\d+(?:[.,]\d+)?)\s*(/.*)?')
-_WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
+_WORDS = 'tot to bis à a und ca bzw'.split()
 
 
 def cell_number(text: str) -> tuple[float, str] | None:

@@ -16,7 +16,6 @@ from tree_sway.files.column_names import rank_of, unit_factor, unit_known
 from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.table_file import Column, TextTable
 
-
 _NUMBERED = re.compile(r'(?<=[^\W\d])[ _]?[1-9](?=$|[ _(\[])')
 """Number of a stem in the name of a column."""
 
@@ -67,11 +66,6 @@ class InventoryColumns:
             f'{count} {"row is" if count == 1 else "rows are"} left out: {reasons}; {self._first}'
         )
 
-    def find_all(self, quantity: str) -> list[int]:
-        """Places of all columns of a quantity, in the order of their names in `COLUMNS`."""
-        ranks = [(rank_of(name, quantity), i) for i, name in enumerate(self.table.columns)]
-        return [i for _, i in sorted((rank, i) for rank, i in ranks if rank is not None)]
-
     def numbered(self, quantity: str) -> list[int]:
         """Places of columns of the stems of a tree, as ``DBH 1 (cm)`` and ``DBH 2 (cm)``."""
         names = [_NUMBERED.sub('', name) for name in self.table.columns]
@@ -79,7 +73,7 @@ class InventoryColumns:
 
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""
-        return next(iter(self.find_all(quantity)), None)
+        return next(iter(self.table.find_all(quantity)), None)
 
     def find(self, *quantities: str) -> list[Column] | None:
         """Columns of quantities; None if one is missing."""

@@ -7,21 +7,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.text_file import read_table_lines
 
-_NEEDED = {
-    'the place (x and y, or latitude and longitude)': (
-        ('x', 'y'), ('latitude', 'longitude'), ('place',),
-    ),
-    'the species': (('species',), ('genus',)),
-    'the size (height, dbh or girth)': (('height',), ('diameter',), ('girth',)),
-}  # fmt: skip
-"""Columns of an inventory: what they say, and the quantities that do."""
 SPECIES = 'the species'
 
 
@@ -52,22 +44,16 @@ def table_of_head(head: str) -> TextTable | None:
 
 def missing_columns(table: TextTable) -> list[str]:
     """Describe the columns of an inventory that a table lacks."""
-    has = {
-        quantity: any(rank_of(name, quantity) is not None for name in table.columns)
-        for choices in _NEEDED.values()
-        for choice in choices
-        for quantity in choice
-    }
     return [
         what
-        for what, choices in _NEEDED.items()
-        if not any(all(has[quantity] for quantity in choice) for choice in choices)
+        for what, choices in INVENTORY.items()
+        if not any(all(map(table.find_all, choice.split())) for choice in choices)
     ]
 
 
 def why_missing(table: TextTable) -> str:
     """Return which columns of an inventory a table lacks, empty if none or all."""
     missing = missing_columns(table)
-    if not missing or len(missing) == len(_NEEDED):
+    if not missing or len(missing) == len(INVENTORY):
         return ''
     return f'no column for {" and none for ".join(missing)} among {", ".join(table.columns[:20])}'

@@ -149,7 +149,7 @@ def inventory_of(
 
 
 def _leave_out_dead(columns: InventoryColumns) -> None:
-    for index in columns.find_all('status'):
+    for index in columns.table.find_all('status'):
         for row, text in enumerate(columns.texts(index)):
             if _DEAD.search(text):
                 columns.leave_out(

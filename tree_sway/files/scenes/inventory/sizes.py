@@ -40,8 +40,7 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
     """Diameters at breast height [m], NaN without one; None if no column has them."""
     found: Floats | None = None
     for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
-        stems = [index for index in [columns.index_of(quantity)] if index is not None]
-        stems = stems or columns.numbered(quantity)
+        stems = columns.table.find_all(quantity)[:1] or columns.numbered(quantity)
         if not stems:
             continue
         index = stems[0]
@@ -126,7 +125,7 @@ def _usual_slenderness(diameter: Floats | None) -> float:
 
 def _height_column(columns: InventoryColumns) -> int | None:
     """Column of heights whose name comes first, of those that have a number."""
-    found = columns.find_all('height')
+    found = columns.table.find_all('height')
     filled = (index for index in found if np.isfinite(columns.numbers(index)[0]).any())
     return next(filled, found[0] if found else None)
 

@@ -16,7 +16,7 @@ UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
 """Trees of no known species."""
-_NO_EPITHETS = ('sp', 'sp.', 'spp', 'spp.', 'species')
+_NO_EPITHETS = 'sp sp. spp spp. species'.split()
 """Cells that say that the epithet is not known, and would else be read as abbreviations."""
 _MOST_NOTES = 20
 _SHORTEST_NAME = 3
@@ -36,7 +36,7 @@ def species_of_rows(
     """
     tables = [
         _decoded(columns, index, given, is_in_states=is_in_states)
-        for index in columns.find_all('species')
+        for index in columns.table.find_all('species')
     ]
     genus = columns.table.find('genus')
     epithet = columns.table.find('epithet')

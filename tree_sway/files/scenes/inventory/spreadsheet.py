@@ -22,7 +22,7 @@ from tree_sway.files.column_names import rank_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES
 
-_QUANTITIES = ('species', 'genus', 'height', 'diameter', 'girth', 'x', 'latitude', 'place')
+_QUANTITIES = 'species genus height diameter girth x latitude place'.split()
 _CHUNK = 1 << 20
 _HEADER = 20
 """Rows that may stand above the header, such as a title."""

@@ -8,29 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.tables import table_beside
 
 _SOUTH = 24.0
 """Latitude south of Florida and Texas [deg]."""
 
 _NORTHERN_BORDER = np.array(
-    [
-        (-125.0, 49.0),
-        (-95.2, 49.0),
-        (-89.6, 48.0),
-        (-84.6, 46.5),
-        (-83.0, 45.5),
-        (-82.5, 43.0),
-        (-82.0, 41.9),
-        (-79.0, 42.8),
-        (-78.9, 43.5),
-        (-76.5, 44.1),
-        (-75.0, 45.0),
-        (-71.5, 45.0),
-        (-70.3, 46.2),
-        (-69.2, 47.4),
-        (-67.8, 47.1),
-        (-66.9, 44.8),
-    ]
+    [tuple(row.values()) for row in table_beside(__file__, 'northern_border.csv')]
 )
 """Longitude and latitude along the border with Canada, from west to east, roughly [deg]."""
 

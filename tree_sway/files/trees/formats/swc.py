@@ -23,7 +23,7 @@ from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
-_COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
+_COLUMNS = 'number type x y z radius parent'.split()
 
 
 def _is_swc(head: str) -> bool:

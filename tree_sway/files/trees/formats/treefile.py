@@ -24,7 +24,7 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_options import FITTED
 
-_FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
+_FIELDS = 'x y z radius parent_id'.split()
 
 
 def _read(path: Path) -> tuple[Cylinders, ...]:

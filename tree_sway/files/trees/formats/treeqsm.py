@@ -39,10 +39,7 @@ _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extens
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
 _VARIABLES = dict(zip(('Rad', 'Len', 'Sta', 'Axe', 'CPar', 'CExt'), _FIELDS, strict=True))
 """Variables of version 2.0, and the fields of later ones."""
-_COLUMNS = (
-    'radius', 'length', 'start_x', 'start_y', 'start_z', 'axis_x', 'axis_y', 'axis_z', 'parent',
-    'extension',
-)  # fmt: skip
+_COLUMNS = 'radius length start_x start_y start_z axis_x axis_y axis_z parent extension'.split()
 _LEAST_COLUMNS, _MOST_COLUMNS = 9, 15
 """Numbers of columns of an array of cylinders."""
 _UNMISTAKABLE = 13

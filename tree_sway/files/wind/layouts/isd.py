@@ -18,7 +18,7 @@ from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_
 from tree_sway.files.table_file import split_row, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
-_COLUMNS = ('time', 'wind_speed', 'wind_direction', 'gust')
+_COLUMNS = 'time wind_speed wind_direction gust'.split()
 _UNITS = ('', '0.1 m/s', 'deg', '0.1 m/s')
 _LITE = re.compile(r'\d{4} \d\d \d\d \d\d(\s+-?\d+){8}\s*')
 _CALM = 'C'

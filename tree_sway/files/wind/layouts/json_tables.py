@@ -49,11 +49,9 @@ def read_json_table(lines: list[str], source: str) -> TextTable:
     if not tables:
         cure = 'give columns or records with a time, a speed and a direction'
         raise FormatError('no table in the JSON', where=source, cure=cure)
-    return max(tables, key=lambda table: (_has_speed(table), len(table.texts)))
-
-
-def _has_speed(table: TextTable) -> bool:
-    return any(table.find(each) for each in ('wind_speed', 'wind_x'))
+    # One with a wind before a longer one of another sensor.
+    winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
+    return max(winds or tables, key=lambda table: len(table.texts))
 
 
 def _document(lines: list[str]) -> Any:
@@ -138,18 +136,12 @@ def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, 
         if isinstance(each, dict) and depth < _DEEPEST:
             yield from _flat(each, f'{whole}.', depth + 1)
         elif isinstance(each, list):
-            for item in filter(_is_named_value, each):
-                label = next(text for text in item.values() if isinstance(text, str))
-                yield from _flat(item, f'{label}.', depth + 1)
+            # Values beside their names, as in Frost.
+            for item in each:
+                if isinstance(item, dict) and 'value' in item:
+                    yield from _flat(item, f'{next(iter(item.values()))}.', depth + 1)
         else:
             yield whole, _text(each)
-
-
-def _is_named_value(item: Any) -> bool:
-    """Whether an item of a list is a value beside its name, as in Frost."""
-    return isinstance(item, dict) and 'value' in item and any(
-        isinstance(each, str) for each in item.values()
-    )
 
 
 def _unit_beside(record: Cells, name: str) -> str | None:

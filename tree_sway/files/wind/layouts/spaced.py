@@ -18,7 +18,7 @@ from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'#\s*(YY+\s+MM\s+DD|STN\s*,\s*YYYYMMDD)\b')
 _HEAD = 200
-_CLOCK = ('YY', 'YYYY', 'MM', 'DD', 'hh', 'minute')
+_CLOCK = 'YY YYYY MM DD hh minute'.split()
 
 
 def _find_names(lines: Sequence[str]) -> int | None:
