@@ -119,3 +119,19 @@ def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
         for reader, document in ((read, delta), (read_reports, report)):
             for each in reader(Message(json.dumps(document).encode())):
                 assert isinstance(each, (WindReading, Refusal))
+
+
+def test_names_without_end_are_not_kept() -> None:
+    from tree_sway.sensors.readers.named_values import WindNames
+    from tree_sway.sensors.sources.signalk import SignalKWind
+    from tree_sway.sensors.transports.transport import Message
+
+    names, read = WindNames(), SignalKWind()
+    tracemalloc.start()
+    for k in range(300):
+        name = f'environment.wind.{k}' + 'x' * 60_000
+        names.read({name: 1.0, 'wind_speed': 5.0}, 'JSON')
+        read(Message(json.dumps({'updates': [{'values': [{'path': name, 'value': 1}]}]}).encode()))
+    taken = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert taken < 2_000_000

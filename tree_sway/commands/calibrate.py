@@ -154,8 +154,9 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
         f'  swing      {_swing(found.frequency)}'
         f'{_within(found.frequency_error / found.frequency)}'
     )
+    own_error = found.damping_error / max(found.damping_ratio, 1e-9)
     print(
-        f'  damping    {found.damping_ratio:.3g}{_within(found.damping_error / max(found.damping_ratio, 1e-9))}: '
+        f'  damping    {found.damping_ratio:.3g}{_within(own_error)}: '
         f'each swing is {_shrinks(found.damping_ratio)} smaller than the one before'
     )
     return found

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits of a source: the rate of its messages, and the time that they take."""
 
+from contextlib import suppress
 import socket
 import threading
 import time
@@ -90,3 +91,29 @@ def test_a_flood_of_lines_is_refused_and_the_newest_are_read(hear, server) -> No
             link.sendall(b'7.0\n')
             pause.wait(0.02)
     assert heard.link.refused['more than 1000 messages per second'] > 180_000
+
+
+@pytest.mark.parametrize('block', [b'\n' * 65_536, b'x' * 65_536], ids=['empty lines', 'no end'])
+def test_bytes_that_are_no_lines_take_no_more_of_a_processor(
+    hear, server, monkeypatch: pytest.MonkeyPatch, block: bytes
+) -> None:
+    """They are no messages, so that only the processor's time limits them."""
+    rested: list[float] = []
+    heard = hear(Tcp(*server.getsockname()))
+    monkeypatch.setattr(heard.link, 'pause', rested.append)
+    link, _ = server.accept()
+    over = threading.Event()
+
+    def flood() -> None:
+        link.settimeout(0.2)
+        while not over.is_set():
+            with suppress(OSError):
+                link.sendall(block)
+
+    thread = threading.Thread(target=flood, daemon=True)
+    thread.start()
+    heard.until(lambda: rested)
+    over.set()
+    thread.join(5.0)
+    link.close()
+    assert heard.data == []

@@ -113,7 +113,9 @@ def _found(
     if path is not None:
         found = path.find(document)
         return '', _ABSENT if found is None else found
-    ranked = ((_rank(name, quantity), name) for name in leaves)
+    # Longer names are none, and would stay in the cache.
+    short = (name for name in leaves if _SHORTEST <= len(name) <= _LONGEST)
+    ranked = ((_rank(name, quantity), name) for name in short)
     # A boat has a speed as well as a wind_speed.
     known = [('wind' not in name.lower(), rank, name) for rank, name in ranked if rank is not None]
     if not known:
@@ -124,7 +126,7 @@ def _found(
 
 @lru_cache(_CACHED)
 def _rank(name: str, quantity: str) -> int | None:
-    return rank_of(name, quantity) if _SHORTEST <= len(name) <= _LONGEST else None
+    return rank_of(name, quantity)
 
 
 def _leaves(document: Any) -> Iterator[tuple[str, Any]]:

@@ -20,6 +20,7 @@ def run_until_over(work: Coroutine[object, object, None], receiver: Receiver) ->
         task = asyncio.ensure_future(work)
         while not task.done():
             await asyncio.wait([task], timeout=_LOOK)
+            receiver.rest()
             if receiver.is_over:
                 task.cancel()
                 await asyncio.wait([task], timeout=1.0)

@@ -74,6 +74,10 @@ class Link(Worker):
                 self.take(message)
             else:
                 self.refuse(_TOO_MANY)
+        self.rest()
+
+    def rest(self) -> None:
+        """Rest if the thread took more than its share of the processor."""
         if rest := self._pace.rest:
             self.pause(rest)
 

@@ -83,6 +83,7 @@ class Mqtt:
                         raise ConnectionError('the broker refuses the topic: not authorised')
                     elif kind == _PUBLISH and (message := _message(body)) is not None:
                         receiver.deliver(message)
+                receiver.rest()
 
     @contextmanager
     def _connected(self) -> Iterator[socket.socket]:

@@ -49,3 +49,4 @@ def deliver_lines(
         if lines.dropped:
             receiver.refuse(f'a line of more than {LONGEST} bytes', lines.dropped)
             lines.dropped = 0
+        receiver.rest()

@@ -32,10 +32,13 @@ class Receiver(Protocol):
         """Note that the connection is made."""
 
     def deliver(self, message: Message) -> None:
-        """Deliver a message; rests where too many come."""
+        """Deliver a message, and rest as `rest`."""
 
     def refuse(self, cause: str, count: int = 1) -> object:
         """Count messages that are not delivered, by their cause."""
+
+    def rest(self) -> None:
+        """Rest if receiving took too much of the processor; called often, whatever comes."""
 
     def pause(self, seconds: float) -> None:
         """Wait some seconds [s], or until the end is requested."""
