@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
@@ -151,11 +150,6 @@ def test_a_model_of_a_file_is_stepped_without_loading_the_set_up(stem, tmp_path)
     for name in modules:
         print(f'{tokens[name]:>6}  {Path(name).relative_to(ROOT)}')
     print(f'{sum(tokens.values()):>6}  tokens of {len(modules)} modules')
-    # Without a compiler branches are placed level by level, as the set-up moves them.
-    assert set(setup) <= {
-        'tree_sway.core.setup.numpy_branch_loads',
-        'tree_sway.core.setup.tree_motion',
-    }
-    if not WHY_PLAIN:
-        assert len(modules) <= MOST_MODULES
-        assert sum(tokens.values()) <= MOST_TOKENS
+    assert not setup
+    assert len(modules) <= MOST_MODULES
+    assert sum(tokens.values()) <= MOST_TOKENS

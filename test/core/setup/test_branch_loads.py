@@ -25,7 +25,6 @@ bent_loads, outward_pass, set_air, wind_forces = (
     for name in ('bent_loads', 'outward_pass', 'set_air', 'wind_forces')
 )
 
-pytestmark = pytest.mark.compiled
 
 DRAG = 0.5 * 1.225 * 1.2
 

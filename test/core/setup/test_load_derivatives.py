@@ -11,8 +11,6 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.static_responses import WindMoments
 
-pytestmark = pytest.mark.compiled
-
 
 @pytest.fixture
 def bent():
