@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""For all tests: Hypothesis that repeats, kernels made once, a ROS domain each, small trees."""
+"""For all tests: Hypothesis that repeats, a ROS domain each, small trees."""
 
 import contextlib
 import faulthandler
@@ -28,9 +28,7 @@ import pytest  # noqa: E402
 
 from tree_sway.cache.model_cache import MODELS as ON_DISK  # noqa: E402
 from tree_sway.commands import cli  # noqa: E402
-from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.model.model_cache import PREPARED  # noqa: E402
-from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
 from tree_sway.installed_models import GROUP, installed_models  # noqa: E402
@@ -175,28 +173,6 @@ def models_are_prepared_once(shared_folder):
     ON_DISK.folder, ON_DISK.most, PREPARED.behind = kept
 
 
-MODELS = ('60', 'full', 'branch')
-"""Models whose kernels most tests run."""
-
-
-@pytest.fixture(scope='session', autouse=True)
-def kernels_are_compiled_first():
-    """
-    Compile the kernels of each model before the tests, which measure their own effort.
-
-    Each worker begins with the model of its own number, so that workers compile different kernels;
-    those that another one is compiling it waits for and reads (`kernel_claim`).
-    """
-    worker = os.environ.get('PYTEST_XDIST_WORKER', '')
-    if WHY_PLAIN or not worker:
-        return
-    first = int(worker.removeprefix('gw')) % len(MODELS)
-    for model in MODELS[first:] + MODELS[:first]:
-        simulator = make_simulator(_stem(), model=model, cache=None)
-        simulator.step((5.0, 0.0, 0.0), 1.0 / 60.0)
-        simulator.place()
-
-
 @pytest.fixture(scope='session')
 def claimed_domain():
     """Claim a ROS domain, to the end of a block, for fixtures that outlive a test."""
@@ -240,15 +216,8 @@ def _peak_memory(restarted=True):
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item):
-    """Skip what calls kernels where none can be compiled."""
-    if WHY_PLAIN and item.get_closest_marker('compiled'):
-        pytest.skip(f'calls compiled kernels, and {WHY_PLAIN}')
-
-
-@pytest.hookimpl(tryfirst=True)
 def pytest_runtest_makereport(item, call):
-    """Skip what turns out to need compiled kernels, or an optional package that is missing."""
+    """Skip what turns out to need an optional package that is missing."""
     if call.excinfo and _lacks(call.excinfo.value):
         try:
             pytest.skip(str(call.excinfo.value))
@@ -258,8 +227,6 @@ def pytest_runtest_makereport(item, call):
 
 def _lacks(error):
     """Tell whether an error is that of something optional, and that is not there indeed."""
-    if WHY_PLAIN and 'needs compiled kernels' in str(error):
-        return isinstance(error, MissingDependencyError)
     if not isinstance(error, (MissingDependencyError, ModuleNotFoundError)):
         return False
     missing = re.search(r"No module named '(\w+)", str(error))

@@ -248,18 +248,7 @@ if bdist_wheel is not None:
 #: every file that names versions.
 PYTHONS = tuple(f'3.{minor}' for minor in range(10, 16))
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
-#: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
-NUMBA = (
-    'numba>=0.59; platform_python_implementation == "CPython" and '
-    f'python_version <= "{PYTHONS[-1]}" and '
-    '(sys_platform == "linux" and platform_machine == "x86_64" or '
-    'sys_platform == "linux" and platform_machine == "aarch64" or '
-    'sys_platform == "win32" and platform_machine == "AMD64" or '
-    'sys_platform == "darwin" and platform_machine == "arm64")'
-)
 extras = {
-    # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
-    'fast': ['numba>=0.59'],
     # The compiler of the page's core (python setup.py build_wasm).
     'wasm': [f'ziglang=={ZIG}'],
     # Bars for long waits; without tqdm a line is printed now and then.
@@ -336,7 +325,6 @@ setup(
         'jsonschema>=4.10',
         'aiohttp>=3.8',
         'tqdm>=4.60',
-        NUMBA,
     ],
     extras_require=extras,
     setup_requires=NEEDED,

@@ -34,9 +34,9 @@ CONSTRAINTS = ROOT / '.ci' / 'constraints-ros-jazzy.txt'
 HASHES = ROOT / '.ci' / 'hashes-ros-jazzy.txt'
 #: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
-#: What is always installed: compiled kernels, bars for waits, and what the commands of the library
+#: What is always installed: bars for waits, and what the commands of the library
 #: use. Other parts are large: ROS, the encoder of MP4 (165 MB), Parquet (170 MB).
-ALWAYS = ('fast', 'progress', 'plot', 'study', 'bag', 'sensors')
+ALWAYS = ('progress', 'plot', 'study', 'bag', 'sensors')
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
     **dict.fromkeys(

@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sphinx: the pages of this folder, and the API from the docstrings."""
 
-import os
 from pathlib import Path
 import re
 import sys
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
-os.environ['TREE_SWAY_NO_NUMBA'] = '1'  # compiled functions have no docstrings to read
 
 project = 'tree_sway_ros'
 author = 'Tree Sway maintainers'

@@ -40,7 +40,7 @@ STOREYS = {
     'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip
-CORE_LIBRARIES = {'numpy', 'scipy', 'numba', 'tree_sway'}
+CORE_LIBRARIES = {'numpy', 'scipy', 'tree_sway'}
 NOT_IN_CORE = {
     'asyncio', 'datetime', 'glob', 'io', 'logging', 'multiprocessing', 'os', 'pathlib', 'random',
     'shutil', 'socket', 'subprocess', 'sys', 'tempfile', 'time', 'urllib',

@@ -96,7 +96,6 @@ OPTIONAL = {
     'mpmath',
     'mujoco',
     'netCDF4',
-    'numba',
     'openpyxl',
     'pxr',
     'pyarrow',
@@ -106,9 +105,9 @@ OPTIONAL = {
 
 
 def test_what_ubuntu_has_no_package_of_is_not_asked_for(package: ElementTree.Element) -> None:
-    """Neither numba nor mpmath has a rosdep key on Ubuntu 24.04: rosdep would install nothing."""
+    """Mpmath has no rosdep key on Ubuntu 24.04: rosdep would install nothing."""
     asked = {element.text for element in package if element.tag.endswith('depend')}
-    assert not asked & {'python3-numba', 'python3-mpmath', 'python3-sympy'}
+    assert not asked & {'python3-mpmath', 'python3-sympy'}
 
 
 @pytest.fixture(scope='module')
@@ -158,7 +157,7 @@ def test_the_newest_python_of_what_is_needed_is_among_them(setup_words: dict[str
     named = {minor(each.rpartition(' ')[2]) for each in setup_words['classifiers']}
     assert sys.version_info[1] in named
     newest = []
-    for package in ('numpy', 'scipy', 'numba', 'PyYAML'):
+    for package in ('numpy', 'scipy', 'PyYAML'):
         try:
             classifiers = metadata(package).get_all('Classifier') or []
         except PackageNotFoundError:
@@ -171,26 +170,6 @@ def test_the_newest_python_of_what_is_needed_is_among_them(setup_words: dict[str
 
 def minor(version: str) -> int:
     return int(version.partition('.')[2])
-
-
-def test_numba_comes_where_it_has_a_wheel_and_is_not_needed(setup_words: dict[str, Any]) -> None:
-    requirements = pytest.importorskip('packaging.requirements')
-    needed = {
-        each.name: each for each in map(requirements.Requirement, setup_words['install_requires'])
-    }
-    assert {'numpy', 'scipy', 'aiohttp', 'tqdm'} <= set(needed)
-    here = {'platform_python_implementation': 'CPython', 'python_version': '3.12'}
-    for system, machine, comes in (
-        ('linux', 'x86_64', True),
-        ('linux', 'aarch64', True),
-        ('linux', 'armv7l', False),
-        ('win32', 'AMD64', True),
-        ('darwin', 'arm64', True),
-        ('darwin', 'x86_64', False),
-    ):
-        machine_here = {**here, 'sys_platform': system, 'platform_machine': machine}
-        assert needed['numba'].marker.evaluate(machine_here) is comes, (system, machine)
-    assert setup_words['extras_require']['fast'] == ['numba>=0.59']
 
 
 NO_BUILDER = (
@@ -265,11 +244,11 @@ async def first_frame(address: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize('installer', ['pip', 'uvx'])
 def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer: str) -> None:
-    """In one line: numba, bars and the page come along, and nothing of the checkout is there."""
+    """In one line: bars and the page come along, and nothing of the checkout is there."""
     wheel = wheel_of(tmp_path)
     venv.create(tmp_path / 'fresh', with_pip=True)
     programs = tmp_path / 'fresh' / ('Scripts' if os.name == 'nt' else 'bin')
-    environment = {**os.environ, 'TREE_SWAY_CACHE': str(tmp_path / 'kernels')}
+    environment = {**os.environ, 'TREE_SWAY_CACHE': str(tmp_path / 'models')}
     environment['UV_CACHE_DIR'] = str(tmp_path / 'uv')
     line = [str(programs / 'tree-sway')]
     installed = tmp_path / 'fresh'
@@ -289,7 +268,6 @@ def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer
         pytest.skip('uv reaches no package index here')
     assert got.returncode == 0, got.stderr
     first = first_picture(line, tmp_path, environment)
-    assert list((tmp_path / 'kernels').rglob('*.kernel')), 'numba compiled nothing'
     again = first_picture(line, tmp_path, environment)
     sizes = f'{wheel.stat().st_size / 1e6:.1f} | {seconds:.0f} | {megabytes(installed):.0f}'
     print('\n| way | wheel [MB] | install [s] | environment [MB] | picture [s] | next start [s] |')

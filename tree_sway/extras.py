@@ -36,7 +36,6 @@ EXTRAS = {
     'cryptography': Extra('study', 'cryptography', '41'),
     'dask': Extra('study', 'dask', '2023.1'),
     'distributed': Extra('study', 'distributed', '2023.1'),
-    'numba': Extra('fast', 'numba', '0.59'),
     'rosbags': Extra('bag', 'rosbags', '0.11'),
     'tqdm': Extra('progress', 'tqdm', '4.60'),
     'serial': Extra('sensors', 'pyserial', '3.5'),

@@ -9,9 +9,11 @@ changed function would run the old code: its folder has a digest of all source i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 import shutil
+import sys
 import time
 from typing import Any, cast, TypeVar
 
@@ -43,6 +45,19 @@ if (_folder := cache_folder()) is not None:
     for _other in _folder.glob('numba-*'):
         if time.time() - _other.stat().st_mtime > _UNUSED:
             shutil.rmtree(_other, ignore_errors=True)
+
+
+@contextmanager
+def _one_compiler() -> Iterator[None]:
+    """Let one process compile at a time, so that the others find its code on disk."""
+    if _folder is None or sys.platform == 'win32':
+        yield
+        return
+    import fcntl
+
+    with open(_folder / 'numba.lock', 'w') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def kernel(function: _F) -> _F:
@@ -82,6 +97,7 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
     checks: only arguments of the same types and layouts may be passed.
     """
     types = tuple(numba.typeof(argument) for argument in arguments)
-    function.compile(types)  # type: ignore[attr-defined]
+    with _one_compiler():
+        function.compile(types)  # type: ignore[attr-defined]
     found: Callable[..., Any] = function.get_overload(types)  # type: ignore[attr-defined]
     return found

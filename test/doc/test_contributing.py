@@ -42,7 +42,7 @@ def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
     text = (ROOT / module).read_text(encoding='utf-8')
     (row,) = blocks_of('A new species')
     changed_copy(tmp_path, module, re.sub('^ash,', f'{row}ash,', text, flags=re.M))
-    environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
+    environment = os.environ | {'PYTHONPATH': str(tmp_path)}
     known = "from tree_sway import species_named; print(species_named('mulberry').title)"
     words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist']
     tests = [*words, 'test/core/tree/test_species.py', '-v']
@@ -121,7 +121,7 @@ def test_it_is_where_the_page_says(tmp_path: Path, change: str) -> None:
     text = (ROOT / module).read_text(encoding='utf-8')
     assert text.count(before) == 1, before
     changed_copy(tmp_path, module, text.replace(before, after))
-    environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
+    environment = os.environ | {'PYTHONPATH': str(tmp_path)}
     result = subprocess.run(
         [sys.executable, '-c', program], cwd=tmp_path, env=environment,
         capture_output=True, text=True, timeout=60, check=True,

@@ -8,11 +8,8 @@ import asyncio
 from collections.abc import Callable, Coroutine
 import io
 import json
-import os
 from pathlib import Path
 import re
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -23,7 +20,6 @@ Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
 from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 
-from tree_sway.cache.kernel_cache import PLAIN_VARIABLE  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
@@ -184,12 +180,3 @@ def test_a_model_without_a_table_is_refused(changes: dict[str, Any]) -> None:
     simulator = make_simulator(bench_tree(), settings=Settings(**changes))
     with pytest.raises(ParameterError, match='no table to solve it by'):
         page_of_scene(simulator)
-
-
-def test_a_page_is_written_without_a_compiler(tmp_path: Path) -> None:
-    page = tmp_path / 'tree.html'
-    seedling = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'convert', str(seedling)]
-    environment = {**os.environ, PLAIN_VARIABLE: '1'}
-    subprocess.run([*command, '-o', str(page)], env=environment, check=True)
-    assert '<script type="text/plain" id="scene">' in page.read_text(encoding='utf-8')

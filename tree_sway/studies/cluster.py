@@ -45,7 +45,7 @@ _REPEAT = 2.0
 _KILL_PERIOD = 0.05
 """Interval at which workers that have just started are looked for, to end them [s]."""
 _SCHEMES = ('tcp://', 'tls://')
-_LIBRARIES = ('numpy', 'scipy', 'numba')
+_LIBRARIES = ('numpy', 'scipy')
 
 
 @cache

@@ -39,7 +39,6 @@ def bank_of(sim):
     return bank
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ('kind', 'most'),
     [('whips', 0.06), pytest.param('birch', 0.06, marks=pytest.mark.long)],
@@ -58,7 +57,6 @@ def test_it_is_nearer_to_the_truth_than_the_default(kind, most):
     assert 0.8 < roughness(tips, truth) < 1.2
 
 
-@pytest.mark.compiled
 def test_the_force_on_each_branch_is_that_of_the_load_on_branches():
     sim = full(weeping())
     for _ in range(3):
@@ -74,7 +72,6 @@ def test_the_force_on_each_branch_is_that_of_the_load_on_branches():
     assert np.linalg.norm(at_pose[1:]) == pytest.approx(np.linalg.norm(by_branch[1:]), rel=0.1)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize('speed', [15.0, 40.0])
 def test_it_begins_anew_after_a_reset(speed):
     sim = full(weeping())
@@ -85,7 +82,6 @@ def test_it_begins_anew_after_a_reset(speed):
     assert sim.counts.restarted == 0
 
 
-@pytest.mark.compiled
 def test_gusts_reach_its_limbs_one_after_another():
     wind = turbulent(7.0, 2.0, 5)
     whole, apart = (

@@ -27,8 +27,6 @@ from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.errors import TreeError
 
-pytestmark = pytest.mark.compiled
-
 E, RHO = EXAMPLE_MODULUS, EXAMPLE_DENSITY
 UNDAMPED = (0.0, 0.0)
 DT = 1.0 / 60.0

@@ -27,8 +27,6 @@ from tree_sway_lab.segments.rotation_kernel import turn_on
 
 from tree_sway.core.tree.building import tree_from_segments
 
-pytestmark = pytest.mark.compiled
-
 E, RHO, G = 3.0e8, 900.0, 9.81
 
 

@@ -8,8 +8,6 @@ from tree_sway_lab.example_trees import forked_tree, tapered_stem
 from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.segments.articulated_step import drag, GAMMA, Laws
 
-pytestmark = pytest.mark.compiled
-
 E, RHO = 8.0e9, 900.0
 
 

@@ -9,8 +9,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tree_sway_lab.segments import rotation_kernel as kernel
 
-pytestmark = pytest.mark.compiled
-
 AXIS = (0.6, 0.0, 0.8)
 SEEDS = st.integers(0, 10**6)
 

@@ -33,7 +33,6 @@ def page_solver(path, name='PageSolver'):
     return getattr(module, name)(path, DT)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(('name', 'speed'), [('fork', 9.0), ('fork', 30.0), ('benjamina', 14.0)])
 def test_a_solver_of_the_page_gives_the_poses_of_the_library(fork, tmp_path, name, speed):
     tree = fork() if name == 'fork' else builtin_tree(name)

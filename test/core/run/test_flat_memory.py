@@ -14,8 +14,6 @@ from tree_sway_lab.validation.trial import judged_simulator
 
 from tree_sway.core.scene.make import make_simulator
 
-pytestmark = pytest.mark.compiled
-
 DT = 1.0 / 60.0
 WINDS = [(5.0 + np.sin(0.1 * k), np.cos(0.07 * k), 0.1) for k in range(200)]
 MODELS = (12, 'full', 'branch')

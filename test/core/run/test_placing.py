@@ -17,8 +17,6 @@ from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 
-pytestmark = pytest.mark.compiled
-
 seeds = st.integers(0, 10**6)
 
 

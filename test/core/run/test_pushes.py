@@ -248,7 +248,6 @@ def test_springs_that_are_none_and_pushes_that_are_too_many_are_refused(tree):
     assert sim.counts.refused_pushes == 5
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize('name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)])
 def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)

@@ -47,7 +47,6 @@ def test_two_processes_give_the_same_bits_on_any_number_of_threads():
 
 
 @pytest.mark.long
-@pytest.mark.compiled
 def test_a_process_that_compiles_gives_the_bits_of_one_that_finds_it_done(tmp_path):
     first = digests(2, TREE_SWAY_CACHE=str(tmp_path))
     assert list(tmp_path.glob('*.kernel'))

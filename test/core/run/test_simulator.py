@@ -129,7 +129,6 @@ def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, 
     assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=within)
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures('memory_alone')
 @pytest.mark.parametrize('model', [0, *MOVING])
 def test_a_step_allocates_nothing(fork, model):
@@ -234,7 +233,6 @@ def plastic(tree):
     )
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize('model', ['branch', 4])
 def test_memory_stays_flat_over_many_steps(fork, model):
     """No tracer of Python sees what compiled code allocates; the size of the process does."""
