@@ -31,10 +31,9 @@ LAYERS = {
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
-    'arrays': 0, 'kernel': 1, 'native': 1,
-    'checks': 1, 'numpy_rotation': 1, 'random_source': 1, 'tree': 1,
-    'rotation': 2, 'wind': 2, 'beams': 2, 'oscillators': 2,
-    'growth': 3, 'leaves': 3, 'vector': 3, 'model': 3,
+    'arrays': 0, 'rotation': 1, 'checks': 1, 'random_source': 1, 'tree': 1,
+    'native': 2, 'wind': 2, 'beams': 2, 'oscillators': 2,
+    'growth': 3, 'leaves': 3, 'model': 3,
     'setup': 4,
     'run': 5,
     'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,

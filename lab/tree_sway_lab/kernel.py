@@ -36,7 +36,8 @@ _UNUSED = 30 * 86_400.0
 """Age after which what older source made is removed [s]."""
 
 _OPTIONS = {
-    'error_model': 'numpy', 'nogil': True, 'fastmath': {'contract', 'reassoc', 'nsz'}, '_nrt': False,
+    'error_model': 'numpy', 'nogil': True, '_nrt': False,
+    'fastmath': {'contract', 'reassoc', 'nsz'},
 }  # fmt: skip
 
 if (_folder := cache_folder()) is not None:

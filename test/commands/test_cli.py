@@ -131,7 +131,6 @@ def test_the_example_of_a_command_is_one_of_it(command: str) -> None:
 
 
 CURES = [
-    ('numba', 'fast'),
     ('serial.tools', 'sensors'),
     ('PIL', 'plot'),
     ('pyarrow', 'parquet'),
@@ -164,13 +163,13 @@ def test_a_missing_module_is_one_line_with_its_cure(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing(_name: str) -> object:
-        raise ModuleNotFoundError("No module named 'numba'", name='numba')
+        raise ModuleNotFoundError("No module named 'tqdm'", name='tqdm')
 
     monkeypatch.setattr(cli.importlib, 'import_module', missing)
     monkeypatch.setattr(cli, '_parser', lambda *_: argparse.Namespace(parse_args=lambda given:
         argparse.Namespace(quiet=False, command='info')))  # fmt: skip
     assert cli.main(['info', 'two words']) == 2
-    assert extras.cure_of_missing('numba', "info 'two words'") in one_line(capsys.readouterr().err)
+    assert extras.cure_of_missing('tqdm', "info 'two words'") in one_line(capsys.readouterr().err)
 
 
 @pytest.mark.parametrize(
@@ -230,7 +229,7 @@ def test_a_package_that_is_too_old_is_refused_with_the_version_that_is_needed(
     versions = {'pyserial': '3.4.1', 'tqdm': '4.60.0', 'pillow': '10.2.0.dev1'}
     monkeypatch.setattr(extras, '_version', lambda name: versions.get(name, ''))
     monkeypatch.setattr(extras, 'find_spec', lambda _: object())
-    extras.refuse_missing(['tqdm', 'PIL', 'numba', 'rclpy'], '...')
+    extras.refuse_missing(['tqdm', 'PIL', 'rclpy'], '...')
     with pytest.raises(MissingDependencyError, match=r'pyserial 3.4.1 is too old: 3.5 or newer'):
         extras.refuse_missing(['serial'], '...')
 
@@ -247,12 +246,12 @@ def test_a_warning_is_a_note_on_one_line(
 
         @staticmethod
         def run(arguments: object) -> int:
-            warnings.warn('numba is\nnot installed', RuntimeWarning, stacklevel=1)
+            warnings.warn('tqdm is\nnot installed', RuntimeWarning, stacklevel=1)
             return 0
 
     monkeypatch.setattr(cli, '_module', lambda command: Slow)
     assert cli.main(['info']) == 0
-    assert capsys.readouterr().err == 'note: numba is not installed\n'
+    assert capsys.readouterr().err == 'note: tqdm is not installed\n'
 
 
 def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(

@@ -38,13 +38,9 @@ class Processes:
 
     def start(self, name, *parameters):
         self._arguments.setdefault(name, parameters)
-        # As where it is installed, whatever the tests themselves run with: with bytecode, and
-        # without the tool that numba loads where it finds it.
-        bytecode, bare = (
-            {'PYTHONDONTWRITEBYTECODE': ''},
-            "import sys; sys.modules['coverage'] = None; ",
-        )
-        self._running[name] = self._run(name, *self._arguments[name], before=bare, **bytecode)
+        # As where it is installed, whatever the tests themselves run with: with bytecode.
+        bytecode = {'PYTHONDONTWRITEBYTECODE': ''}
+        self._running[name] = self._run(name, *self._arguments[name], **bytecode)
 
     def kill(self, name):
         process = self._running.pop(name)

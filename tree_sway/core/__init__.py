@@ -3,6 +3,6 @@
 """
 The numeric core: trees, wind, reduced equations, poses.
 
-Arrays in, arrays out; numpy, scipy and, if installed, numba. No ROS, no files, no clock, no
+Arrays in, arrays out; numpy, scipy and the native core. No ROS, no files, no clock, no
 logging, no randomness without an ``rng`` argument.
 """

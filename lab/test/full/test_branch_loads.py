@@ -13,7 +13,7 @@ from tree_sway_lab.kernel import fused
 
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.native.branch_loads import BranchLoads
-from tree_sway.core.numpy_rotation import cross_matrix
+from tree_sway.core.rotation import cross_matrix
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
@@ -24,7 +24,6 @@ bent_loads, outward_pass, set_air, wind_forces = (
     for name in ('bent_loads', 'outward_pass', 'set_air', 'wind_forces')
 )
 
-pytestmark = pytest.mark.compiled
 
 DRAG = 0.5 * 1.225 * 1.2
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.model.records import WIDTH, zeros_in_lines
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 from tree_sway_lab.full.load_layouts import load_layout
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.numpy_rotation import quaternion_rotated
+from tree_sway.core.rotation import quaternion_rotated
 from tree_sway.core.tree.segment_frame import quaternions_from_x
 
 vectors = st.tuples(*[st.floats(-3.0, 3.0)] * 3)

@@ -27,7 +27,7 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 
 N_POINTS = 5
 

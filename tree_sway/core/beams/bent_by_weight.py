@@ -15,7 +15,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.beams.beam import BranchBeam, one_of
 from tree_sway.core.beams.energy_basis import curvature_of, energy_vector
 from tree_sway.core.beams.subtree_sums import SubtreeSums
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 
 _LIMP = 0.1
 """Weight over stiffness from which a branch is limp."""

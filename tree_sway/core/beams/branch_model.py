@@ -37,7 +37,7 @@ from tree_sway.core.beams.field_counts import (
 from tree_sway.core.beams.shape_fields import shaken_energies, shape_fields
 from tree_sway.core.beams.subtree_sums import SubtreeSums
 from tree_sway.core.beams.wind_on_branch import wind_loads
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 from tree_sway.core.tree.tree import Tree
 
 _LEFT = 1e-4

@@ -29,7 +29,7 @@ from tree_sway.core.beams.field_counts import (
 )
 from tree_sway.core.beams.opposed_limbs import missed_curvatures
 from tree_sway.core.beams.subtree_sums import SubtreeSums
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])

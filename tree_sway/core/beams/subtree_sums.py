@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.numpy_rotation import cross
+from tree_sway.core.rotation import cross
 
 
 class SubtreeSums(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Records
 from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.numpy_rotation import cross_matrix
+from tree_sway.core.rotation import cross_matrix
 
 
 class BranchLoad:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.numpy_rotation import CYCLES
+from tree_sway.core.rotation import CYCLES
 
 Numbers: TypeAlias = NDArray[Any]
 """Real or complex numbers."""

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-
-from tree_sway.core.rotation import (
+from tree_sway_lab.full.rotation import (
     half_angle,
     product,
     quaternion,
