@@ -6,9 +6,9 @@ Make the golden poses: every built-in tree, bare, in 60 s of simulated wind, in 
     python test/golden/poses/make_golden.py            # writes golden.npz and digests.json here
     python test/golden/poses/make_golden.py --check    # exits with 1 where a digest differs
 
-The digest of all frames is the same bit for bit only on one kind of processor with one
-compiler; a restructuring is checked by it, on one machine, before and after. What the test compares
-on any machine are the sampled poses in golden.npz, within rounding.
+The digest of all frames is the same bit for bit only on one kind of processor with one compiler; a
+restructuring is checked by it, on one machine, before and after. What the test compares on any
+machine are the sampled poses in golden.npz, within rounding.
 
 """
 

@@ -33,7 +33,7 @@ LATEST = 30
 """Largest number of steps by which sensors are read late."""
 
 _KEPT = 64
-"""Steps whose measurements are kept, `SWAY_SLOTS` of the native core."""
+"""Steps whose measurements are kept, ``SWAY_SLOTS`` of the native core."""
 
 _MOUNTED_AFTER = 12
 """Steps after which a mounting that is looked for is known."""

@@ -91,7 +91,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
 
 
 def _limp(reduced: ReducedTree, shapes: Floats, gravity: float) -> dict[str, Any]:
-    """Find what the step of a limp tree needs: `run.limp_tree`."""
+    """Find what the step of a limp tree needs (``native/limp.h``)."""
     from tree_sway.core.setup.weight_slopes import weight_slopes
 
     mass = np.empty(len(reduced.mass))
