@@ -67,10 +67,8 @@ static void find_drag(const Limp &limp, LimpRoom &own, double per_time, const do
 static void find_gusts(const sway_model &model, const State &state, const Step &step,
                        const double wind[3], double *gust) {
   const Limp &limp = model.limp;
-  if (!state.crown || !limp.delay) {
-    memset(gust, 0, limp.places * sizeof(double));
-    return;
-  }
+  memset(gust, 0, limp.places * sizeof(double));
+  if (!state.crown || !limp.delay) return;
   const Crown crown = crown_of(state.crown);
   push_crown(crown, model.limb_spread, model.crown_coherence, wind, step.dt);
   for (int axis = 0; axis < 3; axis++)

@@ -250,13 +250,13 @@ INLINE void join(const Segment &segment, Slots &slots, double scale, int slot,
 // Segments of branches that bend by their first two key rotations alone.
 template <int TERMS>
 INLINE void bend_plain(const Segment &segment, Slots &slots, double scale, bool has_blend,
-                       int count) {
+                       double bound, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
     Vec slope = load(segment.slope + slot);
     if (has_blend) slope += load(slots.blend + slot) * load(segment.tip_slope + slot);
     const Vec square = slope * slope * load(slots.rotation_square + slot);
     const HalfAngle<Vec> half =
-        TERMS ? half_angle_series<TERMS ? TERMS : 8>(square) : half_angle(square, 1e9);
+        TERMS ? half_angle_series<TERMS ? TERMS : 8>(square) : half_angle(square, bound);
     const Vec sine = slope * half.sinc;
     const Quaternion<Vec> base = load_quaternion(slots.base, slot);
     const Quaternion<Vec> times = load_quaternion(slots.times_half, slot);
@@ -315,11 +315,11 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
       if (block.n_rows > 2)
         bend_by_all(segment, slots, where.scale, block.n_rows, bound, count);
       else if (bound <= NEAR)
-        bend_plain<4>(segment, slots, where.scale, has_blend, count);
+        bend_plain<4>(segment, slots, where.scale, has_blend, bound, count);
       else if (bound <= FAR)
-        bend_plain<8>(segment, slots, where.scale, has_blend, count);
+        bend_plain<8>(segment, slots, where.scale, has_blend, bound, count);
       else
-        bend_plain<0>(segment, slots, where.scale, has_blend, count);
+        bend_plain<0>(segment, slots, where.scale, has_blend, bound, count);
       if (!block.is_joined) go_aside(slots.pose, slots.start, where.scale, segment.chord, count);
       write_poses(block, slots, rank, segment.n_slots, poses);
     }

@@ -182,7 +182,8 @@ void fill_branch(const Arrays &a, int64_t branch, Block &block, int64_t slot) {
   if (is_aside) block.is_at_axes = 0;
   if (slot >= block.n_slots) block.n_slots = slot + 1;
   if (a.branch_keys[branch] > block.n_rows) block.n_rows = a.branch_keys[branch];
-  if (a.branch_keys[below] > block.n_parent_rows) block.n_parent_rows = a.branch_keys[below];
+  if (parent >= 0 && a.branch_keys[below] > block.n_parent_rows)
+    block.n_parent_rows = a.branch_keys[below];
 }
 
 }  // namespace

@@ -52,7 +52,10 @@ static void find_place(const sway_model &model, Room &room, const double *keys, 
     tangent[2 * each + i] = along.z;
   }
   for (int axis = 0; axis < 3; axis++)
-    for (int64_t i = n; i < each; i++) out[axis * each + i] = 0.0;
+    for (int64_t i = axis * each + n; i < (axis + 1) * each; i++) {
+      out[i] = 0.0;
+      if (tangent) tangent[i] = 0.0;
+    }
 }
 
 // Write sums of shapes: key rotations of coordinates, and the rates of both.

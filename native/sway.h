@@ -12,6 +12,9 @@
  * numbers: x y z of the root-side node of a segment [m], then the quaternion x y z w of its
  * orientation, whose x axis is along the segment.
  *
+ * A limp tree, whose twigs hang or whip, is stepped at its pose and not by a table: in some 0.1 ms in
+ * place of 0.01, and with some hundred kilobytes for each tree beside its state.
+ *
  * A stand is used by one thread at a time, but for ranges of trees: `sway_step`, `sway_place`,
  * `sway_keys` and `sway_place_keys` may run at once for different trees in different rooms. The
  * result does not depend on how trees are shared out.

@@ -219,6 +219,10 @@ INLINE HalfAngle<double> half_angle(double square) {
 INLINE HalfAngle<Vec> half_angle(Vec square, double bound) {
   if (bound <= NEAR) return half_angle_series<4>(square);
   if (bound <= FAR) return half_angle_series<8>(square);
+  if (bound <= 4.0 * FAR) {  // twice the angle of the series
+    const HalfAngle<Vec> half = half_angle_series<8>(0.25 * square);
+    return {2.0 * half.cosine * half.cosine - 1.0, half.cosine * half.sinc};
+  }
   HalfAngle<Vec> found{};
   for (int lane = 0; lane < LANES; lane++) {
     const HalfAngle<double> one = half_angle(static_cast<double>(square[lane]));

@@ -19,6 +19,8 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.native.model import bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import Rig, simulate
@@ -298,6 +300,27 @@ def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
     assert moves[0].max() > 0.5
     assert moves[1][:2].max() < 1.1 * moves[0].max()
     assert moves[1].max() < 80.0 * FRAME
+
+
+def test_trees_of_a_stand_move_as_each_does_alone():
+    """Bit for bit, though they are of several sizes and one has run away."""
+    trees = weeping(), young_whip(), weeping(3)
+    prepared = [prepare(each, WOOD, SETTINGS) for each in trees]
+    models = [NativeModel(bytes_of(each.native_arrays())) for each in prepared]
+    kinds = np.array([1, 0, 2, 1])
+    places, speeds = np.array([[0.0, 0.0, 0.0, 0.5, 1.1]] * 4), np.ones(4)
+    together = NativeStand(models, kinds, places, speeds)
+    alone = [NativeStand(models, kinds[k : k + 1], places[:1], speeds[:1]) for k in range(4)]
+    for stand in (together, *alone):
+        stand.set_step(FRAME)
+    for frame, wind in enumerate(turbulent(9.0, 1.0, 2)):
+        if frame == 20:
+            together.states.rate[0] = alone[0].states.rate[0] = np.nan
+        together.step(np.tile(wind, (4, 1)))
+        for k, stand in enumerate(alone):
+            stand.step(wind[None])
+            np.testing.assert_array_equal(together.states.eta[k], stand.states.eta[0])
+    assert (np.abs(together.states.eta).max(axis=1) > 0.0).all()
 
 
 def test_it_stands_still_in_still_air():

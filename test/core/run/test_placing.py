@@ -134,6 +134,12 @@ def test_poses_are_those_of_the_keys_alone_bit_for_bit(fork, enrich):
     assert (used.poses(keys) == new.poses(keys)).all()
 
 
+def test_keys_that_are_not_finite_spoil_no_later_pose(puppet):
+    sound = puppet.poses(np.zeros(puppet.n))
+    puppet.poses(np.full(puppet.n, np.nan))
+    np.testing.assert_array_equal(puppet.poses(np.zeros(puppet.n)), sound)
+
+
 def test_the_root_does_not_move(gappy_doll):
     moved = gappy_doll.poses(gappy_doll.random(1))
     assert moved[0, :3].tolist() == gappy_doll.tree.start[0].tolist()
