@@ -11,8 +11,8 @@ from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.full.rotation import turned
 from tree_sway_lab.kernel import fused
 
+from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.native.branch_loads import BranchLoads
 from tree_sway.core.rotation import cross_matrix
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from tree_sway.core.model.branch_blocks import BranchBlocks
 from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.native.branch_blocks import BranchBlocks
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare

@@ -11,9 +11,9 @@ import re
 
 import pytest
 
+from tree_sway.core.model.branch_blocks import BRANCH_BLOCK
+from tree_sway.core.model.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
-from tree_sway.core.native.branch_blocks import BRANCH_BLOCK
-from tree_sway.core.native.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
+from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.native.branch_loads import BranchLoads
 from tree_sway.core.rotation import cross_matrix, quaternion_rotated, turned_by
 from tree_sway.core.run.assembly import branch_records
 from tree_sway.core.setup.prepare import prepare
