@@ -31,8 +31,8 @@ LAYERS = {
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
-    'arrays': 0, 'rotation': 1, 'checks': 1, 'random_source': 1, 'tree': 1,
-    'native': 2, 'wind': 2, 'beams': 2, 'oscillators': 2,
+    'arrays': 0, 'native': 1, 'rotation': 1, 'checks': 1, 'random_source': 1, 'tree': 1,
+    'wind': 2, 'beams': 2, 'oscillators': 2,
     'growth': 3, 'leaves': 3, 'model': 3,
     'setup': 4,
     'run': 5,
