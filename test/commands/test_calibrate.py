@@ -74,7 +74,7 @@ def test_info_shows_the_frequency_that_was_given(
     ]
     assert cli.main([*command, '-o', str(out)]) == 0
     text = capsys.readouterr().out
-    assert "-> 1.2 Hz (to and fro in 0.833 s), most in branch 'stem'" in text
+    assert "-> 1.2 Hz (back and forth in 0.833 s), most in branch 'stem'" in text
     assert f'damping    0.06 -> 0.09 {"in leaf" if leaves == "on" else "bare"}' in text
     assert 'in wide swings it is too high, as air brakes too' in text
     assert text.splitlines()[-1].startswith(f'Next: tree-sway show {out}')

@@ -224,7 +224,7 @@ def _changes(
 def _swing(frequency: float | None) -> str:
     """Return a frequency [Hz] with the time of a swing; there is one."""
     assert frequency is not None
-    return f'{frequency:.4g} Hz (to and fro in {1.0 / frequency:.3g} s)'
+    return f'{frequency:.4g} Hz (back and forth in {1.0 / frequency:.3g} s)'
 
 
 def _within(error: float) -> str:
