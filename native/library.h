@@ -63,8 +63,8 @@ SWAY_API void sway_wind_moments(const sway_branches *tree, const double *x, cons
 
 /* Changes of these moments by motion along shapes (N, columns), key rotations by their number:
  * `turning` by the motion, `damping` by its rate, (N, columns) each [N m]. `loads` (b) are those of
- * a still tree; `columns` is a multiple of 8; `scratch` has room for 256 numbers for each branch and
- * 8 more. */
+ * a still tree; `columns` is a multiple of 8; `scratch` has room for 256 numbers for each branch
+ * and 8 more. */
 SWAY_API void sway_load_slopes(const sway_branches *tree, const sway_branch_load *loads,
                                const double *shapes, size_t columns, double *scratch,
                                double *turning, double *damping);
@@ -99,8 +99,8 @@ SWAY_API int64_t sway_step_branches(sway_branch_block *blocks, size_t count, dou
                                     double *rates, double x, double y, double z,
                                     double drag_density);
 
-/* The key rotations (count, 2) of branches of a stiffness [N m] (count) at rest in a wind, as near as
- * some turns come. The compliance of the blocks is 0. */
+/* The key rotations (count, 2) of branches of a stiffness [N m] (count) at rest in a wind, as near
+ * as some turns come. The compliance of the blocks is 0. */
 SWAY_API void sway_rest_branches(sway_branch_block *blocks, size_t count, double x, double y,
                                  double z, double drag_density, const double *stiffness,
                                  double *rotations);

@@ -9,12 +9,12 @@ The model `full` sums the load over the branches.
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, RecordsOf
-from tree_sway.core.model.records import whole_lines, WIDTH
+from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf
+from tree_sway.core.model.records import WIDTH
 
 
 class Work:
@@ -76,3 +76,28 @@ WORK = np.dtype(fields_of(Work))
 def load_layout(n_coordinates: int) -> np.dtype[np.void]:
     """Lay out `Load`, with room for a number of coordinates."""
     return whole_lines(fields_of(Load, rows=n_coordinates))
+
+
+_LINE = 64
+"""Bytes of a cache line, and of the widest vector."""
+
+
+def whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
+    """Lay fields of whole vectors out first, then the others, padded to whole cache lines."""
+    packed: Any = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
+    by_name: dict[str, Any] = dict(packed.fields or {})
+    return np.dtype(
+        {
+            'names': list(by_name),
+            'formats': [kind[0] for kind in by_name.values()],
+            'offsets': [kind[1] for kind in by_name.values()],
+            'itemsize': -(-packed.itemsize // _LINE) * _LINE,
+        }
+    )
+
+
+def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Records:
+    """Return a number of records of zeros, the first at the beginning of a cache line."""
+    memory = np.zeros(count * layout.itemsize + _LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % _LINE
+    return memory[first : first + count * layout.itemsize].view(layout)

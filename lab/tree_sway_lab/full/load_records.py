@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.records import WIDTH, zeros_in_lines
+from tree_sway.core.model.records import WIDTH
 from tree_sway.core.rotation import cross
-from tree_sway_lab.full.load_layouts import load_layout
+from tree_sway_lab.full.load_layouts import load_layout, zeros_in_lines
 
 
 def load_records(branches: Records) -> Records:

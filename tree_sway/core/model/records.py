@@ -10,11 +10,11 @@ in [rad].
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf
+from tree_sway.core.arrays import fields_of, Floats, RecordsOf
 from tree_sway.core.beams.field_counts import ROOMS
 
 WIDTH = 16
@@ -69,28 +69,3 @@ def branch_layout(n_coordinates: int) -> np.dtype[np.void]:
     limited by how fast its records are read from memory.
     """
     return np.dtype(fields_of(Branch, rows=n_coordinates))
-
-
-_LINE = 64
-"""Bytes of a cache line, and of the widest vector."""
-
-
-def whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
-    """Lay fields of whole vectors out first, then the others, padded to whole cache lines."""
-    packed: Any = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
-    by_name: dict[str, Any] = dict(packed.fields or {})
-    return np.dtype(
-        {
-            'names': list(by_name),
-            'formats': [kind[0] for kind in by_name.values()],
-            'offsets': [kind[1] for kind in by_name.values()],
-            'itemsize': -(-packed.itemsize // _LINE) * _LINE,
-        }
-    )
-
-
-def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Records:
-    """Return a number of records of zeros, the first at the beginning of a cache line."""
-    memory = np.zeros(count * layout.itemsize + _LINE, dtype=np.uint8)
-    first = -memory.ctypes.data % _LINE
-    return memory[first : first + count * layout.itemsize].view(layout)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Singles
+from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.load_derivatives import LoadSlopes
 from tree_sway.core.setup.static_responses import WindMoments
 
@@ -104,7 +104,7 @@ class EquilibriumSearch:
         size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
         return rest, size
 
-    def _inverse_slope(self, slopes: Floats | Singles, pressure: float) -> Floats:
+    def _inverse_slope(self, slopes: Floats, pressure: float) -> Floats:
         """Return the inverse of the slope of the imbalance, stiffened to be stable, (m, m)."""
         scaled = slopes / self._root / self._root[:, None]
         unit = np.eye(len(slopes))
