@@ -17,7 +17,7 @@ namespace {
 // Longest part of a step [s]; in strong wind it is the last [m^2/s] over the square of the speed, but
 // no shorter than the second. In longer ones whips rattle, for the drag of a step is found at the
 // motion that the last step's force predicts.
-constexpr double LONGEST_PART = 0.04, SHORTEST_PART = 1.0 / 240.0, PART_IN_STORM = 5.0;
+constexpr double LONGEST_PART = 0.04, SHORTEST_PART = 1.0 / 480.0, PART_IN_STORM = 4.0;
 
 constexpr double MOST_PARTS = 1000.0;
 

@@ -231,7 +231,7 @@ class LimpPageSolver(PageSolver):
 
     def step(self, wind):
         speed = float(np.linalg.norm(wind))
-        longest = min(0.04, max(1 / 240, 5 / max(speed**2, 1)))
+        longest = min(0.04, max(1 / 480, 4 / max(speed**2, 1)))
         n = ceil(min(max(self.dt / longest - 1e-9, 1), 1000))
         for _ in range(n):
             self.part(np.asarray(wind), speed, self.dt / n)
