@@ -98,15 +98,15 @@ def test_a_machine_without_wheels(
 @pytest.mark.parametrize(
     ('command', 'brought', 'left'),
     [
-        ('tree-sway demo --seconds 10', {'fast', 'ros'}, {'film', 'lab', 'test', 'lint'}),
-        ('tree-sway --version', {'fast', 'plot', 'study', 'bag'}, {'ros'}),
-        ('tree-sway info scan.mat', {'fast'}, {'ros', 'film'}),
+        ('tree-sway demo --seconds 10', {'plot', 'ros'}, {'film', 'lab', 'test', 'lint'}),
+        ('tree-sway --version', {'progress', 'plot', 'study', 'bag'}, {'ros'}),
+        ('tree-sway info scan.mat', {'bag'}, {'ros', 'film'}),
         ('tree-sway demo --wind=gale.mcap', {'ros', 'bag'}, {'film'}),
         ('tree-sway lab compare', {'lab'}, {'film', 'test'}),
         ('solver --ros-args', {'ros'}, {'film'}),
         ('pytest -n 4', {'ros', 'bag', 'plot', 'lab', 'test'}, {'lint'}),
         ('mypy', {'lint'}, {'ros', 'lab'}),
-        (f'python {"x" * 300}', {'fast'}, {'ros'}),
+        (f'python {"x" * 300}', {'bag'}, {'ros'}),
     ],
 )
 def test_a_command_brings_what_it_needs_and_no_more(
@@ -193,25 +193,25 @@ def test_it_sets_up_once_and_again_when_the_stamp_is_old(
 
     monkeypatch.setattr(script, 'make_venv', make_venv)
     monkeypatch.setattr(script, 'pip', lambda environment, *arguments: done.append(arguments[-1]))
-    script.make_ready({}, {'fast', 'ros'})
+    script.make_ready({}, {'bag', 'ros'})
     assert done[0] == 'venv'
-    assert done[-2:] == [str(script.HASHES), f'{ROOT}[fast,ros]']
+    assert done[-2:] == [str(script.HASHES), f'{ROOT}[bag,ros]']
     done.clear()
-    script.make_ready({}, {'fast'})
+    script.make_ready({}, {'bag'})
     assert done == []
-    script.make_ready({}, {'fast', 'lint'})  # adds, and forgets nothing
-    assert done == [f'{ROOT}[fast,lint,ros]']
+    script.make_ready({}, {'bag', 'lint'})  # adds, and forgets nothing
+    assert done == [f'{ROOT}[bag,lint,ros]']
     done.clear()
     stamp = script.VENV / 'tree_sway_ros.stamp'
     version, root, _, extras = stamp.read_text().split('\n')
     stamp.write_text(f'{version}\n{root}\nanother\n{extras}')
-    script.make_ready({}, {'fast'})
-    assert done == [str(script.HASHES), f'{ROOT}[fast,lint,ros]']
+    script.make_ready({}, {'bag'})
+    assert done == [str(script.HASHES), f'{ROOT}[bag,lint,ros]']
     done.clear()
     stamp.write_text(f'2.7\n{root}\nanother\n{extras}')
-    script.make_ready({}, {'fast'})
+    script.make_ready({}, {'bag'})
     assert done[0] == 'venv'
-    assert done[-1] == f'{ROOT}[fast]'
+    assert done[-1] == f'{ROOT}[bag]'
     share = script.VENV / 'share' / 'tree_sway_ros'
     files = {name for _, _, names in os.walk(share) for name in names}  # as `ros2 launch` looks
     assert {'package.xml', 'sway.launch.py', 'solver.yaml', 'tree_sway.rviz'} <= files

@@ -42,7 +42,6 @@ def test_a_step_is_timed(model: int | str) -> None:
     assert 0.0 < timing.minimum <= timing.median
 
 
-@pytest.mark.compiled
 def test_the_command_prints_what_a_program_can_read(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(['lab', 'bench', 'step', '--rounds', '1', '--json']) == 0
     found = json.loads(capsys.readouterr().out)

@@ -130,7 +130,7 @@ class _Bent:
 
 
 def _turned(rotation, vector):
-    return np.array(turned.py_func(*rotation, *vector))
+    return np.array(turned(*rotation, *vector))
 
 
 def test_the_native_core_finds_the_same_loads(loaded):

@@ -90,7 +90,6 @@ def test_all_coordinates_are_near_the_truth_on_a_stem_with_limbs() -> None:
     assert np.isnan(trial.jump)
 
 
-@pytest.mark.compiled
 def test_the_command_prints_trials(capsys: pytest.CaptureFixture[str]) -> None:
     example = COMMANDS['validate'].example.split()
     assert main(['lab', *example]) == 0

@@ -84,7 +84,7 @@ def test_a_tree_is_fitted_as_soon_as_it_has_measured_for_the_time(
         words = ['calibrate', str(tree), '--record', address, '--seconds', '25']
         assert cli.main([*words, '--leaves', 'off', '-o', str(fitted)]) == 0
     said = capsys.readouterr().out
-    assert f'{address}: acceleration in ax, ay, az, release' in said
+    assert f'{address}: acceleration of ax, ay, az, 10 swings after the release' in said
     assert '-> 0.45' in said
     assert fitted.is_file()
 

@@ -68,12 +68,8 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
             return [names.index(name) for name in wanted], join, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
-    clocks.sort(key=lambda index: not _has_times(table.cells(index, first)))
+    clocks.sort(key=lambda index: not any(map(str.strip, table.cells(index, first))))
     return ([clocks[0]], None, table.factor_of(clocks[0], 'time')) if clocks else None
-
-
-def _has_times(cells: Sequence[str]) -> bool:
-    return any(map(str.strip, cells)) and bool(np.isfinite(times_of(cells).seconds).any())
 
 
 def row_times(
