@@ -13,8 +13,8 @@ modules, without those of the folders in it. The modules of a step are found by 
 of the built-in benjamina in other processes, where opening the tree has loaded nothing: one that
 prepares its model, and one whose model is read from a file. They are run by the Python of the
 checkout's `.venv` or by the one that runs this script; without numpy that part is left out. A
-module runs in a step if Python calls one of its functions then, or if a kernel in use names one of
-its kernels.
+module runs in a step if Python calls one of its functions then. Of C++ and JavaScript the names,
+numbers, texts and signs are counted, without comments.
 
 """
 
@@ -26,6 +26,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 import io
 from pathlib import Path
+import re
 import subprocess
 import sys
 import tempfile
@@ -46,6 +47,17 @@ LAYOUT = {
     tokenize.ENDMARKER,
 }
 """Kinds of tokens that are not counted."""
+
+FOREIGN = (
+    ('the native core, C++', 'native', {'.cpp', '.h', '.inc'}),
+    ('the page, JavaScript', 'tree_sway/page/static', {'.js'}),
+)
+"""What is written in other languages: name, folder, suffixes."""
+
+_FOREIGN_COMMENT = re.compile(r'/\*.*?\*/|(?<!:)//[^\n]*', re.DOTALL)
+_FOREIGN_TOKEN = re.compile(
+    r'"[^"\n]*"|\'[^\'\n]*\'|`[^`]*`|\w+(?:\.\d+)?|<<|>>|->|=>|::|[-+*/<>=!&|]=+|&&|\|\||[^\w\s]'
+)
 
 SIMULATORS = (
     ('tree_sway/core/run/simulator.py', 'SwaySimulator'),
@@ -69,10 +81,8 @@ tree_sway.write_model(sys.argv[1] + '/model.npz', tree_sway.prepare(tree, cache=
 """Program that writes a built-in tree and its model to a folder."""
 
 STEPPING = """
-import gc
 import pickle
 import sys
-import types
 import tree_sway
 
 if sys.argv[1].endswith('.npz'):
@@ -85,21 +95,12 @@ simulator.step((5.0, 0.0, 0.0), 1 / 60)
 simulator.place()
 modules = {n: m for n, m in sys.modules.items() if n.partition('.')[0] == 'tree_sway'}
 
-ran, kernels = set(), []
-
-
-def is_kernel(value):
-    return getattr(value, 'py_func', None) is not None
-
-
-def keep_named(code, names):
-    kernels.extend(filter(is_kernel, map(names.get, code.co_names)))
+ran = set()
 
 
 def note(frame, event, argument):
     if event == 'call' and frame.f_globals.get('__name__') in modules:
         ran.add(frame.f_globals['__name__'])
-        keep_named(frame.f_code, frame.f_globals)
 
 
 sys.setprofile(note)
@@ -107,33 +108,6 @@ for _ in range(3):
     simulator.step((6.0, 1.0, 0.0), 1 / 60)
     simulator.place()
 sys.setprofile(None)
-
-# Machine code that the simulator keeps to call it, wherever in it.
-passed_by = (type, types.ModuleType, types.FrameType)
-waiting, seen = [simulator], set()
-while waiting:
-    value = waiting.pop()
-    if id(value) in seen or isinstance(value, passed_by):
-        continue
-    seen.add(id(value))
-    if isinstance(value, types.BuiltinFunctionType) and value.__module__ in modules:
-        kernels.append(vars(modules[value.__module__]).get(value.__name__))
-    elif isinstance(value, types.FunctionType):
-        waiting += value.__closure__ or ()
-    elif is_kernel(value):
-        kernels.append(value)
-    else:
-        waiting += gc.get_referents(value)
-
-# Machine code calls without a trace: it may call each kernel that its source names.
-found = set()
-while kernels:
-    function = getattr(kernels[-1], 'py_func', kernels[-1])
-    kernels.pop()
-    if isinstance(function, types.FunctionType) and function not in found:
-        found.add(function)
-        ran.add(function.__module__)
-        keep_named(function.__code__, function.__globals__)
 
 for name, module in sorted(modules.items()):
     if getattr(module, '__file__', None):
@@ -250,6 +224,12 @@ def count_of(path: Path) -> Count:
     )
 
 
+def foreign_tokens(path: Path) -> int:
+    """Count the tokens of a file of C++ or JavaScript."""
+    code = _FOREIGN_COMMENT.sub('', path.read_text(encoding='utf-8'))
+    return len(_FOREIGN_TOKEN.findall(code))
+
+
 def total(counts: dict[Path, Count], folder: Path) -> Count:
     """Sum up all modules below a folder."""
     return sum((one for path, one in counts.items() if folder in path.parents), Count())
@@ -321,6 +301,9 @@ def main() -> None:
     row('tokens of library and nodes', f'{library.tokens + nodes.tokens:,}')
     row('  of the library', f'{library.tokens:,}')
     row('  of the nodes', f'{nodes.tokens:,}')
+    for name, folder, suffixes in FOREIGN:
+        paths = (path for path in (ROOT / folder).rglob('*') if path.suffix in suffixes)
+        row(f'tokens of {name}', f'{sum(map(foreign_tokens, paths)):,}')
     row('lines of library and nodes', f'{library.lines + nodes.lines:,}')
     row('tokens per line, library and nodes', f'{(library + nodes).per_line:.1f}')
     row('tokens per line, core', f'{core.per_line:.1f}')

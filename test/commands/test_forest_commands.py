@@ -85,7 +85,7 @@ def test_plot_draws_it(
     pytest.importorskip('matplotlib')
     monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'glade.png'
-    glade = Path(forest)  # of trees whose kernels other tests compile, too
+    glade = Path(forest)
     glade.write_text(glade.read_text().replace(str(SEEDLING), str(SEGMENTS)))
     arguments = [each.format(forest) for each in arguments]
     assert cli.main(['plot', *arguments, '--leaves', '-o', str(picture)]) == 0

@@ -22,7 +22,7 @@ _spec.loader.exec_module(nodes_conftest)
 observer, tree_file = nodes_conftest.observer, nodes_conftest.tree_file
 
 DEADLINE = 60.0
-"""Four processes start and load their kernels, on a busy machine."""
+"""Four processes start and reduce their tree, on a busy machine."""
 RUN = """
 import sys
 from launch import LaunchDescription, LaunchService

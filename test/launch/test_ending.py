@@ -32,10 +32,10 @@ def test_while_it_sways_and_serves_its_page(launched, tmp_path):
     assert_ended_well(run.end()[1], (*NAMES, 'viewer'))
 
 
-def test_while_kernels_compile(launched, tmp_path):
+def test_while_the_tree_is_reduced(launched, tmp_path):
     cold = {'TREE_SWAY_CACHE': str(tmp_path / 'cold')}
     run = launched('sway.launch.py', tree='goldcrest', environment=cold)
-    run.until('preparing the kernels')
+    run.until('reducing ')
     assert_ended_well(run.end()[1])
 
 

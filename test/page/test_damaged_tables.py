@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of a hostile server: refused in Python and in JavaScript before a kernel reads them."""
+"""Tables of a hostile server: refused in Python and in JavaScript before a step reads them."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 Ending of a process soon after Ctrl-C, whatever it is doing.
 
 Ctrl-C and SIGTERM set a flag that a loop checks, or interrupt work before the loop. Python handles
-signals between two of its own instructions, and the compiler of the kernels may run for seconds
+signals between two of its own instructions, and a factorisation or a file may take seconds
 without one; so a thread checks as well, and ends the process after a timeout.
 """
 

@@ -24,7 +24,7 @@ _Record = TypeVar('_Record', covariant=True)
 
 
 class RecordsOf(Protocol[_Record]):
-    """Records as kernels read them: fields of one are attributes, of the types of its class."""
+    """Records as compiled code reads them: fields of one are attributes, typed as its class."""
 
     def __len__(self) -> int: ...
 

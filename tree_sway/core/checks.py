@@ -125,9 +125,9 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
 
 def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """
-    Return an array if a kernel can write all of a shape into it.
+    Return an array if native code can write all of a shape into it.
 
-    A kernel checks no bounds: a short array would be written past its end. Raises a
+    Native code checks no bounds: a short array would be written past its end. Raises a
     `ParameterError` for no array of float64 in the machine's own order, of that shape, whole in
     one piece of memory, row after row, and free to be written.
     """
@@ -143,7 +143,7 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
 
 def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """
-    Return numbers as a kernel reads them: float64, in one piece, and as many as it will read.
+    Return numbers as native code reads them: float64, in one piece, and as many as it will read.
 
     Raises a `ParameterError` for a wrong shape, or other values than numbers.
     """

@@ -3,7 +3,7 @@
 """
 Checks of tables before a receiver solves by them; ``static/checks.js`` has the same.
 
-The kernels that read tables check no bounds, as those of a description.
+The native core that reads tables checks no bounds, as for those of a description.
 """
 
 from __future__ import annotations

@@ -89,15 +89,12 @@ class SolverNode(TreeSwayNode):
     _hears_wind = False
 
     def configure(self) -> None:
-        """Open the tree, reduce it and prepare its kernels."""
+        """Open the tree, and reduce it."""
         began = time.monotonic()
         log = self.get_logger().info
         log(f"opening tree '{shown(self.values['tree'])}'")
         source = self._open()
-        log(
-            f'reducing {source.tree.n_segments} segments and preparing the kernels (where no '
-            'cache has them they are compiled, up to a minute)'
-        )
+        log(f'reducing {source.tree.n_segments} segments')
         self._make_run(source)
         self._make_interfaces(source)
         for warning in source.warnings:
@@ -144,7 +141,7 @@ class SolverNode(TreeSwayNode):
         )
 
     def _make_run(self, source: Scene) -> None:
-        """Make the simulator and what steps it, and compile its kernels."""
+        """Make the simulator and what steps it."""
         self._camera: tuple[float, float, float] | None = None
         self._tuned: dict[str, float] = {}
         self._arrived = threading.Event()

@@ -18,7 +18,7 @@ from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 
-# Parts of kernels, each made one for itself.
+# Parts of kernels, each compiled for itself.
 bent_loads, outward_pass, set_air, wind_forces = (
     fused(getattr(branch_loads, name))
     for name in ('bent_loads', 'outward_pass', 'set_air', 'wind_forces')

@@ -61,13 +61,9 @@ def time_stand(
     Returns
     -------
     list of Measured
-        CPU times of a frame in [ms], medians; set-up in [s] of CPU time, and before it what a
-        stand of two small trees takes, whose first start compiles; memory in [GB].
+        CPU times of a frame in [ms], medians; set-up in [s] of CPU time; memory in [GB].
 
     """
-    begun = time.process_time()
-    _start_small()
-    compiled = time.process_time() - begun
     begun = time.process_time()
     stand = bench_stand(n_trees) if make is None else make()
     poses = stand.place()
@@ -90,16 +86,6 @@ def time_stand(
         Measured(f'place {what}', place, 'ms'),
         Measured('both', solve + place, 'ms'),
         Measured('place a segment', 1e6 * place / len(poses), 'ns'),
-        Measured('kernels, compiled or read, CPU', compiled, 's'),
         Measured('set-up, CPU', set_up, 's'),
         Measured('memory at most', peak, 'GB'),
     ]
-
-
-def _start_small() -> None:
-    """Step and place two small trees as a stand, so that all kernels are there."""
-    tree = bench_tree(2)
-    pair = [PlacedTree('left', tree), PlacedTree('right', tree, x=3.0)]
-    small = SceneSimulator(Scene(pair), Settings())
-    small.step(gusts(1)[0], _DT)
-    small.place()

@@ -116,7 +116,7 @@ def test_refuses_by_name():
             propagator(1.0, 0.1, 1.0, dt)
 
 
-def test_the_kernel_reports_the_first_refused_row_and_leaves_it_still():
+def test_it_reports_the_first_refused_row_and_leaves_it_still():
     zero, one = np.zeros(3), np.array([1.0, 0.0, 1.0])
     out = np.full((3, 8), np.nan)
     assert fill_propagator(one, zero, one, 0.1, out) == 1

@@ -220,7 +220,6 @@ def test_nothing_makes_it_run_away(case):
     assert sim.counts.reduced == 0
 
 
-@pytest.mark.compiled
 def test_gusts_reach_its_limbs_one_after_another():
     """As they reach those of the reference."""
     wind = turbulent(7.0, 10.0, 5)
@@ -238,7 +237,6 @@ def test_gusts_reach_its_limbs_one_after_another():
     assert effect(40) == pytest.approx(effect('full'), rel=0.2)
 
 
-@pytest.mark.compiled
 def test_each_segment_has_the_gust_that_reaches_its_limb():
     """And not a load that is added to that of a uniform wind."""
     tree = kind_called('whips')
@@ -252,7 +250,6 @@ def test_each_segment_has_the_gust_that_reaches_its_limb():
     assert tip_error(tree, *tips) < 0.03
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize('kind', ['reeds 201', 'shoots 202', 'whips 203', 'bamboo 204'])
 @pytest.mark.parametrize('speed', ['25', '40'])
 def test_it_moves_in_storms_as_the_truth_does(kind, speed):
@@ -290,7 +287,6 @@ def test_a_branch_that_would_turn_too_fast_is_bounded_and_counted():
     assert np.abs(by_key @ rates).max() <= (1.0 + 1e-9) * FASTEST_TURN
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize('kind', ['birch', 'whips'])
 def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
     tree, wind = kind_called(kind), wind_called('80', 0.5)

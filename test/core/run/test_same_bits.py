@@ -46,13 +46,6 @@ def test_two_processes_give_the_same_bits_on_any_number_of_threads():
     assert digests(1) == first
 
 
-@pytest.mark.long
-def test_a_process_that_compiles_gives_the_bits_of_one_that_finds_it_done(tmp_path):
-    first = digests(2, TREE_SWAY_CACHE=str(tmp_path))
-    assert list(tmp_path.glob('*.kernel'))
-    assert digests(1, TREE_SWAY_CACHE=str(tmp_path)) == first == digests(1)
-
-
 def test_what_is_within_runs_on_one_thread_and_the_number_comes_back():
     if not _switches():
         pytest.skip('numpy and scipy are linked with another BLAS')

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What every simulator refuses before a kernel runs, and after what it continues."""
+"""What every simulator refuses before a step, and after what it continues."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def simulators() -> list[SwaySimulator]:
 
 
 def placed(kind: Any, coordinates: Any, place: tuple[float, ...]) -> Any:
-    """Poses of one tree: of its kind by the solver's kernels, then scaled, turned and moved."""
+    """Poses of one tree: of its kind by the native core, then scaled, turned and moved."""
     x, y, z, yaw, scale = np.float32(place).astype(np.float64).tolist()
     poses = kind.simulator.place_rotations(kind.basis.matrix.astype(np.float64) @ coordinates)
     turn = Rotation.from_rotvec([0.0, 0.0, yaw])

@@ -452,7 +452,7 @@ class SwayModel:
         return sizes | {'q': len(self.inertia_slopes)}
 
     def _check_indices(self) -> None:
-        """Refuse indices by which a kernel would read past the end of an array."""
+        """Refuse indices by which a step would read past the end of an array."""
         n = self.tree.n_segments
         count = len(self.branch_parent)
         keys = self.branch_keys

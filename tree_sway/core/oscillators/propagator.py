@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The exact propagator of a bank of oscillators, the kernel of every model.
+The exact propagator of a bank of oscillators, at the heart of every model.
 
 One row of eight coefficients advances ``I x'' + k2 x' + k1 x = M(t)`` over a step h, exactly, for
 a moment M that changes linearly from M0 to M1 (first-order hold)::

@@ -74,7 +74,7 @@ class ReceivedScene:
         self, kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats, *,
         dt: float, anemometer: ArrayLike | None = None, convection_ratio: float = 1.0,
     ) -> None:  # fmt: skip
-        """Begin at rest; a `ParameterError` for arrays that the kernel would read past its end."""
+        """Begin at rest; a `ParameterError` for arrays that a step would read past their end."""
         _check(kinds, kind_of, places, speeds)
         self._dt = dt
         self._sizes = [len(kind.arrays['stiffness']) for kind in kinds]

@@ -126,7 +126,7 @@ class Run:
         return None if self._index is None else self._index * self.period
 
     def warm_up(self) -> float:
-        """Prepare kernels; return the cost of a frame of the trees on ``auto`` in [us]."""
+        """Step once; return the cost of a frame of the trees on ``auto`` in [us]."""
         adaptive = adaptive_among(self.simulator.simulators)
         spent = []
         wind = np.array([1.0, 0.0, 0.0])
