@@ -71,8 +71,8 @@ def test_a_solver_of_the_page_moves_a_limp_tree_as_the_library_does(tmp_path, sp
     """
     In a wind that takes one part of a frame, in one that takes more, and beyond the limits.
 
-    Each frame begins where the library's does: at 22 m/s twigs whip, which takes apart what differs
-    by rounding, tenfold in two frames.
+    Each frame begins where the library's does: at 22 m/s twigs whip, and what differs by rounding
+    grows tenfold in two frames.
     """
     path = tmp_path / 'limp.npz'
     write_model(path, prepare(weeping_twigs(), WOOD, SETTINGS, model=24, cache=None))
