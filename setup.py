@@ -275,6 +275,7 @@ extras = {
         'usd-core>=24.5',
     ],
     'lint': [
+        'clang-format==23.1.5',
         'ruff>=0.8',
         'mypy>=1.11',
         'codespell[toml]>=2.3',

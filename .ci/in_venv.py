@@ -61,7 +61,7 @@ NEEDS = {
         ),
     ),
     'coverage': ('test',),
-    **dict.fromkeys(('ruff', 'mypy', 'codespell', 'pre-commit'), ('lint',)),
+    **dict.fromkeys(('ruff', 'mypy', 'codespell', 'clang-format', 'pre-commit'), ('lint',)),
     'sphinx-build': ('docs',),
     'python setup.py': ('wasm',),
 }

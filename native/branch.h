@@ -106,8 +106,7 @@ INLINE Pair true_force(const Pair &deflection, const Vector<Vec> &w) {
   const Series by(t);
   const Vec sinc = 1.0 + t * by.s, inverse = 1.0 / sinc;
   const Pair across = {w.y, w.z};
-  const Vec along =
-      dot(theta, across) * (by.s + by.c + t * by.s * by.c) * inverse - w.x * sinc;
+  const Vec along = dot(theta, across) * (by.s + by.c + t * by.s * by.c) * inverse - w.x * sinc;
   return inverse * across + along * theta;
 }
 
@@ -141,8 +140,7 @@ INLINE int64_t limit_load(Vector<Vec> &w, Vec limit) {
   const Mask is_within = square <= limit * limit, is_finite = square < all(__builtin_inf());
   const Vec scale = is_within ? all(1.0) : limit / root(square);
   const Mask is_kept = is_within | is_finite;
-  w = {is_kept ? scale * w.x : Vec{}, is_kept ? scale * w.y : Vec{},
-       is_kept ? scale * w.z : Vec{}};
+  w = {is_kept ? scale * w.x : Vec{}, is_kept ? scale * w.y : Vec{}, is_kept ? scale * w.z : Vec{}};
   int64_t n_within = 0;
   for (int lane = 0; lane < LANES; lane++) n_within -= is_within[lane];
   return LANES - n_within;
@@ -152,8 +150,8 @@ INLINE int64_t limit_load(Vector<Vec> &w, Vec limit) {
 // U_n the velocity of the air across the branch, relative to it. It is implicit in the branch's own
 // motion: with u the velocity at the middle of the step without the force and beta that per unit of
 // force, the relative speed s solves s + beta c s^2 = |U - u|.
-INLINE void find_wind_force(sway_branch_block &block, int slot, const Pair &theta,
-                            const Pair &rate, const double wind[3], double drag_density) {
+INLINE void find_wind_force(sway_branch_block &block, int slot, const Pair &theta, const Pair &rate,
+                            const double wind[3], double drag_density) {
   const Vector<Vec> gust = load_rows(block.gust, slot);
   const Vector<Vec> air =
       load(block.speed + slot) * Vector<Vec>{wind[0] + gust.x, wind[1] + gust.y, wind[2] + gust.z};
@@ -162,8 +160,8 @@ INLINE void find_wind_force(sway_branch_block &block, int slot, const Pair &thet
   const Vector<Vec> own = rate.x * load_rows(block.damping_mode[0], slot) +
                           rate.y * load_rows(block.damping_mode[1], slot);
   const Vec compliance = load(block.compliance + slot);
-  const Vector<Vec> u = turned_by(-1.0 * rotation, air) - own +
-                        compliance * load_rows(block.drag_impulse, slot);
+  const Vector<Vec> u =
+      turned_by(-1.0 * rotation, air) - own + compliance * load_rows(block.drag_impulse, slot);
   Vec projector[6];
   for (int k = 0; k < 6; k++) projector[k] = load(block.projector[k] + slot);
   const Vector<Vec> across = times_symmetric(projector, u);
@@ -208,8 +206,8 @@ INLINE int64_t step_lanes(sway_branch_block &block, int slot, double (*state)[16
   const Pair before = moment_of(theta, rate, w, gyro_inertia, limit);
   const Pair ahead = c[0] * theta + c[1] * rate + c[2] * before;
   const Pair ahead_rate = c[4] * theta + c[5] * rate + c[6] * before;
-  const Pair after = moment_of(ahead + c[3] * before, ahead_rate + c[7] * before, w, gyro_inertia,
-                               limit);
+  const Pair after =
+      moment_of(ahead + c[3] * before, ahead_rate + c[7] * before, w, gyro_inertia, limit);
   const Pair to = ahead + c[3] * after, to_rate = ahead_rate + c[7] * after;
   store(state[0] + slot, to.x);
   store(state[1] + slot, to.y);

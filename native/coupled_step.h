@@ -112,8 +112,8 @@ static void find_coupled_force(const sway_model &model, const CoupledStep &law, 
       store(out + j, load(in + j) * (1.0 + drag * root * load(law.root_damping + j)));
     out[k] += law.own[k] + drag * root * root;
     out[count] = law.stretch[k] * own.wanted[law.coupled[k]] + row[TURNING][k] * along_rate -
-                 row[ALONG][k] * turning_rate +
-                 drag * root * (row[DRAGGED][k] + row[ROOTED][k]) - row[INERTIAL][k];
+                 row[ALONG][k] * turning_rate + drag * root * (row[DRAGGED][k] + row[ROOTED][k]) -
+                 row[INERTIAL][k];
     out[count + 1] = row[TURNING][k];
     out[count + 2] = row[ALONG][k];
   }

@@ -36,13 +36,16 @@ INLINE void row_products(const double *const *rows, int64_t n_rows, const double
                          int64_t stride, int64_t count, double *out, int64_t out_stride) {
   int64_t row = 0;
   for (; row + 4 <= n_rows; row += 4)
-    block_products<4, OTHERS>(rows + row, others, stride, count, out + row * out_stride, out_stride);
+    block_products<4, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
+                              out_stride);
   if (row + 2 <= n_rows) {
-    block_products<2, OTHERS>(rows + row, others, stride, count, out + row * out_stride, out_stride);
+    block_products<2, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
+                              out_stride);
     row += 2;
   }
   if (row < n_rows)
-    block_products<1, OTHERS>(rows + row, others, stride, count, out + row * out_stride, out_stride);
+    block_products<1, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
+                              out_stride);
 }
 
 // Write the scalar product of each row and each of `n_others` rows of a matrix.

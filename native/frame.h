@@ -103,8 +103,8 @@ struct Frame {
   bool (*step)(const sway_model &model, const double *stiffness, const Step &step, State &state,
                Room &room, const double wind[3]);
   // The same of a limp tree at its pose.
-  bool (*step_at_pose)(const sway_model &model, const Tuning &tuning, const Step &step, State &state,
-                       LimpTree &tree, Room &room, const double wind[3]);
+  bool (*step_at_pose)(const sway_model &model, const Tuning &tuning, const Step &step,
+                       State &state, LimpTree &tree, Room &room, const double wind[3]);
   // Write the key rotations of a state to the room.
   void (*find_keys)(const sway_model &model, const State &state, Room &room);
   // Place a tree by the key rotations in the room, to (n, 7).

@@ -33,7 +33,8 @@ void run_until(const History &history, double time, double out[3]) {
   const double *a = history.run + 4 * row_of(history, low);
   const double *b = history.run + 4 * row_of(history, high);
   const double share = (time - a[0]) / (b[0] - a[0]);
-  for (int axis = 0; axis < 3; axis++) out[axis] = a[1 + axis] + share * (b[1 + axis] - a[1 + axis]);
+  for (int axis = 0; axis < 3; axis++)
+    out[axis] = a[1 + axis] + share * (b[1 + axis] - a[1 + axis]);
 }
 
 }  // namespace
@@ -51,8 +52,7 @@ void remember(const History &history, double finest, const double wind[3], doubl
   const int64_t last = count_of(*history.last, size - 1);
   const int64_t before = (last + size - 1) % size;
   const double step[] = {dt, wind[0] * dt, wind[1] * dt, wind[2] * dt};
-  const bool is_joined =
-      *history.count > 2.0 && run[4 * last] + dt - run[4 * before] <= finest;
+  const bool is_joined = *history.count > 2.0 && run[4 * last] + dt - run[4 * before] <= finest;
   const int64_t head = is_joined ? last : (last + 1) % size;
   for (int k = 0; k < 4; k++) {
     if (head < last) {
@@ -109,10 +109,12 @@ void push_crown(const Crown &crown, double spread, double coherence, const doubl
                 double dt) {
   remember(crown.history, 2.0 * LONGEST_DELAY / (HISTORY - 4), wind, dt);
   follow_mean(crown.mean, wind, dt, AVERAGING);
-  const double speed = at_least(sqrt(crown.mean[0] * crown.mean[0] + crown.mean[1] * crown.mean[1]), SLOWEST);
+  const double speed =
+      at_least(sqrt(crown.mean[0] * crown.mean[0] + crown.mean[1] * crown.mean[1]), SLOWEST);
   const double longest = at_most(spread / speed, LONGEST_DELAY);
   for (int j = 0; j < DELAYS; j++) crown.wanted[j] = longest * j / (DELAYS - 1);
-  past_winds(crown.history, crown.wanted, crown.delay, DELAYS, LONGEST_DELAY, wind, dt, crown.apart);
+  past_winds(crown.history, crown.wanted, crown.delay, DELAYS, LONGEST_DELAY, wind, dt,
+             crown.apart);
   for (int j = 0; j < DELAYS; j++)
     for (int axis = 0; axis < 3; axis++)
       crown.apart[3 * j + axis] = (1.0 - coherence) * (crown.apart[3 * j + axis] - wind[axis]);

@@ -125,7 +125,12 @@ typedef struct sway_ring {
 
 /* Results of `sway_keep_sample`: the sample was kept with the first and the last. */
 enum {
-  SWAY_KEPT, SWAY_NOT_FINITE, SWAY_TOO_LARGE, SWAY_SATURATED, SWAY_OUT_OF_ORDER, SWAY_CLOCK_BACK
+  SWAY_KEPT,
+  SWAY_NOT_FINITE,
+  SWAY_TOO_LARGE,
+  SWAY_SATURATED,
+  SWAY_OUT_OF_ORDER,
+  SWAY_CLOCK_BACK
 };
 
 /* Check a sample (9) of a time [s], and keep it; `is_measured` (9) says which of its numbers are
@@ -147,21 +152,21 @@ typedef struct sway_sensor {
   double *computed;         /* and of what the model says (rows, 12), written */
   double *moved;            /* the last sample in the frame of the tree (9), written */
   int64_t rows;             /* of the memory */
-  int64_t count;            /* samples since its mounting is looked for; the next row, modulo rows */
-  int64_t is_mounted;       /* whether its mounting is known */
-  int64_t is_awaited;       /* whether its mounting is being found */
-  int64_t in_use;           /* whether its motion corrects the tree */
-  int64_t is_refused;       /* whether it disagrees with the tree */
-  int64_t silences;         /* times that it fell silent while it was in use */
-  int64_t disagreements;    /* times that it began to disagree */
-  double dt;                /* time of a step [s] */
-  double absent;            /* time without a sample about the step, and without a new one [s] */
+  int64_t count; /* samples since its mounting is looked for; the next row, modulo rows */
+  int64_t is_mounted; /* whether its mounting is known */
+  int64_t is_awaited; /* whether its mounting is being found */
+  int64_t in_use; /* whether its motion corrects the tree */
+  int64_t is_refused; /* whether it disagrees with the tree */
+  int64_t silences; /* times that it fell silent while it was in use */
+  int64_t disagreements; /* times that it began to disagree */
+  double dt; /* time of a step [s] */
+  double absent; /* time without a sample about the step, and without a new one [s] */
   double unheard;
-  double newest, apart;     /* time of the newest sample, and that from the step, when it was absent */
-  double excess;            /* squared innovations over those expected, a running mean */
-  double agreed;            /* time for which a refused sensor agrees [s] */
-  double heard, came;       /* time of the newest sample that was heard of, and of the step then */
-  double lag;               /* age of its newest sample before another comes, at its worst [s] */
+  double newest, apart; /* time of the newest sample, and that from the step, when it was absent */
+  double excess; /* squared innovations over those expected, a running mean */
+  double agreed; /* time for which a refused sensor agrees [s] */
+  double heard, came; /* time of the newest sample that was heard of, and of the step then */
+  double lag; /* age of its newest sample before another comes, at its worst [s] */
 } sway_sensor;
 
 enum { SWAY_SLOTS = 64 };
@@ -169,18 +174,18 @@ enum { SWAY_SLOTS = 64 };
 /* The readings of k sensors on a model of m coordinates, and of the last steps what they would
  * measure by its motion in the wind alone. */
 typedef struct sway_readings {
-  int64_t sensors, coordinates, corrected;  /* k, m; n, of which the air damping is known */
-  int64_t late;                             /* steps by which sensors are read late */
-  sway_sensor *const *sensor;               /* (k) */
-  const double *shapes;        /* displacement and rotation of each sensor by coordinates (k, 6, m) */
-  const double *stiffness;     /* [1/s^2] (m) */
-  const double *damping;       /* by the wood [1/s] (m) */
-  const double *air_damping;   /* [1/s] (n) */
-  const double *eta, *rate, *force;  /* motion of the model (m) */
-  double *sensed;              /* (SWAY_SLOTS, k, 12), written */
-  double *still;               /* force on a tree that stands still (SWAY_SLOTS, n), written */
-  double *beyond;              /* what the last sample has beyond the model (k, 9), written */
-  uint8_t *is_known;           /* whether there is one, of a known mounting (k), written */
+  int64_t sensors, coordinates, corrected; /* k, m; n, of which the air damping is known */
+  int64_t late; /* steps by which sensors are read late */
+  sway_sensor *const *sensor; /* (k) */
+  const double *shapes; /* displacement and rotation of each sensor by coordinates (k, 6, m) */
+  const double *stiffness; /* [1/s^2] (m) */
+  const double *damping; /* by the wood [1/s] (m) */
+  const double *air_damping; /* [1/s] (n) */
+  const double *eta, *rate, *force; /* motion of the model (m) */
+  double *sensed; /* (SWAY_SLOTS, k, 12), written */
+  double *still; /* force on a tree that stands still (SWAY_SLOTS, n), written */
+  double *beyond; /* what the last sample has beyond the model (k, 9), written */
+  uint8_t *is_known; /* whether there is one, of a known mounting (k), written */
 } sway_readings;
 
 enum { SWAY_LATEST = 30 };
@@ -189,8 +194,7 @@ enum { SWAY_LATEST = 30 };
  * the step before it by which they are late, at most SWAY_LATEST. Returns that step, or -1 where no
  * sensor is read because it was done before. A sensor without a sample for longer than networks
  * delay one is no more in use. */
-SWAY_API int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done,
-                                   double time);
+SWAY_API int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, double time);
 
 /* Judge a sensor by the mean square of its innovations over that expected: one whose innovations
  * stay far beyond those expected is refused until they are not. */
@@ -198,45 +202,45 @@ SWAY_API void sway_judge(sway_sensor *sensor, double size);
 
 /* A steady filter of n coordinates by p measurements, three of each quantity. */
 typedef struct sway_filter {
-  int64_t coordinates, measurements, lag;  /* n, p, l */
-  const double *law;        /* state after a step by that before, of each coordinate (3, 3, n) */
-  const double *sensed;     /* measurements by the state (3 n, p) */
-  const double *gain;       /* correction of the state by the innovations (p, 3 n) */
-  const double *deviation;  /* of each innovation (p) */
-  const int64_t *row;       /* of each measurement among the readings, those of a sensor together (p) */
-  double *state;            /* displacement, rate and disturbance, as told (3, n) */
-  double *calm;             /* and calm (3, n) */
-  double *innovations;      /* of the last steps, limited, the oldest first (l, p) */
+  int64_t coordinates, measurements, lag; /* n, p, l */
+  const double *law; /* state after a step by that before, of each coordinate (3, 3, n) */
+  const double *sensed; /* measurements by the state (3 n, p) */
+  const double *gain; /* correction of the state by the innovations (p, 3 n) */
+  const double *deviation; /* of each innovation (p) */
+  const int64_t *row; /* of each measurement among the readings, those of a sensor together (p) */
+  double *state; /* displacement, rate and disturbance, as told (3, n) */
+  double *calm; /* and calm (3, n) */
+  double *innovations; /* of the last steps, limited, the oldest first (l, p) */
 } sway_filter;
 
 /* Move a filter by a number of steps, correct it by the readings of sensors that are known and in
  * use, and judge these. */
-SWAY_API void sway_correct(const sway_filter *filter, const sway_readings *readings,
-                           size_t steps);
+SWAY_API void sway_correct(const sway_filter *filter, const sway_readings *readings, size_t steps);
 
 /* A correction of n coordinates. */
 typedef struct sway_correction {
   int64_t coordinates;
-  const double *stiffness;  /* [1/s^2] (n) */
-  const double *wanted;     /* trust of new gains (n) */
-  double *trust;            /* share of the correction that is applied (n), written */
-  double *moved;            /* displacement and rate of the correction (2, n), written */
-  double *energies;         /* of the motion with and without it, both twice (2), written */
+  const double *stiffness; /* [1/s^2] (n) */
+  const double *wanted; /* trust of new gains (n) */
+  double *trust; /* share of the correction that is applied (n), written */
+  double *moved; /* displacement and rate of the correction (2, n), written */
+  double *energies; /* of the motion with and without it, both twice (2), written */
 } sway_correction;
 
 /* Bring a calm motion (3, n) to the present by `ahead` (3, 3, n), as far as each coordinate of it
  * is trusted, where the trust goes a share of the way to that wanted. The motion without correction
  * has displacements and rates (n). */
-SWAY_API void sway_carry(const sway_correction *correction, const double *ahead,
-                         const double *calm, double share, const double *eta, const double *rate);
+SWAY_API void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,
+                         double share, const double *eta, const double *rate);
 
 /* What the correction of n coordinates moves of all m by drag. */
 typedef struct sway_dragged {
-  int64_t coordinates, corrected;  /* m, n */
-  const double *law;    /* displacement and rate after a step by those before and the force (2, 3, m) */
-  const double *drag;   /* force on each coordinate per rate of the corrected ones (n, m) */
-  const double *trust;  /* (n) */
-  double *state;        /* displacement, rate and force (3, m), written */
+  int64_t coordinates, corrected; /* m, n */
+  const double
+      *law; /* displacement and rate after a step by those before and the force (2, 3, m) */
+  const double *drag; /* force on each coordinate per rate of the corrected ones (n, m) */
+  const double *trust; /* (n) */
+  double *state; /* displacement, rate and force (3, m), written */
 } sway_dragged;
 
 /* Move it by a number of steps under a correction (2, n), and write it with the correction to

@@ -69,8 +69,7 @@ static void add_gusts(const sway_model &model, const double *stiffness, const St
 // one after another. Returns whether wind or energy were clamped.
 static bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
                              State &state, Room &room, const double wind[3]) {
-  const double speed =
-      __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
+  const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
   const double per_speed_squared = drag_density(model.drag_law, speed);
   if (!state.crown) return step_table(model, stiffness, step, state, room, wind, per_speed_squared);
   const Crown crown = crown_of(state.crown);

@@ -33,8 +33,7 @@ constexpr double SLACK = 0.05;
 INLINE int64_t parts_of(double dt, double speed) {
   const double in_storm = PART_IN_STORM / most(speed * speed, 1.0);
   const double longest = least(LONGEST_PART, most(in_storm, SHORTEST_PART));
-  return static_cast<int64_t>(
-      __builtin_ceil(least(most(dt / longest - 1e-9, 1.0), MOST_PARTS)));
+  return static_cast<int64_t>(__builtin_ceil(least(most(dt / longest - 1e-9, 1.0), MOST_PARTS)));
 }
 
 // Write the drag of a wind [m/s] on every segment at the pose, over the root of its mass, at 1 kg/m^3.
@@ -94,8 +93,8 @@ static void find_load(const sway_model &model, const LimpTree &tree, LimpRoom &o
 // Go on to coordinates and rates of the room, where the tree is placed. The rates are scaled so that
 // the tree gains no more energy than the work of the wind [J]; from then on it may have what it has,
 // or has lost before, up to `SLACK`.
-static void end_part(const sway_model &model, const double *stiffness, State &state,
-                     LimpTree &tree, LimpRoom &own) {
+static void end_part(const sway_model &model, const double *stiffness, State &state, LimpTree &tree,
+                     LimpRoom &own) {
   const int64_t M = model.padded;
   const double kinetic = 0.5 * twice_kinetic_energy(model.limp, tree, M, own.rate, own.momentum);
   double moving = kinetic, allowed = tree.allowed;
@@ -223,16 +222,15 @@ static bool step_at_pose(const sway_model &model, const Tuning &tuning, const St
                          State &state, LimpTree &tree, Room &room, const double wind[3]) {
   follow(model, tuning, state, tree);
   find_gusts(model, state, step, wind, room.limp.gust);
-  const double speed =
-      __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
+  const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
   const double per_speed_squared = drag_density(model.drag_law, speed);
   const int64_t n_parts = parts_of(step.dt, speed);
   CoupledStep &law = tree.laws[n_parts % 4];
   if (law.n_parts != n_parts) fill_coupled(model, tuning, step.dt, n_parts, law);
   bool is_bounded = false;
   for (int64_t part = 0; part < n_parts; part++)
-    is_bounded |= take_part(model, tuning.stiffness, law, state, tree, room, wind, speed,
-                            per_speed_squared);
+    is_bounded |=
+        take_part(model, tuning.stiffness, law, state, tree, room, wind, speed, per_speed_squared);
   for (int axis = 0; axis < 3; axis++) state.wind[axis] = wind[axis];
   *state.drag_density = per_speed_squared;
   *state.is_clamped = is_bounded;

@@ -31,23 +31,23 @@ typedef Vector<Vec> Lanes3;
 // Where a branch is at present, and what acts on it.
 struct Held {
   Matrix parent_frame;  // of the base of its parent
-  Matrix frame;         // of its base
-  V3 place;             // of its base [m]
-  V3 force, moment;     // at the joint; the moment is about the root node
+  Matrix frame;  // of its base
+  V3 place;  // of its base [m]
+  V3 force, moment;  // at the joint; the moment is about the root node
   V3 local_force, local_moment;  // the same in the frame of the parent, about the joint
-  double along_arm;     // force times the arm at rest
-  Matrix own_frame;     // of its loaded pieces
-  Matrix drag;          // change of the force by the air velocity, in that frame
-  V3 air;               // wind in that frame
-  V3 own_moment;        // of the force about the base, in that frame
+  double along_arm;  // force times the arm at rest
+  Matrix own_frame;  // of its loaded pieces
+  Matrix drag;  // change of the force by the air velocity, in that frame
+  V3 air;  // wind in that frame
+  V3 own_moment;  // of the force about the base, in that frame
 };
 
 // Motion of a branch by each shape, and the change of the load that it hands to its parent.
 struct Moved {
-  Lanes3 velocity, spin;    // twist of the base
-  Lanes3 shift, rotation;   // displacement of the base on its parent without the shortening, and
-                            // the change of its rotation vector, in the frame of the parent
-  Lanes3 force, moment;     // wrench by the motion
+  Lanes3 velocity, spin;  // twist of the base
+  Lanes3 shift, rotation;  // displacement of the base on its parent without the shortening, and
+  // the change of its rotation vector, in the frame of the parent
+  Lanes3 force, moment;  // wrench by the motion
   Lanes3 damping, damping_moment;  // wrench by its rate
 };
 
@@ -129,8 +129,8 @@ INLINE void move_outward(const sway_branches &tree, const sway_branch_load *load
     const int64_t count = tree.n_coordinates[parent];
     const double *twist = tree.twist + 6 * tree.keys * b;
     const Lanes3 rotation = along(row, columns, count, twist + 3, 6);
-    const Lanes3 shift = along(row, columns, count, twist, 6) +
-                         cross(rotation, lanes_of(read(tree.base + 3 * b)));
+    const Lanes3 shift =
+        along(row, columns, count, twist, 6) + cross(rotation, lanes_of(read(tree.base + 3 * b)));
     const V3 displacement = read(loads[b].displacement);
     const Vec closer = 2.0 * tree.per_arm[b] * dot(lanes_of(displacement), shift);
     const Lanes3 slide = shift - closer * lanes_of(read(tree.arm + 3 * b));
@@ -159,13 +159,13 @@ INLINE void load_own(const sway_branches &tree, int64_t b, const sway_branch_loa
   const Lanes3 rotation =
       along(shapes + first, columns, count, tree.load_rotation + 3 * tree.keys * b, 3);
   const Lanes3 turned = spin_by(lanes_of(-1.0 * read(load_of.turn)), rotation) + spin;
-  const Lanes3 loaded = transposed_times(coupling, spin) + velocity +
-                        along(shapes + first, columns, count, mode, 3);
+  const Lanes3 loaded =
+      transposed_times(coupling, spin) + velocity + along(shapes + first, columns, count, mode, 3);
   const Lanes3 constant = lanes_of(read(load_of.own_force));
   const Lanes3 by_turn = own.drag * cross(lanes_of(own.air), turned);
   const Lanes3 force = by_turn - cross(constant, turned);
-  const Lanes3 couple = coupling * by_turn - cross(lanes_of(own.own_moment), turned) -
-                        cross(constant, velocity);
+  const Lanes3 couple =
+      coupling * by_turn - cross(lanes_of(own.own_moment), turned) - cross(constant, velocity);
   const Lanes3 by_rate = -1.0 * (own.drag * loaded);
   const Lanes3 at_root = own.own_frame * force, by_rate_at_root = own.own_frame * by_rate;
   to.force = to.force + at_root;
@@ -183,8 +183,7 @@ INLINE void load_own(const sway_branches &tree, int64_t b, const sway_branch_loa
     const int64_t row = first + c * columns;
     const Lanes3 of_mode = lanes_of(read(mode + 3 * c));
     store(turning + row, load(turning + row) + dot(of_mode, by_turn));
-    store(damping + row,
-          load(damping + row) + dot(of_mode, by_rate) - excess * load(shapes + row));
+    store(damping + row, load(damping + row) + dot(of_mode, by_rate) - excess * load(shapes + row));
   }
 }
 
@@ -226,16 +225,16 @@ INLINE void sum_inward(const sway_branches &tree, const sway_branch_load *loads,
     const Lanes3 back = lanes_of(-1.0 * read(loads[b].rotation));
     {
       const Lanes3 on_slide = transposed_times(own.parent_frame, from.damping);
-      const Lanes3 on_spin = transposed_times(own.parent_frame,
-                                              from.damping_moment + cross(from.damping, place));
+      const Lanes3 on_spin =
+          transposed_times(own.parent_frame, from.damping_moment + cross(from.damping, place));
       hand_to_parent(tree, b, columns, on_shift_of(tree, b, loads[b], on_slide),
                      spin_by(back, on_spin), damping);
     }
     // The parent turns under the constant force and moment at the joint.
     const Lanes3 constant = lanes_of(own.force);
     const Lanes3 force = from.force + cross(constant, on.spin);
-    const Lanes3 moment = from.moment + cross(constant, on.velocity) +
-                          cross(lanes_of(own.moment), on.spin);
+    const Lanes3 moment =
+        from.moment + cross(constant, on.velocity) + cross(lanes_of(own.moment), on.spin);
     // The joint itself moves: its slide under the spin, then the second derivatives of slide and
     // spin, times force and moment in the frame of the parent.
     const Lanes3 rotation = lanes_of(read(loads[b].rotation));
@@ -249,11 +248,10 @@ INLINE void sum_inward(const sway_branches &tree, const sway_branch_load *loads,
     const Lanes3 second = cross(couple, cross(rotation, from.rotation)) -
                           2.0 * cross(rotation, cross(couple, from.rotation));
     const double shortening = 2.0 * tree.per_arm[b] * own.along_arm;
-    hand_to_parent(tree, b, columns,
-                   on_shift_of(tree, b, loads[b], on_slide) - shortening * from.shift,
-                   spin_by(back, on_spin) + 0.5 * cross(couple, from.rotation) +
-                       (1.0 / 6.0) * second,
-                   turning);
+    hand_to_parent(
+        tree, b, columns, on_shift_of(tree, b, loads[b], on_slide) - shortening * from.shift,
+        spin_by(back, on_spin) + 0.5 * cross(couple, from.rotation) + (1.0 / 6.0) * second,
+        turning);
   }
 }
 

@@ -12,12 +12,10 @@
 namespace sway {
 
 class Memory {
- public:
+public:
   // Zeros for a number of values, at the beginning of a cache line. Where memory is short,
   // `is_short` is set and nothing is returned.
-  template <class T>
-  __attribute__((always_inline))
-  T *take(uint64_t count) {
+  template <class T> __attribute__((always_inline)) T *take(uint64_t count) {
     const size_t room = sizeof(Block) + LINE;
     if (is_short || count > (SIZE_MAX - room) / sizeof(T)) {
       is_short = true;
@@ -45,7 +43,7 @@ class Memory {
 
   bool is_short = false;
 
- private:
+private:
   static constexpr size_t LINE = 64;
   struct Block {
     Block *next;
@@ -53,4 +51,4 @@ class Memory {
   Block *blocks = nullptr;
 };
 
-}  // namespace
+}  // namespace sway

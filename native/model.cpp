@@ -37,18 +37,14 @@ struct Meaning {
   int64_t shape[4];
 };
 
-template <class T>
-struct TypeNumber;
-template <>
-struct TypeNumber<double> {
+template <class T> struct TypeNumber;
+template <> struct TypeNumber<double> {
   static constexpr uint32_t value = 0;
 };
-template <>
-struct TypeNumber<float> {
+template <> struct TypeNumber<float> {
   static constexpr uint32_t value = 1;
 };
-template <>
-struct TypeNumber<int64_t> {
+template <> struct TypeNumber<int64_t> {
   static constexpr uint32_t value = 2;
 };
 
@@ -87,7 +83,7 @@ bool has_table(const Arrays &a) {
 }
 
 class Reader {
- public:
+public:
   Reader(const char *bytes, size_t size, Text &error) : bytes_(bytes), size_(size), error_(error) {}
 
   // Find and check all arrays.
@@ -108,7 +104,7 @@ class Reader {
 
   bool has(const char *name) const { return found_[number_of(name)].data != nullptr; }
 
- private:
+private:
   struct Found {
     const char *data;
     uint32_t dimensions;
@@ -183,7 +179,8 @@ class Reader {
   // Whether there is nothing to be placed: the model of a receiver that solves a tree by its table.
   bool is_table_alone() const {
     for (int number = 0; number < N_MEANINGS; number++)
-      if (found_[number].data && (MEANINGS[number].group == TREE || MEANINGS[number].group == PLACING))
+      if (found_[number].data &&
+          (MEANINGS[number].group == TREE || MEANINGS[number].group == PLACING))
         return false;
     return true;
   }
@@ -330,8 +327,8 @@ void lay_out(sway_model &model, const Arrays &a) {
   if (by_table) lay_out_table(model, a);
   if (sizes.delays) {
     model.limb_share = padded_rows(model.memory, a.limb_share, 1, sizes.delays, sizes.delays);
-    model.limb_harmonics = padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m,
-                                       model.padded);
+    model.limb_harmonics =
+        padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m, model.padded);
     model.limb_spread = *a.limb_spread;
     model.crown_coherence = *a.crown_coherence;
   }

@@ -30,7 +30,17 @@ enum Size : int64_t {
 };
 
 enum Group {
-  NUMBERS, TREE, PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS, LIMP,
+  NUMBERS,
+  TREE,
+  PLACING,
+  LOADS,
+  COORDINATES,
+  STREAM,
+  TABLE,
+  ISOLATED,
+  LIMBS,
+  LIMB_LOADS,
+  LIMP,
 };
 
 // The arrays as they are in the bytes of a model; those that it lacks are null.

@@ -92,7 +92,8 @@ void follow_lags(sway_readings &readings, double time) {
   }
   if (!is_new) return;
   const int64_t needed = static_cast<int64_t>(fmin(ceil(most - 0.01), SWAY_LATEST));
-  if (needed > readings.late || (is_heard && needed < readings.late - SPARE)) readings.late = needed;
+  if (needed > readings.late || (is_heard && needed < readings.late - SPARE))
+    readings.late = needed;
 }
 
 // What a sensor of some shapes (6, m) would measure. The specific force that a sensor turned by theta
@@ -224,8 +225,10 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
     }
     largest = fmax(largest, size);
     if (k + 3 < p && filter->row[k + 3] / 9 == at) continue;
-    if (is_known) sway_judge(&sensor, largest);
-    else readings->is_known[at] = 0;
+    if (is_known)
+      sway_judge(&sensor, largest);
+    else
+      readings->is_known[at] = 0;
     largest = 0.0;
   }
   for (int64_t i = 0; i < 3 * n; i++) calm[i] += PACE * (state[i] - calm[i]);
@@ -251,8 +254,7 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
   correction->energies[1] = own;
 }
 
-void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
-               double *added) {
+void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps, double *added) {
   const int64_t m = dragged->coordinates, n = dragged->corrected;
   double *state = dragged->state, *force = state + 2 * m;
   for (int64_t i = 0; i < m; i++) force[i] = 0.0;

@@ -81,8 +81,8 @@ INLINE void take_four(const double *array, int64_t stride, const int64_t *rows, 
 }
 
 // Write four numbers of four slots to rows of an array.
-INLINE void put_four(const Row *slots, int slot, double *array, int64_t stride,
-                     const int64_t *rows, int64_t ahead, int first) {
+INLINE void put_four(const Row *slots, int slot, double *array, int64_t stride, const int64_t *rows,
+                     int64_t ahead, int first) {
   Four a = load_four(slots[0] + slot);
   Four b = load_four(slots[1] + slot);
   Four c = load_four(slots[2] + slot);
@@ -180,8 +180,8 @@ INLINE double rotate_bases(const Block &block, Slots &slots, double scale, const
     const Vec half_y = load(slots.parent_base[5] + slot);
     Vector<Vec> on_parent = half_x * load_vector(turn, slot) + half_y * load_vector(turn + 3, slot);
     for (int64_t row = 2; row < block.n_parent_rows; row++)
-      on_parent = on_parent +
-                  0.5 * load(slots.parent_key[row] + slot) * load_vector(turn + 3 * row, slot);
+      on_parent =
+          on_parent + 0.5 * load(slots.parent_key[row] + slot) * load_vector(turn + 3 * row, slot);
     const Vec square = dot(on_parent, on_parent);
     const HalfAngle<Vec> half = half_angle(square, largest(square));
     const Quaternion<Vec> turned = {half.cosine, half.sinc * on_parent.x, half.sinc * on_parent.y,
@@ -203,7 +203,8 @@ INLINE double rotate_bases(const Block &block, Slots &slots, double scale, const
     store(slots.blend + slot, stretch.blend);
     store_vector(slots.half_rotation, slot, rotation);
     store_quaternion(slots.times_half, slot, product(base, rotation));
-    store_vector(slots.start, slot, along(slots.support, slot, scale * load(block.offset[0] + slot)));
+    store_vector(slots.start, slot,
+                 along(slots.support, slot, scale * load(block.offset[0] + slot)));
 
     const Vec rotation_square = stretch.own * stretch.own * key_square;
     store(slots.rotation_square + slot, rotation_square);

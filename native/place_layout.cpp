@@ -11,7 +11,7 @@ constexpr double AS_ONE = 1e-12;
 
 // Branches whose parents have slots: the richest and longest first, then children of the richest.
 class Ready {
- public:
+public:
   Ready(Memory &memory, const Arrays &a, const int64_t *carried)
       : a_(a), carried_(carried), heap_(memory.take<int64_t>(a.size[-SIZE_b])) {}
 
@@ -38,7 +38,7 @@ class Ready {
     return first;
   }
 
- private:
+private:
   int64_t size(int64_t branch) const {
     return a_.branch_first[branch + 1] - a_.branch_first[branch];
   }
@@ -141,8 +141,7 @@ bool fill_segment(const Arrays &a, int64_t number, Segment &record, int64_t slot
   for (int axis = 0; axis < 4; axis++) record.rest[axis][slot] = a.segment_rest[4 * number + axis];
   for (int64_t row = 0; row < k && record.turn; row++)
     for (int axis = 0; axis < 3; axis++)
-      record.turn[(3 * row + axis) * WIDTH + slot] =
-          a.segment_turn[(number * k + row) * 3 + axis];
+      record.turn[(3 * row + axis) * WIDTH + slot] = a.segment_turn[(number * k + row) * 3 + axis];
   if (slot >= record.n_slots) record.n_slots = slot + 1;
   return is_along(chord);
 }

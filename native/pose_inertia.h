@@ -100,7 +100,8 @@ INLINE int64_t columns_due(int64_t count, double turned) {
 static double twice_kinetic_energy(const Limp &limp, const LimpTree &tree, int64_t padded,
                                    const double *rate, double *momentum) {
   // Beyond the leading coordinates the matrix is zero.
-  multiply(tree.change, limp.leading, limp.row, rate, limp.row < padded ? limp.row : padded, momentum);
+  multiply(tree.change, limp.leading, limp.row, rate, limp.row < padded ? limp.row : padded,
+           momentum);
   double energy = dot(rate, rate, padded);
   for (int64_t i = 0; i < limp.leading; i++) {
     energy += rate[i] * momentum[i];

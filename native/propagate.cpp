@@ -20,12 +20,12 @@ struct Differences {
 };
 
 constexpr double SMALL = 1.5;  // largest |mu| of the Taylor series
-constexpr int TERMS = 27;      // of which it takes so many to 1e-17
+constexpr int TERMS = 27;  // of which it takes so many to 1e-17
 
 // The differences are sums of complete homogeneous polynomials of mu1, mu2 over factorials.
 Differences by_series(double alpha, double kappa) {
   double before = 0.0, now = 1.0;  // of degree n - 1 and n
-  double factor = 1.0;             // 1 / (n + 1)!
+  double factor = 1.0;  // 1 / (n + 1)!
   double s = 0.0, p = 0.0;
   for (int n = 0; n < TERMS; n++) {
     s += now * factor;

@@ -61,8 +61,17 @@ State state_of(const sway_stand &stand, size_t tree) {
   double *scalars = first + ROWS * width;
   const sway_model &model = *stand.kinds[stand.trees[tree].model].model;
   double *crown = model.sizes.delays ? scalars + SCALARS : nullptr;
-  return {first,   first + width, first + 2 * width, first + 3 * width, first + 4 * width,
-          first + 5 * width, scalars, scalars + 3, scalars + 4, scalars + 5, scalars + 6,
+  return {first,
+          first + width,
+          first + 2 * width,
+          first + 3 * width,
+          first + 4 * width,
+          first + 5 * width,
+          scalars,
+          scalars + 3,
+          scalars + 4,
+          scalars + 5,
+          scalars + 6,
           crown};
 }
 
@@ -81,8 +90,8 @@ int64_t step_of(sway_stand &stand, const sway_tree &tree) {
     if (stand.steps[i].model == tree.model && stand.steps[i].scale == scale)
       return static_cast<int64_t>(i);
   const int64_t rows = 6 * stand.kinds[tree.model].model->padded;
-  stand.steps[stand.n_steps] = {tree.model, scale,
-                                {stand.memory.take<double>(rows), stand.memory.take<double>(rows), 0.0}};
+  stand.steps[stand.n_steps] = {
+      tree.model, scale, {stand.memory.take<double>(rows), stand.memory.take<double>(rows), 0.0}};
   return static_cast<int64_t>(stand.n_steps++);
 }
 
@@ -140,7 +149,9 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     Tree &tree = stand.trees[i];
     tree.model = given.model;
     tree.speed = given.speed;
-    tree.place = {cos(0.5 * given.yaw), sin(0.5 * given.yaw), given.scale,
+    tree.place = {cos(0.5 * given.yaw),
+                  sin(0.5 * given.yaw),
+                  given.scale,
                   {given.at[0], given.at[1], given.at[2]}};
     tree.step = step_of(stand, given);
     if (stand.limp && is_limp(*models[given.model]))

@@ -57,7 +57,8 @@ static void fill_harmonics(double x, double y, double z, double *out) {
   const double degree_5[] = {0.414578098794425 * z * (63.0 * zz * zz - 70.0 * zz + 15.0),
                              1.6056540723331412 * (21.0 * zz * zz - 14.0 * zz + 1.0),
                              8.496322733983215 * z * (3.0 * zz - 1.0),
-                             1.734304615688951 * (9.0 * zz - 1.0), 7.358031326380718 * z,
+                             1.734304615688951 * (9.0 * zz - 1.0),
+                             7.358031326380718 * z,
                              2.3268138086232857};
   const double *degrees[] = {degree_1, degree_3, degree_5};
   const int centre[] = {1, 6, 15}, degree[] = {1, 3, 5};
@@ -144,8 +145,10 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
                         share * (other_low + above * other_rise);
     room.distance[i] = static_cast<float>(corners.weight[0] * (away + to_below * rise));
     room.distance[M + i] = static_cast<float>(corners.weight[1] * (away - to_above * rise));
-    room.distance[2 * M + i] = static_cast<float>(corners.weight[2] * (away + to_below * other_rise));
-    room.distance[3 * M + i] = static_cast<float>(corners.weight[3] * (away - to_above * other_rise));
+    room.distance[2 * M + i] =
+        static_cast<float>(corners.weight[2] * (away + to_below * other_rise));
+    room.distance[3 * M + i] =
+        static_cast<float>(corners.weight[3] * (away - to_above * other_rise));
     room.single_rate[i] = static_cast<float>(room.middle_rate[i]);
     room.turned[i] = room.damped[i] = 0.0f;
   }
@@ -254,8 +257,7 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
     const Vec limit = load(table.limit + i);
     const Vec force = load(state.wanted + i) + load_singles(room.turned + i);
     const Vec bounded = least(most(force, -limit), limit);
-    store(state.wanted + i,
-          wind.dynamic_pressure * bounded + drag * load_singles(room.damped + i));
+    store(state.wanted + i, wind.dynamic_pressure * bounded + drag * load_singles(room.damped + i));
   }
   for (int64_t i = n_coupled; i < m; i++)
     state.wanted[i] += state.diagonal[i] * room.middle_rate[i];
@@ -321,8 +323,7 @@ static void change_force(const sway_model &model, const Step &step, State &state
 // The coordinates that are kept at rest.
 INLINE void keep_at_rest(const sway_model &model, State &state) {
   const int64_t m = model.sizes.coordinates;
-  for (int64_t i = m - count_of(*state.at_rest, m); i < m; i++)
-    state.eta[i] = state.rate[i] = 0.0;
+  for (int64_t i = m - count_of(*state.at_rest, m); i < m; i++) state.eta[i] = state.rate[i] = 0.0;
 }
 
 // Step a tree in a uniform wind [m/s] in its own frame, of a drag density [kg/m^3]. Returns whether
@@ -338,7 +339,7 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
   const Wind wind = {speed > 0.0 ? x / speed : 1.0, speed > 0.0 ? y / speed : 0.0,
                      speed > 0.0 ? z / speed : 0.0, least(pressure, table.most_pressure),
                      per_speed_squared};
-  const int64_t n_coupled = 
+  const int64_t n_coupled =
       model.sizes.coordinates - count_of(*state.left_out, model.sizes.coordinates);
   const double energy_before = twice_energy(model, stiffness, state);
   move_to_middle(model, step, state, room);

@@ -9,7 +9,7 @@
 namespace {
 
 class Text {
- public:
+public:
   Text(char *memory, size_t room) : next_(memory), left_(memory ? room : 0) {
     if (left_) *next_ = '\0';
   }
@@ -22,7 +22,7 @@ class Text {
     return *this;
   }
 
- private:
+private:
   char *next_;
   size_t left_;
 };

@@ -8,8 +8,7 @@
 
 namespace {
 
-template <class V>
-INLINE Vector<V> operator-(const Vector<V> &a, const Vector<V> &b) {
+template <class V> INLINE Vector<V> operator-(const Vector<V> &a, const Vector<V> &b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
@@ -20,8 +19,7 @@ INLINE void write(double *to, const Vector<double> &v) { to[0] = v.x, to[1] = v.
 // A vector of numbers and one of lanes.
 INLINE Vector<Vec> lanes_of(const Vector<double> &v) { return {all(v.x), all(v.y), all(v.z)}; }
 
-template <class V>
-INLINE Vector<V> cross(const Vector<V> &a, const Vector<V> &b) {
+template <class V> INLINE Vector<V> cross(const Vector<V> &a, const Vector<V> &b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -29,8 +27,7 @@ INLINE Vector<V> cross(const Vector<V> &a, const Vector<V> &b) {
 // is always a rotation, by the angle 2 atan(|r| / 2). So the vector is stretched first, by the
 // series of the tangent: the error of the angle is 1e-4 at 1 rad and 2 % at 2 rad. The opposite
 // rotation vector inverts it to rounding.
-template <class V>
-INLINE Vector<V> turned_by(const Vector<V> &rotation, const Vector<V> &v) {
+template <class V> INLINE Vector<V> turned_by(const Vector<V> &rotation, const Vector<V> &v) {
   const V t = dot(rotation, rotation);
   const V half = 0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)));
   const Vector<V> h = half * rotation;
@@ -54,21 +51,18 @@ struct Matrix {
 INLINE Matrix read_matrix(const double *m) { return {read(m), read(m + 3), read(m + 6)}; }
 
 // A matrix of numbers times a vector, and its transpose times a vector.
-template <class V>
-INLINE Vector<V> operator*(const Matrix &m, const Vector<V> &v) {
+template <class V> INLINE Vector<V> operator*(const Matrix &m, const Vector<V> &v) {
   return {m.x.x * v.x + m.x.y * v.y + m.x.z * v.z, m.y.x * v.x + m.y.y * v.y + m.y.z * v.z,
           m.z.x * v.x + m.z.y * v.y + m.z.z * v.z};
 }
 
-template <class V>
-INLINE Vector<V> transposed_times(const Matrix &m, const Vector<V> &v) {
+template <class V> INLINE Vector<V> transposed_times(const Matrix &m, const Vector<V> &v) {
   return {m.x.x * v.x + m.y.x * v.y + m.z.x * v.z, m.x.y * v.x + m.y.y * v.y + m.z.y * v.z,
           m.x.z * v.x + m.y.z * v.y + m.z.z * v.z};
 }
 
 // A symmetric matrix xx yy zz xy xz yz times a vector.
-template <class V>
-INLINE Vector<V> times_symmetric(const V *p, const Vector<V> &u) {
+template <class V> INLINE Vector<V> times_symmetric(const V *p, const Vector<V> &u) {
   return {p[0] * u.x + p[3] * u.y + p[4] * u.z, p[3] * u.x + p[1] * u.y + p[5] * u.z,
           p[4] * u.x + p[5] * u.y + p[2] * u.z};
 }

@@ -112,34 +112,28 @@ INLINE void store_four(double *to, Four value) { *reinterpret_cast<FourAt *>(to)
 
 // Numbers of lanes, V is Vec or double.
 
-template <class V>
-struct Vector {
+template <class V> struct Vector {
   V x, y, z;
 };
 
-template <class V>
-struct Quaternion {
+template <class V> struct Quaternion {
   V w, x, y, z;
 };
 
 // b, then a.
-template <class V>
-INLINE Quaternion<V> product(const Quaternion<V> &a, const Quaternion<V> &b) {
-  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+template <class V> INLINE Quaternion<V> product(const Quaternion<V> &a, const Quaternion<V> &b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
 // A quaternion times a vector, a quaternion without real part.
-template <class V>
-INLINE Quaternion<V> product(const Quaternion<V> &a, const Vector<V> &b) {
+template <class V> INLINE Quaternion<V> product(const Quaternion<V> &a, const Vector<V> &b) {
   return {-a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.y * b.z - a.z * b.y,
           a.w * b.y - a.x * b.z + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x};
 }
 
-template <class V>
-INLINE Vector<V> rotated(const Quaternion<V> &q, const Vector<V> &v) {
+template <class V> INLINE Vector<V> rotated(const Quaternion<V> &q, const Vector<V> &v) {
   const V x = 2.0 * (q.y * v.z - q.z * v.y);
   const V y = 2.0 * (q.z * v.x - q.x * v.z);
   const V z = 2.0 * (q.x * v.y - q.y * v.x);
@@ -148,30 +142,25 @@ INLINE Vector<V> rotated(const Quaternion<V> &q, const Vector<V> &v) {
 }
 
 // The direction of the x axis of an orientation.
-template <class V>
-INLINE Vector<V> axis(const Quaternion<V> &q) {
+template <class V> INLINE Vector<V> axis(const Quaternion<V> &q) {
   return {1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.w * q.z),
           2.0 * (q.x * q.z - q.w * q.y)};
 }
 
-template <class V>
-INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V> &b) {
+template <class V> INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V> &b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-template <class V, class S>
-INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
+template <class V, class S> INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
   return {scale * a.x, scale * a.y, scale * a.z};
 }
 
-template <class V>
-INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
+template <class V> INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 // Cosine of half an angle, and its sine over the half angle.
-template <class V>
-struct HalfAngle {
+template <class V> struct HalfAngle {
   V cosine, sinc;
 };
 
@@ -180,8 +169,7 @@ constexpr double NEAR = 0.04, FAR = 2.25;
 
 // Series of cos(sqrt t) and sin(sqrt t) / sqrt t; the error is below 3e-14 up to NEAR with 4 terms
 // and below 3e-13 up to FAR with 8.
-template <int TERMS, class V>
-INLINE HalfAngle<V> half_angle_series(V square) {
+template <int TERMS, class V> INLINE HalfAngle<V> half_angle_series(V square) {
   constexpr double COSINE[] = {1.0,
                                -1.0 / 2.0,
                                1.0 / 24.0,

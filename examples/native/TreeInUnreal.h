@@ -15,7 +15,7 @@ UCLASS(meta = (BlueprintSpawnableComponent))
 class UTreeInUnreal : public UInstancedStaticMeshComponent {
   GENERATED_BODY()
 
- public:
+public:
   UPROPERTY(EditAnywhere)
   FString File = TEXT("oak.sway");  // whole path, or from the folder of the program
 
@@ -52,7 +52,7 @@ class UTreeInUnreal : public UInstancedStaticMeshComponent {
     if (Wood.Num()) BatchUpdateInstancesTransforms(0, Wood, false, true, true);
   }
 
- private:
+private:
   sway::Tree Tree;
   TArray<FTransform> Wood;
 };

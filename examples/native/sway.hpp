@@ -15,7 +15,7 @@
 namespace sway {
 
 class Tree {
- public:
+public:
   Tree() = default;
   Tree(const Tree &) = delete;
   Tree &operator=(const Tree &) = delete;
@@ -63,7 +63,7 @@ class Tree {
   std::vector<double> poses;               // (n, 7), see sway.h
   std::vector<double> lengths, diameters;  // of the segments (n) [m]
 
- private:
+private:
   void place() {
     const int64_t rows[] = {0, 0};
     sway_place(stand, 0, rows, 1, poses.data());

@@ -27,7 +27,7 @@
 using namespace gz::sim;
 
 class TreeInGazebo : public System, public ISystemConfigure, public ISystemPreUpdate {
- public:
+public:
   void Configure(const Entity &entity, const std::shared_ptr<const sdf::Element> &element,
                  EntityComponentManager &ecm, EventManager &events) override {
     if (!tree_.open(element->Get<std::string>("tree"))) gzerr << tree_.error << std::endl;
@@ -68,7 +68,7 @@ class TreeInGazebo : public System, public ISystemConfigure, public ISystemPreUp
     }
   }
 
- private:
+private:
   sway::Tree tree_;
   Entity link_ = kNullEntity;
   std::vector<Entity> wood_;

@@ -51,9 +51,7 @@ def test_a_start_that_fails_cleans_up(domain):
     assert set(threading.enumerate()) == before
 
 
-def test_an_error_in_a_callback_ends_nothing_and_is_reported(
-    domain, observer, level, monkeypatch
-):
+def test_an_error_in_a_callback_ends_nothing_and_is_reported(domain, observer, level, monkeypatch):
     from tree_sway_ros.nodes import wind
 
     parts = Composition({'wind': {}, 'anemometer': {'rate': 50.0}}, domain_id=domain)

@@ -27,9 +27,7 @@ class OnePublisher:
         self._at = -math.inf
         self._period = 0.0
 
-    def admits(
-        self, info: Mapping[str, object], count: Callable[[], int], now: float
-    ) -> bool:
+    def admits(self, info: Mapping[str, object], count: Callable[[], int], now: float) -> bool:
         """
         Whether a sample is of the publisher that is followed.
 

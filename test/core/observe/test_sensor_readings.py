@@ -72,9 +72,7 @@ def test_what_is_beyond_the_model_is_turned_into_the_frame_of_the_tree(has_gravi
     of.read(0.3, 0, -1)
     assert of.is_known.all()
     law = of._unknown
-    rows = as_felt(
-        sensed_rows(place, law.all_stiffness, law.all_damping), has_gravity=has_gravity
-    )
+    rows = as_felt(sensed_rows(place, law.all_stiffness, law.all_damping), has_gravity=has_gravity)
     expected = found.motion(sample) - track.bias - rows @ state.ravel()
     np.testing.assert_allclose(of.beyond[0], expected, atol=1e-12)
     np.testing.assert_allclose(track.watched_motion, found.motion(sample)[:2], atol=1e-12)

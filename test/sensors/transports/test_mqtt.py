@@ -87,9 +87,7 @@ def test_a_large_message_is_passed_over_and_the_next_is_read(hear, server, answe
         (b'HTTP/1.1 400 Bad Request\r\n\r\n', 'does not answer|not MQTT|closed|reset'),
     ],
 )
-def test_a_refusal_of_a_broker_is_told(
-    hear, server, answering, answer: bytes, said: str
-) -> None:
+def test_a_refusal_of_a_broker_is_told(hear, server, answering, answer: bytes, said: str) -> None:
     answering(answer)
     heard = hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1]))
     pattern = said.split('|')

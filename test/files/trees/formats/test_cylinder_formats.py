@@ -86,8 +86,10 @@ def test_models_of_one_tree_are_named(tmp_path):
     assert 'tree=1' in first.faults[0]
     assert second.faults == ()
     savemat(tmp_path / 'stand.mat', {'a': {'cylinder': here}, 'b': {'cylinder': beside}})
-    for alone in (read_trees(tmp_path / 'stand.mat', **AS_SCANNED)[0],
-                  read_tree(tmp_path / 'models.mat', tree=1, **AS_SCANNED)):
+    for alone in (
+        read_trees(tmp_path / 'stand.mat', **AS_SCANNED)[0],
+        read_tree(tmp_path / 'models.mat', tree=1, **AS_SCANNED),
+    ):
         assert alone.faults == ()
 
 
