@@ -68,8 +68,17 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
             return [names.index(name) for name in wanted], join, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
-    clocks.sort(key=lambda index: not any(map(str.strip, table.cells(index, first))))
+    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
     return ([clocks[0]], None, table.factor_of(clocks[0], 'time')) if clocks else None
+
+
+def _run_on(cells: Sequence[str]) -> bool:
+    """Tell whether cells are times that run one way, as temperatures called Ts do not."""
+    if not any(map(str.strip, cells)):
+        return False
+    seconds = times_of(cells).seconds
+    steps = np.sign(np.diff(seconds[np.isfinite(seconds)]))
+    return bool(np.isfinite(seconds).any()) and len({*steps[steps != 0.0]}) == min(len(steps), 1)
 
 
 def row_times(
