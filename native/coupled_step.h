@@ -44,13 +44,13 @@ static void fill_coupled(const sway_model &model, const Tuning &tuning, double d
   fill_step(model, tuning.stiffness, tuning.damping, h, law.part);
   law.part.dt = h;
   law.n_parts = n_parts;
-  law.n_coupled = 0;
+  int64_t n_coupled = 0;  // its own, so that two threads at once write no row past the last
   const double *by_force = law.part.whole + 5 * M;
   for (int64_t i = 0; i < model.sizes.coordinates; i++) {
     law.own_damping[i] = 0.5 * limp.damping[i] * by_force[i];
     const double angle = __builtin_sqrt(tuning.stiffness[i]) * h;
     if (i >= limp.leading || !(angle < FASTEST_SWING)) continue;
-    const int64_t k = law.n_coupled++;
+    const int64_t k = n_coupled++;
     const double half = most(0.5 * angle, 1e-12);
     law.coupled[k] = i;
     law.stretch[k] = __builtin_tan(half) / half;
@@ -58,6 +58,7 @@ static void fill_coupled(const sway_model &model, const Tuning &tuning, double d
     law.own[k] = law.stretch[k] / law.per_force[k];
     law.root_damping[k] = __builtin_sqrt(0.5 * h * limp.damping[i]);
   }
+  law.n_coupled = n_coupled;
 }
 
 // Rows of `LimpRoom::coupled`.

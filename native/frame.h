@@ -89,6 +89,9 @@ inline __attribute__((always_inline)) int64_t count_of(double value, int64_t mos
   return value < static_cast<double>(most) ? static_cast<int64_t>(value) : most;
 }
 
+// Winds from here on are calm [m/s]: squares of all others, and of their sums, are finite.
+constexpr double STRONGEST = 1e100;
+
 // Where a tree stands.
 struct Place {
   double cosine, sine;  // of half its turn about the vertical

@@ -116,8 +116,11 @@ void push_crown(const Crown &crown, double spread, double coherence, const doubl
   past_winds(crown.history, crown.wanted, crown.delay, DELAYS, LONGEST_DELAY, wind, dt,
              crown.apart);
   for (int j = 0; j < DELAYS; j++)
-    for (int axis = 0; axis < 3; axis++)
-      crown.apart[3 * j + axis] = (1.0 - coherence) * (crown.apart[3 * j + axis] - wind[axis]);
+    for (int axis = 0; axis < 3; axis++) {
+      const double gust = (1.0 - coherence) * (crown.apart[3 * j + axis] - wind[axis]);
+      // A history that was written may have any gusts.
+      crown.apart[3 * j + axis] = fabs(gust) < STRONGEST ? gust : 0.0;
+    }
 }
 
 }  // namespace sway

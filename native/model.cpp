@@ -225,6 +225,7 @@ private:
       if ((group == TREE || group == PLACING) && !found_[number].data)
         return refuse(MEANINGS[number].name, "missing");
     }
+    if (has_table(a) && !a.shapes) return refuse("shapes", "missing");
     if (b < 1 || b > n) return refuse("branch_parent", "no tree");
     if (a.branch_first[0] != 0 || a.branch_first[b] != n)
       return refuse("branch_first", "no rise from 0 to the number of segments");

@@ -160,14 +160,16 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
   return !stand.memory.is_short;
 }
 
-// The wind at the height of a tree, in the frame of its model; calm if it is not finite.
+// The wind at the height of a tree, in the frame of its model; calm if it is not below `STRONGEST`.
 void wind_in_frame(const Tree &tree, const double *wind, double out[3]) {
   const double cosine = tree.place.cosine * tree.place.cosine - tree.place.sine * tree.place.sine;
   const double sine = 2.0 * tree.place.cosine * tree.place.sine;
-  const bool is_finite = isfinite(wind[0] + wind[1] + wind[2]);
-  out[0] = is_finite ? tree.speed * (cosine * wind[0] + sine * wind[1]) : 0.0;
-  out[1] = is_finite ? tree.speed * (cosine * wind[1] - sine * wind[0]) : 0.0;
-  out[2] = is_finite ? tree.speed * wind[2] : 0.0;
+  out[0] = tree.speed * (cosine * wind[0] + sine * wind[1]);
+  out[1] = tree.speed * (cosine * wind[1] - sine * wind[0]);
+  out[2] = tree.speed * wind[2];
+  bool is_wind = true;
+  for (int axis = 0; axis < 3; axis++) is_wind &= fabs(out[axis]) < STRONGEST;
+  for (int axis = 0; axis < 3 && !is_wind; axis++) out[axis] = 0.0;
 }
 
 bool is_finite(const State &state, int64_t count) {

@@ -105,9 +105,9 @@ SWAY_API int sway_tune(sway_stand *stand, size_t model, const double *stiffness,
 SWAY_API int sway_set_step(sway_stand *stand, double dt);
 
 /* Step trees `first` to `first + count - 1` in the wind at each (count, 3), mean over the step.
- * A wind beyond the range of a model is clamped; a wind that is not finite is calm. Returns the
- * bits above of all these trees; `counts` (may be NULL) has the trees that were clamped and those
- * that were not finite and went on from rest. */
+ * A wind beyond the range of a model is clamped; one of 1e100 m/s or that is not finite is calm.
+ * Returns the bits above of all these trees; `counts` (may be NULL) has the trees that were clamped
+ * and those that were not finite and went on from rest. */
 SWAY_API int sway_step(sway_stand *stand, size_t room, size_t first, size_t count,
                        const double *winds, int64_t counts[2]);
 

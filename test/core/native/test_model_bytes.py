@@ -117,3 +117,14 @@ def test_a_tree_that_stands_nowhere_is_refused(arrays, place):
     for kind in (0, 1, -1):
         with pytest.raises(ParameterError, match=r'not finite|does not exist'):
             NativeStand([model], np.array([kind]), np.array([place], dtype=float), np.ones(1))
+
+
+def test_a_model_without_any_one_of_its_arrays_is_refused_or_stepped(arrays):
+    refused = set()
+    for name in arrays:
+        try:
+            stepped(bytes_of({other: arrays[other] for other in arrays if other != name}))
+        except FormatError:
+            refused.add(name)
+    assert {'tree_start', 'branch_keys'} <= refused
+    assert ('shapes' in refused) == ('turning' in arrays)

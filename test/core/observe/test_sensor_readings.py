@@ -153,3 +153,20 @@ def test_silence_and_a_stall_leave_the_lateness() -> None:
 
 def test_samples_known_ahead_need_no_lateness() -> None:
     assert lateness_of([(0.01 * k, 0.01 * k + 0.5) for k in range(1000)], 10.0) == 0
+
+
+def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() -> None:
+    of, _, _ = readings(1)
+    track: Any = track_of(of)
+    track.sensor.quantities = ('acceleration', 'rate')
+    of.read(0.0, 0, -1)
+    found = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1))
+    track.search = lambda _: iter([FoundMounting(found, np.zeros(9))])
+    track._next_fit = 0
+    of.read(DT, 1, 0)
+    track.sensor.quantities = ('acceleration', 'rate', 'orientation')
+    for step in range(2, 40):
+        of.read(step * DT, step, step - 1)
+        track._next_fit = 10**9
+    assert track.alignment is None
+    assert not track.in_use

@@ -8,14 +8,16 @@ A test compares the signatures with these headers.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import ctypes
 from pathlib import Path
 import sys
-from typing import Any
+from typing import Any, NoReturn
+import weakref
 
 from numpy.typing import NDArray
 
-from tree_sway.errors import MissingDependencyError
+from tree_sway.errors import MissingDependencyError, ParameterError
 
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
@@ -96,9 +98,35 @@ def _opened() -> ctypes.CDLL:
 LIBRARY = _opened()
 
 
-def address(array: NDArray[Any]) -> int:
+class Address(int):
+    """
+    Where memory is, or what the native core has opened.
+
+    What holds one cannot be copied with its memory, nor be sent to another process: the copy would
+    write to the memory of the first, also when that is gone. It raises a `ParameterError`.
+    """
+
+    def __reduce_ex__(self, _: object) -> NoReturn:
+        cure = 'make another simulator of the same model, and give it the state() of this one'
+        raise ParameterError('what the native core steps cannot be copied', cure=cure)
+
+
+class Opened:
+    """
+    What the native core has opened, which is closed when nothing is left that needs it.
+
+    It stays open when Python ends: threads and what runs at exit may still use it.
+    """
+
+    def __init__(self, handle: int, close: Callable[[int], object], *needs: object) -> None:
+        self.handle = Address(handle)
+        self._needs = needs  # which outlive it
+        weakref.finalize(self, close, handle).atexit = False
+
+
+def address(array: NDArray[Any]) -> Address:
     """Return where the numbers of an array begin."""
-    return int(array.ctypes.data)
+    return Address(array.ctypes.data)
 
 
 class LastAddress:
@@ -106,9 +134,9 @@ class LastAddress:
 
     def __init__(self) -> None:
         self._array: NDArray[Any] | None = None
-        self._at = 0
+        self._at = Address(0)
 
-    def of(self, array: NDArray[Any]) -> int:
+    def of(self, array: NDArray[Any]) -> Address:
         """Return where the numbers of an array begin."""
         if array is not self._array:
             self._array = array

@@ -8,12 +8,11 @@ from collections.abc import Mapping
 import ctypes
 import struct
 from typing import Any
-import weakref
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.native.library import LIBRARY, VERSION
+from tree_sway.core.native.library import LIBRARY, Opened, VERSION
 from tree_sway.errors import FormatError
 
 _MAGIC = b'SWAYTREE'
@@ -83,10 +82,10 @@ class NativeModel:
 
     def __init__(self, content: bytes) -> None:
         error = ctypes.create_string_buffer(_ROOM)
-        self.handle = LIBRARY.sway_model_open(content, len(content), error, _ROOM)
-        if not self.handle:
+        handle = LIBRARY.sway_model_open(content, len(content), error, _ROOM)
+        if not handle:
             cure = 'convert the tree again by tree-sway convert'
             raise FormatError(error.value.decode(), where='model', cure=cure)
-        weakref.finalize(self, LIBRARY.sway_model_close, self.handle)
+        self.opened = Opened(handle, LIBRARY.sway_model_close)
         self.sizes = Sizes()
-        LIBRARY.sway_model_sizes(self.handle, ctypes.byref(self.sizes))
+        LIBRARY.sway_model_sizes(handle, ctypes.byref(self.sizes))

@@ -7,12 +7,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 import ctypes
 from typing import NamedTuple
-import weakref
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.native.library import address, LastAddress, LIBRARY
+from tree_sway.core.native.library import address, LastAddress, LIBRARY, Opened
 from tree_sway.core.native.model import NativeModel
 from tree_sway.errors import ParameterError
 
@@ -51,14 +50,6 @@ class States(NamedTuple):
     """History of the wind where gusts reach limbs one after another, (t, h)."""
 
 
-class _Owner:
-    """Closes a stand when neither it nor a view of its memory is left."""
-
-    def __init__(self, handle: int, models: tuple[NativeModel, ...]) -> None:
-        self._models = models  # which outlive the stand
-        weakref.finalize(self, LIBRARY.sway_stand_close, handle)
-
-
 class NativeStand:
     """
     Trees of some models, each at a place.
@@ -92,15 +83,16 @@ class NativeStand:
         trees['yaw'] = places[:, 3]
         trees['scale'] = places[:, 4]
         trees['speed'] = speeds
-        handles = (ctypes.c_void_p * len(models))(*(each.handle for each in models))
+        handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
-        self._handle = LIBRARY.sway_stand_open(
+        handle = LIBRARY.sway_stand_open(
             handles, len(models), address(trees), len(trees), 1, error, _ROOM
         )
-        if not self._handle:
+        if not handle:
             raise ParameterError(error.value.decode(), where='trees')
-        owner = _Owner(self._handle, self.models)
-        self.states = self._views(len(trees), owner)
+        opened = Opened(handle, LIBRARY.sway_stand_close, *self.models)
+        self._handle = opened.handle
+        self.states = self._views(len(trees), opened)
         self._counts = np.zeros(2, dtype=np.int64)
         self._wind = (ctypes.c_double * 3)()
         self._first_row = np.zeros((1, 2), dtype=np.int64)
@@ -108,12 +100,12 @@ class NativeStand:
         self._keys_at = LastAddress()
         self._poses_at = LastAddress()
 
-    def _views(self, count: int, owner: _Owner) -> States:
+    def _views(self, count: int, opened: Opened) -> States:
         """Return views of the states; they keep its memory."""
         stride, width = ctypes.c_size_t(), ctypes.c_size_t()
         first = LIBRARY.sway_state(self._handle, ctypes.byref(stride), ctypes.byref(width))
         memory = (ctypes.c_double * (count * stride.value)).from_address(first)
-        memory.owner = owner  # type: ignore[attr-defined]
+        memory.opened = opened  # type: ignore[attr-defined]
         self._rows = rows = np.ctypeslib.as_array(memory).reshape(count, stride.value)
         m = width.value
         scalars = rows[:, 6 * m :]

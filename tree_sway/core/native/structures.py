@@ -13,7 +13,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from tree_sway.core.native.library import address
+from tree_sway.core.native.library import Address, address
 
 
 def _fields(words: str, numbers: str = '') -> list[tuple[str, Any]]:
@@ -37,7 +37,7 @@ class Structure(ctypes.Structure):
         given = {name: _value(each) for name, each in fields.items()}
         super().__init__(**given)
         self._kept = fields
-        self.at = ctypes.addressof(self)
+        self.at = Address(ctypes.addressof(self))
         """Where it is."""
 
 

@@ -124,7 +124,8 @@ class SensorReadings:
 
         """
         for track in self._tracks:
-            track.heed()
+            if track.heed() and self._search is not None and self._search[0] is track:
+                self._search = None  # it looks at what the sensor measured before
         self._find_mounting()
         then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
         if then >= 0:

@@ -199,7 +199,7 @@ class SensorTrack:
         """Standard deviations of their noise in each sample, as measured."""
 
     def _uses(self) -> tuple[int, ...]:
-        given = self.sensor.quantities
+        given = self._quantities
         first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
         return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
 
@@ -261,8 +261,12 @@ class SensorTrack:
         """Whether there was no sample for longer than networks delay one."""
         return bool(self.native.absent > _ABSENT_AFTER)
 
-    def heed(self) -> None:
-        """Heed what has become of the sensor since the last step."""
+    def heed(self) -> bool:
+        """
+        Heed what has become of the sensor since the last step.
+
+        Returns whether it measures other quantities, of which no mounting is known.
+        """
         native, counts = self.native, self.sensor.counts
         counts.silent = native.silences
         if native.disagreements != counts.disagreed:
@@ -270,13 +274,15 @@ class SensorTrack:
             # A knock may have moved it: its mounting is found from what comes after.
             native.count = -round(_KNOCKED / self._dt)
             self._next_fit = round(LEARNING / self._dt)
-        if self.sensor.quantities != self._quantities:
-            self._quantities = self.sensor.quantities
-            self.alignment = None
-            native.in_use = native.is_mounted = native.is_refused = native.count = 0
-            native.is_awaited = 1
-            native.excess = 1.0
-            self._next_fit = round(LEARNING / self._dt)
+        if (given := self.sensor.quantities) == self._quantities:
+            return False
+        self._quantities = given
+        self.alignment = None
+        native.in_use = native.is_mounted = native.is_refused = native.count = 0
+        native.is_awaited = 1
+        native.excess = 1.0
+        self._next_fit = round(LEARNING / self._dt)
+        return True
 
     @property
     def is_due(self) -> bool:

@@ -60,12 +60,13 @@ class WindHistory:
     @property
     def time(self) -> float:
         """Time of the history at the end of the last step in [s]."""
-        return float(self._run[int(self._at[0]), 0])
+        return float(self._run[int(self._at[0]) % len(self._run), 0])
 
     def rows(self) -> Floats:
         """Return a copy of time [s] and run [m] at the ends of steps, the oldest first, (r, 4)."""
         last, count = self._at.astype(np.int64).tolist()
-        rows = np.arange(last - max(count, 1) + 1, last + 1) % len(self._run)
+        count = min(max(count, 1), len(self._run))  # whatever a state has
+        rows = np.arange(last - count + 1, last + 1) % len(self._run)
         return np.asarray(self._run[rows])
 
     def memory(self) -> tuple[Floats, ...]:

@@ -1,0 +1,126 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Stands of the native core: any wind, any history, copies, threads, and the end of Python."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+from tree_sway_lab.kinds.shoots import Drawing, towards
+
+from tree_sway.core.native.library import address, Opened
+from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
+from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.errors import ParameterError
+
+
+def stand_of(model, *, yaw=0.5, speed=1.0):
+    """Return a stand of one tree, whose steps are those of a frame."""
+    own = NativeModel(bytes_of(model.native_arrays()))
+    place = np.array([[0.0, 0.0, 0.0, yaw, 1.0]])
+    stand = NativeStand([own], np.zeros(1, dtype=np.int64), place, np.array([speed]))
+    stand.set_step(1 / 60)
+    return stand
+
+
+@pytest.fixture(scope='module')
+def model(fork):
+    return make_simulator(fork(), model=6, crown_coherence=0.5).models[0]
+
+
+@pytest.fixture(scope='module')
+def hanging():
+    to = Drawing(np.random.default_rng(11))
+    stem = to.shoot(np.array([0.0, 0.0, 1.0]), 3.0, (0.05, 0.03), 4)
+    for k in range(3):
+        to.shoot(towards(120.0 * k, 20.0), 1.4, (0.004, 0.002), 5, on=stem, node=3, rise=-25.0)
+    return make_simulator(to.tree('hanging'), model=6).models[0]
+
+
+@pytest.mark.parametrize(
+    ('wind', 'speed'),
+    [
+        ((1.7e308, -1.7e308, 0.0), 1.0),  # its sum is finite
+        ((1e200, 1e200, 0.0), 1.0),
+        ((1e20, 0.0, 0.0), 1e300),
+        ((np.nan, 0.0, 0.0), 1.0),
+        ((0.0, 0.0, -np.inf), 1.0),
+    ],
+)
+def test_a_wind_whose_square_is_not_finite_is_calm(model, hanging, wind, speed):
+    for each in (model, hanging):
+        stand = stand_of(each, yaw=np.pi / 4, speed=speed)
+        assert stand.step(np.array([wind])) == (0, 0)
+        assert not stand.states.wind.any()
+        assert np.isfinite(stand.states.history).all()
+
+
+@pytest.mark.parametrize('number', [0.0, 1e15, -1e308, np.inf, np.nan])
+def test_a_tree_goes_on_from_any_history_of_the_wind(model, number):
+    stand = stand_of(model)
+    history = stand.states.history[0]
+    history[:2] = 200.0
+    history[2::4] = 0.0
+    with np.errstate(all='ignore'):
+        history[3::4] = np.arange(len(history[3::4])) * number
+    for _ in range(3):
+        assert stand.step(np.array([[5.0, 0.0, 0.0]]))[1] == 0
+    assert np.isfinite(stand.states.wind).all()
+
+
+def test_nothing_that_holds_native_memory_is_copied_with_it(model):
+    simulator = make_simulator(model.tree, model=6)
+    for each in (simulator, stand_of(model), address(np.zeros(1))):
+        with pytest.raises(ParameterError, match='cannot be copied'):
+            copy.deepcopy(each)
+    for each in (address(np.zeros(1)), Opened(0, lambda _: None)):
+        with pytest.raises(ParameterError, match='cannot be copied'):
+            pickle.dumps(each)
+
+
+def test_two_threads_that_step_a_limp_tree_stay_within_its_memory(hanging):
+    stand = stand_of(hanging)
+    assert stand.models[0].sizes.is_stepped == AT_POSE
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+
+    def run():
+        for i in range(4000):
+            stand.set_step((1.0 + i % 3 * 0.1) / 60)
+            stand.step(np.array([[5.0, 0.0, 0.0]]))
+
+    threads = [threading.Thread(target=run) for _ in range(3)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    sys.setswitchinterval(before)
+    assert np.isfinite(stand.states.eta).all()
+
+
+AT_EXIT = """
+import atexit
+import numpy as np
+simulators = []
+def last():
+    taken = [np.ones(3000) for _ in range(3000)]
+    for _ in range(100):
+        simulators[0].step((5.0, 0.0, 0.0), 1 / 60)
+    print(np.isfinite(simulators[0].place()).all())
+atexit.register(last)
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.scene.make import make_simulator
+simulators.append(make_simulator(builtin_tree('goldcrest'), model=6))
+"""
+
+
+def test_a_tree_may_be_stepped_until_the_very_end_of_python():
+    run = subprocess.run([sys.executable, '-c', AT_EXIT], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (0, 'True\n'), run.stderr
