@@ -36,7 +36,7 @@ static class Program
                 }
                 catch (FormatException error)
                 {
-                    answer = error.Message;
+                    answer = error.Message.Replace('\n', ' ');
                 }
                 Console.WriteLine(Path.GetFileName(file) + " " + answer);
             }
