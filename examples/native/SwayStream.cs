@@ -77,7 +77,7 @@ public sealed class SwayStream : IDisposable
         public IntPtr Model;
     }
 
-    /// Connect to a server, with the token of its page if it has one, for frames per second.
+    /// Connect to a server, with the token of its page if it has one, for `rate` frames a second.
     public async Task Connect(string url, string token = "", int rate = 60)
     {
         if (token != "") socket.Options.SetRequestHeader("Authorization", "Bearer " + token);
