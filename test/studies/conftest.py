@@ -6,12 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+import json
 from pathlib import Path
-import socket
 import subprocess
 import sys
+import time
 
 import pytest
+
+_PATIENCE = 120.0
+"""Longest wait for a process of a cluster to start [s], on a busy machine."""
 
 
 class SeparateCluster:
@@ -20,13 +24,16 @@ class SeparateCluster:
     def __init__(self, folder: Path) -> None:
         self._stack = ExitStack()
         self._folder = folder
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            port = free.getsockname()[1]
-        self.address = f'tcp://127.0.0.1:{port}'
         self.workers: list[subprocess.Popen[bytes]] = []
-        words = ('--host', '127.0.0.1', '--port', str(port), '--no-dashboard')
-        self._start('scheduler', 'dask_scheduler', *words)
+        file = folder / 'scheduler.json'
+        words = ('--host', '127.0.0.1', '--port', '0', '--no-dashboard')
+        started = self._start('scheduler', 'dask_scheduler', *words, '--scheduler-file', str(file))
+        end = time.monotonic() + _PATIENCE
+        while not (file.is_file() and file.read_text().endswith('}')):
+            assert started.poll() is None, 'the scheduler ended'
+            assert time.monotonic() < end, f'no scheduler within {_PATIENCE:g} s'
+            time.sleep(0.05)
+        self.address: str = json.loads(file.read_text())['address']
 
     def start_worker(self) -> subprocess.Popen[bytes]:
         number = len(self.workers)
@@ -38,8 +45,8 @@ class SeparateCluster:
         """Wait until the scheduler knows all workers that were started."""
         import distributed
 
-        with distributed.Client(self.address, set_as_default=False) as client:
-            client.wait_for_workers(len(self.workers), timeout=120.0)
+        with distributed.Client(self.address, set_as_default=False, timeout=_PATIENCE) as client:
+            client.wait_for_workers(len(self.workers), timeout=_PATIENCE)
 
     def _start(self, name: str, module: str, *words: str) -> subprocess.Popen[bytes]:
         place = self._folder / name
