@@ -10,13 +10,28 @@ from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.rotation import cross_matrix, quaternion_rotated, turned_by
+from tree_sway.core.rotation import cross_matrix, quaternion_rotated
 from tree_sway.core.run.assembly import branch_records
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 
 CALM = np.zeros(3)
+
+
+def turned_by(rotations, vectors):
+    """
+    Turn vectors v (n, 3) by rotation vectors [rad], (n, 3), as the law of the loads does.
+
+    With h the axis times the tangent of half the angle (Rodrigues), by its series, it is
+    ``[(1 - h.h) v + 2 (h.v) h + 2 h x v] / (1 + h.h)``.
+    """
+    t = np.square(rotations).sum(axis=1, keepdims=True)
+    h = (0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)))) * rotations
+    h_square = np.square(h).sum(axis=1, keepdims=True)
+    along = (h * vectors).sum(axis=1, keepdims=True)
+    turned = (1.0 - h_square) * vectors + 2.0 * along * h + 2.0 * np.cross(h, vectors)
+    return turned / (1.0 + h_square)
 
 
 class Loaded:

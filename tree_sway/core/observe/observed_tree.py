@@ -92,7 +92,7 @@ class ObservedTree(SwaySimulator):
 
     Parameters
     ----------
-    tree, species, settings, cache, plain, **changes
+    tree, species, settings, cache, **changes
         Arguments of `make_simulator`. The model is a number of coordinates, or ``full``.
     at
         Place of each sensor by its name, as `place_on` takes it.
@@ -138,7 +138,6 @@ class ObservedTree(SwaySimulator):
         upwind: float = 0.0,
         submit: Submit | None = None,
         cache: ModelCache | None = PREPARED,
-        plain: bool = False,
         **changes: Any,
     ) -> None:
         chosen = settings_with(settings, changes)

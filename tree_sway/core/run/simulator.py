@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from tree_sway.core.run.tuning import LiveTuning, Tuning
     from tree_sway.core.wind.gust_travel import GustHistory
 
-_MOST_FREQUENCIES = 1e6
-
 Motion: TypeAlias = Callable[[], Floats]
 """Function that returns the present coordinates of trees in a basis, (t, m)."""
 

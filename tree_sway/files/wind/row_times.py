@@ -77,8 +77,11 @@ def _run_on(cells: Sequence[str]) -> bool:
     if not any(map(str.strip, cells)):
         return False
     seconds = times_of(cells).seconds
-    steps = np.sign(np.diff(seconds[np.isfinite(seconds)]))
-    return bool(np.isfinite(seconds).any()) and len({*steps[steps != 0.0]}) == min(len(steps), 1)
+    seconds = seconds[np.isfinite(seconds)]
+    if len(seconds) < 2:
+        return len(seconds) == 1
+    steps = np.diff(seconds)
+    return bool((steps > 0.0).any() != (steps < 0.0).any())
 
 
 def row_times(
