@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // How motion sensors correct a model: what they would measure by it, what they measure beyond it,
-// and the steady filter of the difference (`core/observe/steady_filter.py` has its equations).
+// and the steady filter of the difference (`twin/steady_filter.py` has its equations).
 // Nothing is read or written beyond the arrays whose sizes the structures state.
 #include <math.h>
 #include <string.h>

@@ -26,18 +26,14 @@ PACKAGES = {
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
     'errors': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'doorkeeper': 1,
-    'installed_models': 2, 'core': 3, 'files': 4, 'parameters': 5, 'sensors': 6, 'stream': 6,
-    'page': 7, 'pictures': 7, 'commands': 8, 'studies': 9,
+    'installed_models': 2, 'core': 3, 'growth': 4, 'twin': 4, 'simulation': 5, 'files': 6,
+    'parameters': 6, 'live': 7, 'stream': 7, 'page': 8, 'pictures': 8, 'commands': 9, 'forest': 10,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
     'arrays': 0, 'native': 1, 'rotation': 1, 'checks': 1, 'random_source': 1, 'tree': 1,
-    'wind': 2, 'beams': 2, 'oscillators': 2,
-    'growth': 3, 'leaves': 3, 'model': 3,
-    'setup': 4,
-    'run': 5,
-    'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,
-    'scene': 8,
+    'wind': 2, 'oscillators': 2, 'leaves': 3, 'model': 3, 'setup': 4, 'run': 5, 'fidelity': 6,
+    'scene': 7,
 }  # fmt: skip
 CORE_LIBRARIES = {'numpy', 'scipy', 'tree_sway'}
 NOT_IN_CORE = {

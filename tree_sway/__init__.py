@@ -20,16 +20,12 @@ from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tree_sway.core.growth.grow import grow as grow
-    from tree_sway.core.identification.calibration import calibrate as calibrate
     from tree_sway.core.model.settings import Settings as Settings
     from tree_sway.core.model.sway_model import SwayModel as SwayModel
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
     from tree_sway.core.scene.scene import Scene as Scene
     from tree_sway.core.scene.scene_simulator import Simulator as Simulator
-    from tree_sway.core.scene.simulate import simulate as simulate
-    from tree_sway.core.scene.sway_record import SwayRecord as SwayRecord
     from tree_sway.core.setup.prepare import prepare as prepare
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
     from tree_sway.core.tree.species import species_named as species_named
@@ -44,7 +40,11 @@ if TYPE_CHECKING:
     from tree_sway.files.trees.source import open_scene as open_scene
     from tree_sway.files.trees.source import open_tree as open_tree
     from tree_sway.files.wind.wind_file import read_wind as read_wind
+    from tree_sway.growth.grow import grow as grow
+    from tree_sway.simulation.simulate import simulate as simulate
+    from tree_sway.simulation.sway_record import SwayRecord as SwayRecord
     from tree_sway.stream.client import StreamClient as StreamClient
+    from tree_sway.twin.identification.calibration import calibrate as calibrate
 
 __version__ = '0.1.0'
 
@@ -52,14 +52,14 @@ _HOMES = {
     'PlacedTree': 'core.scene.placed_tree', 'Scene': 'core.scene.scene',
     'Settings': 'core.model.settings', 'Simulator': 'core.scene.scene_simulator',
     'Species': 'core.tree.wood', 'StreamClient': 'stream.client',
-    'SwayModel': 'core.model.sway_model', 'SwayRecord': 'core.scene.sway_record',
+    'SwayModel': 'core.model.sway_model', 'SwayRecord': 'simulation.sway_record',
     'Tree': 'core.tree.tree', 'TreeSwayError': 'errors',
-    'WindAverage': 'core.wind.averaging', 'calibrate': 'core.identification.calibration',
-    'grow': 'core.growth.grow', 'make_simulator': 'core.scene.make',
+    'WindAverage': 'core.wind.averaging', 'calibrate': 'twin.identification.calibration',
+    'grow': 'growth.grow', 'make_simulator': 'core.scene.make',
     'prepare': 'core.setup.prepare', 'read_model': 'files.models.model_file',
     'write_model': 'files.models.model_writer', 'open_scene': 'files.trees.source',
     'open_tree': 'files.trees.source',
-    'read_wind': 'files.wind.wind_file', 'simulate': 'core.scene.simulate',
+    'read_wind': 'files.wind.wind_file', 'simulate': 'simulation.simulate',
     'simulate_turbulence': 'core.wind.simulated.turbulence', 'species_named': 'core.tree.species',
     'tree_from_segments': 'core.tree.building', 'write_tree': 'files.export.tree_export',
 }  # fmt: skip

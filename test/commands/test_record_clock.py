@@ -15,7 +15,7 @@ import pytest
 from tree_sway.commands.record_clock import RecordClock
 from tree_sway.commands.record_wind import WindTable
 from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.sensors.reading import WindReading
+from tree_sway.live.reading import WindReading
 
 NOON = 1_800_000_000.0
 STEPS = [0.0, 0.0, -3600.0, -3600.0, 60.0, 60.0]

@@ -27,7 +27,7 @@ from tree_sway.commands import sensor_arguments  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.commands.sensor_arguments import HELP  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
-from tree_sway.sensors.registry import source_kinds  # noqa: E402
+from tree_sway.live.registry import source_kinds  # noqa: E402
 from tree_sway.stream.protocol import decode_frame  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -64,8 +64,8 @@ CHANGES = {
         "from tree_sway import species_named; print(species_named('ash').modulus)", '8500000000.0',
     ),
     'habit': (
-        'tree_sway/core/growth/broadleaf_forms.csv', 'ash,0.2,', 'elm,0.2,',
-        "from tree_sway.core.growth import forms; print('elm' in str(vars(forms)))", 'True',
+        'tree_sway/growth/broadleaf_forms.csv', 'ash,0.2,', 'elm,0.2,',
+        "from tree_sway.growth import forms; print('elm' in str(vars(forms)))", 'True',
     ),
     'turbulence': (
         'tree_sway/core/wind/simulated/turbulence.py',

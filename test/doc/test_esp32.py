@@ -10,9 +10,9 @@ import subprocess
 
 import pytest
 
-from tree_sway.sensors.motion.motion_json import read_motion_json
-from tree_sway.sensors.motion.motion_reading import MotionReading
-from tree_sway.sensors.transports.transport import Message
+from tree_sway.live.motion.motion_json import read_motion_json
+from tree_sway.live.motion.motion_reading import MotionReading
+from tree_sway.live.transports.transport import Message
 
 SKETCH = Path(__file__).resolve().parents[2] / 'examples' / 'esp32_imu' / 'esp32_imu.ino'
 #: Stand-ins of the libraries of the board: the sensor's registers hold known values.

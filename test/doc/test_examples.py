@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-from tree_sway.studies.plan import read_study
+from tree_sway.forest.plan import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'

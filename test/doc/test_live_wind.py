@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip('aiohttp')
 pytest.importorskip('serial')
 
-from tree_sway.sensors.registry import open_source, source_kinds  # noqa: E402
+from tree_sway.live.registry import open_source, source_kinds  # noqa: E402
 
 PAGE = Path(__file__).resolve().parents[2] / 'doc' / 'live_wind.md'
 TEXT = PAGE.read_text(encoding='utf-8')

@@ -16,7 +16,7 @@ import yaml
 
 from tree_sway import open_scene
 from tree_sway.core.model.settings import model_of, Settings
-from tree_sway.studies.plan import read_study
+from tree_sway.forest.plan import read_study
 
 HERE = Path(__file__).parent
 pages = SimpleNamespace(**runpy.run_path(str(HERE / 'test_pages.py')))

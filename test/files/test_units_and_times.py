@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import shorter_than
 from tree_sway.files.column_names import COLUMNS, is_name, name_and_unit, unit_in_name, UNITS
@@ -20,6 +19,7 @@ from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.simulation.simulate import simulate
 
 DIAMETERS = ('stem_diameter', 'stemDiameter', 'trunk_diameter', 'trunk diameter', 'stem_diam')
 

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import TransformStamped, Vector3Stamped  # noqa: E402, I100
 from rclpy.qos import QoSProfile, ReliabilityPolicy  # noqa: E402
 
-from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway_ros.nodes import wind as wind_node  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402

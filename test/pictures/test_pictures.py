@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.pictures.animation import animate_poses
 from tree_sway.pictures.pictures import picture_in_wind
 from tree_sway.pictures.plots import plot_wind_and_tip

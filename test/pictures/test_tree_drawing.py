@@ -8,9 +8,9 @@ from hypothesis.extra.numpy import arrays
 import numpy as np
 import pytest
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.pictures.tree_drawing import ELEVATION, seen
 
 POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))

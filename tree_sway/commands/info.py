@@ -32,19 +32,19 @@ from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.observe.sensor_advice import advised_places
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.season import in_season
-from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import LONGEST_NOTE, shown, TreeError
 from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.simulation.strength_use import StrengthUse
+from tree_sway.twin.sensor_advice import advised_places
 
 _GRAVITY = 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')

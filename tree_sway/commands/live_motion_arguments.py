@@ -14,8 +14,8 @@ from tree_sway.commands.motion_arguments import add_place_argument, sensors_and_
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.sensors.motion.live_motion import MotionSample
-    from tree_sway.sensors.motion.motion_feed import MotionFeed
+    from tree_sway.live.motion.live_motion import MotionSample
+    from tree_sway.live.motion.motion_feed import MotionFeed
 
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,9 +49,9 @@ def sensing(
         address.
 
     """
-    from tree_sway.sensors.motion.live_motion import LiveMotion
-    from tree_sway.sensors.motion.motion_feed import MotionFeed, PlacedSensor
-    from tree_sway.sensors.motion.motion_registry import open_motion
+    from tree_sway.live.motion.live_motion import LiveMotion
+    from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor
+    from tree_sway.live.motion.motion_registry import open_motion
 
     placed = []
     addresses = set[str]()

@@ -18,8 +18,8 @@ from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.wind.record import WindRecord
 
 if TYPE_CHECKING:
-    from tree_sway.sensors.live_wind import LiveWind
-    from tree_sway.sensors.reading import WindReading
+    from tree_sway.live.live_wind import LiveWind
+    from tree_sway.live.reading import WindReading
 
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
@@ -53,8 +53,8 @@ def listening(
     ``heard`` is called with each reading. A `ParameterError` reports a wrong address, or a record
     beside it.
     """
-    from tree_sway.sensors.live_wind import LiveWind
-    from tree_sway.sensors.registry import open_source
+    from tree_sway.live.live_wind import LiveWind
+    from tree_sway.live.registry import open_source
 
     if getattr(arguments, 'wind', None) is not None:
         raise ParameterError('both --sensor and --wind', cure='give one of the two')

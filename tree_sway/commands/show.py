@@ -28,11 +28,8 @@ from tree_sway.commands.page_controls import page_controls, sensor_place
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
-from tree_sway.core.growth.grow import grow
-from tree_sway.core.growth.stem_by_age import stem_of_age
 from tree_sway.core.leaves.calendar import is_bare, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
@@ -43,12 +40,16 @@ from tree_sway.files.motion.tree_history import refuse_no_history, TreeHistory
 from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files
+from tree_sway.growth.grow import grow
+from tree_sway.growth.stem_by_age import stem_of_age
+from tree_sway.live.motion.motion_feed import MotionFeed
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, RATE, Session
 from tree_sway.page.wind_source import WindSource
-from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import ControlPanel
+from tree_sway.twin.observed_scene import observed_scene
+from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
@@ -223,7 +224,9 @@ def build_scene(
         file = learning.file_of(scene, in_leaf) if learning else None
         if file is not None:
             scene = scene.of_species(file.opened.species)
-        twin = scene.observed(settings, places, RATE, has_band=True, submit=submit_beside)
+        twin = observed_scene(
+            scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
+        )
         if learning and file is not None:
             learning.follow(twin, file)
         return twin

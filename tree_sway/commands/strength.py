@@ -9,7 +9,7 @@ from dataclasses import replace
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.simulate import Rig
+from tree_sway.simulation.simulate import Rig
 
 
 def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.errors import ParameterError
 from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.simulation.strength_use import StrengthUse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,7 +16,6 @@ from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.tuning import LIVE
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
@@ -34,6 +33,8 @@ from tree_sway.files.motion.tree_history import TreeHistory
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
+from tree_sway.twin.observed_scene import observed_scene
+from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.worker import submit_beside
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
 from tree_sway_ros.nodes.state_publisher import StatePublisher
@@ -156,8 +157,13 @@ class SolverNode(TreeSwayNode):
         if self.values['learn']:
             source = self._open_learned(source, places)
         self.simulator: Simulator = (
-            source.observed(
-                settings, places, self.values['rate'], has_band=True, submit=submit_beside
+            observed_scene(
+                source,
+                settings,
+                at=places,
+                rate=self.values['rate'],
+                has_band=True,
+                submit=submit_beside,
             )
             if places
             else source.simulator(settings, **self.values.subset('tolerance'))

@@ -20,12 +20,12 @@ from tree_sway_lab.twin.true_tree import (
 )
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.sensor_place import place_on
 
 HOUR = round(3600.0 / DT)
 RESTING = round(20.0 / DT)

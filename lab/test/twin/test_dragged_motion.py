@@ -8,8 +8,8 @@ import numpy as np
 from tree_sway_lab.twin.true_tree import DT, tree_called
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.observe.dragged_motion import DraggedMotion
-from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.twin.dragged_motion import DraggedMotion
+from tree_sway.twin.observed_tree import ObservedTree
 
 WIND, STEPS = (7.0, 0.0, 0.0), 90
 

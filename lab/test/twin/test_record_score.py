@@ -17,13 +17,13 @@ from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 
 from tree_sway.commands.cli import main
 from tree_sway.core.arrays import Floats
-from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.motion.tree_record import RecordedSensor, TreeRecord, write_tree_record
+from tree_sway.growth.builtin import builtin_tree
+from tree_sway.twin.sensor_place import place_on
 
 DT, SECONDS, EPOCH = 1.0 / 60.0, 90, 1_790_000_000.0
 

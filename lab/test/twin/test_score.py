@@ -14,11 +14,11 @@ from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
 
 from tree_sway.commands.cli import main
-from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.growth.builtin import builtin_tree
+from tree_sway.twin.sensor_place import place_on
 
 RATE, FREQUENCY = 20.0, 0.5
 DT = 1.0 / 60.0

@@ -21,7 +21,7 @@ from tree_sway_lab.twin.true_tree import (
 )
 
 from tree_sway.commands.cli import main
-from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.twin.observed_tree import ObservedTree
 
 TIME = DT * np.arange(3000)
 TIPS = np.stack([np.sin(TIME), np.cos(1.3 * TIME), 0.0 * TIME], axis=1)[:, None]

@@ -19,9 +19,9 @@ from tree_sway_lab.validation.report import (
 )
 from tree_sway_lab.validation.section import Check, Effort, Section
 
-from tree_sway.core.strength import strength_band
 from tree_sway.core.tree.crown_allometry import AREA_SPREAD
 from tree_sway.errors import ParameterError
+from tree_sway.simulation import strength_band
 
 
 def test_sections_stand_in_order_and_are_replaced_alone() -> None:

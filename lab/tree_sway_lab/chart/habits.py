@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.commands.progress import bar
-from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import species_named
+from tree_sway.growth.grow import grow
 from tree_sway.pictures.plotting import new_figure, save_figure
 from tree_sway.pictures.tree_drawing import draw_trees
 

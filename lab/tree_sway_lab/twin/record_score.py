@@ -6,7 +6,7 @@
 Each sensor of the record is held out in turn, and what it measured is compared with what the model
 has at its place: the angular rate, or the acceleration where there is none, east and north. Rows:
 ``U^2``, the square of the wind, low-passed at the first frequency, and its change, with the gains
-that are best for this record; ``model``, the wind alone; ``sensors``, wind and all other sensors,
+that are best for this record; ``model``, the wind alone; ``live``, wind and all other sensors,
 where there are any. Columns are those of ``lab score``, which scores the displacement of a tip if
 there is one.
 """
@@ -20,9 +20,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
-from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.sensor_place import place_on, SensorPlace
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.season import LEAVES
@@ -34,6 +31,9 @@ from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.motion.tree_record import TreeRecord
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.twin.alignment import align, Alignment, GRAVITY
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.sensor_place import place_on, SensorPlace
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway, low_passed, SwayComparison
 

@@ -5,7 +5,7 @@
 
 A record has a wind, the displacement of one tip over time, east and north in [m], and any number
 of motion sensors. Rows: ``U^2``, the square of the wind, low-passed at the first frequency, with
-the gains that are best for this record; ``model``, the wind alone; ``sensors``, wind and sensors.
+the gains that are best for this record; ``model``, the wind alone; ``live``, wind and sensors.
 Columns: correlation at the best lag, that lag, error over motion, amplitude, and the power in four
 bands of frequency, up to 0.5, 1.5, 4 and 10 times the first one, over the measured power.
 """
@@ -29,9 +29,9 @@ from tree_sway.commands.motion_arguments import add_motion_arguments, placed_mot
 from tree_sway.commands.wind_arguments import add_wind_arguments, opened_record
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.simulate import simulate
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.wind.sway_table import read_csv_sway
+from tree_sway.simulation.simulate import simulate
 from tree_sway_lab.twin.sway_comparison import BANDS, compare_sway, low_passed, SwayComparison
 
 _RATE = 60.0

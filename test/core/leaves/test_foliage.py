@@ -12,8 +12,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.growth import builtin
-from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import (
     foliage_of,
     joined_clusters,
@@ -27,6 +25,8 @@ from tree_sway.core.tree.look import Look
 from tree_sway.core.tree.species import leaf_traits, look_of, species_keys
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
+from tree_sway.growth import builtin
+from tree_sway.growth.grow import grow
 
 every_tree = pytest.mark.parametrize('name', builtin.BUILTIN_TREES)
 builtin_tree = cache(builtin.builtin_tree)

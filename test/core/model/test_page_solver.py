@@ -13,13 +13,13 @@ import pytest
 from tree_sway_lab.kinds.shoots import Drawing, towards
 from tree_sway_lab.validation.truth import SETTINGS, WOOD
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.sway_model import MEANINGS
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.models.model_file import read_model
 from tree_sway.files.models.model_writer import write_model
+from tree_sway.growth.builtin import builtin_tree
 
 HERE = Path(__file__).parent
 PAGE = (HERE.parents[2] / 'doc' / 'sway_model.md').read_text(encoding='utf-8')

@@ -11,11 +11,11 @@ import pytest
 
 from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.model.tree_state import digest_of
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import StateError
+from tree_sway.twin.observed_tree import ObservedTree
 
 DT = 1.0 / 60.0
 

@@ -18,8 +18,8 @@ from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
-from tree_sway.core.observe.sample_ring import _RING, CAPACITY
-from tree_sway.core.observe.sensor_readings import _KEPT, LATEST
+from tree_sway.twin.sample_ring import _RING, CAPACITY
+from tree_sway.twin.sensor_readings import _KEPT, LATEST
 
 NATIVE = Path(__file__).parents[3] / 'native'
 

@@ -115,7 +115,7 @@ def last():
         simulators[0].step((5.0, 0.0, 0.0), 1 / 60)
     print(np.isfinite(simulators[0].place()).all())
 atexit.register(last)
-from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
 simulators.append(make_simulator(builtin_tree('goldcrest'), model=6))
 """

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.beams.field_counts import ROOMS
+from tree_sway.core.model.field_counts import ROOMS
 from tree_sway.core.model.records import branch_layout, room_for_fields
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run import assembly

@@ -17,7 +17,7 @@ from tree_sway.core.setup.one_thread import _switches, one_thread
 PROGRAM = """
 import hashlib
 import numpy as np
-from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 tree = builtin_tree("benjamina")

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError, SpeciesError
+from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.twin.observed_tree import ObservedTree
 
 MOVING = [4, 'branch', 'full', 'observed']
 FEW = pytest.mark.xfail(

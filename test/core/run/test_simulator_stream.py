@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import LOAD_CLAMPED, OK, WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.errors import ParameterError
+from tree_sway.twin.observed_tree import ObservedTree
 
 DT = 1.0 / 60.0
 

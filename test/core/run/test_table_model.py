@@ -11,7 +11,6 @@ import pytest
 from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway_lab.example_trees import branch_order
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.simulator import WIND_REFUSED
@@ -19,6 +18,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.load_table import SPEEDS
 from tree_sway.core.setup.static_responses import direction, WindMoments
 from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -16,6 +15,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
+from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
 

@@ -16,9 +16,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tree_sway_lab.example_trees import forked_tree
 
-from tree_sway.core.beams.branch_model import TreeBeams
 from tree_sway.core.native.model import bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.branch_places import places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree

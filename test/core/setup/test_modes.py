@@ -12,11 +12,11 @@ import pytest
 from scipy.sparse import csc_matrix
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway.core.beams.branch_model import TreeBeams
-from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup import modes as modes_module
+from tree_sway.core.setup.beams.branch_model import TreeBeams
+from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.setup.matrices import Factors, reduce_tree
 from tree_sway.core.setup.modes import buckling_factor, natural_modes, refuse_buckling
 from tree_sway.core.setup.reductions import TreeReductions

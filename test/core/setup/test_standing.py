@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup import standing
+from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.setup.modes import buckling_factor, buckling_modes
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.standing import MARGIN, standing_tree

@@ -13,7 +13,6 @@ import pytest
 from scipy import linalg
 from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.state_basis import FULL_SCALE
 from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
@@ -21,6 +20,7 @@ from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENC
 from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
 from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.stream.protocol import FRAME_SIZE, quantised
 
 DT = 1.0 / 60.0
@@ -189,7 +189,7 @@ PROGRAM = """
 import hashlib
 import numpy as np
 from tree_sway.core.run.simulator_basis import basis_of
-from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
 sim = make_simulator(builtin_tree("goldcrest"), model=60)
 basis = basis_of(sim)

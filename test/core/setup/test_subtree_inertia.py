@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.beams.branch_model import TreeBeams
+from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.modes import natural_modes
 from tree_sway.core.setup.subtree_inertia import subtree_inertia

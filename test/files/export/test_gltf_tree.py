@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
@@ -22,6 +21,7 @@ from tree_sway.files.export.gltf_tree import morphing_tree, skinned_tree
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
+from tree_sway.growth.builtin import builtin_tree
 
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])

@@ -9,7 +9,6 @@ import zipfile
 import numpy as np
 import pytest
 
-from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
@@ -18,6 +17,7 @@ from tree_sway.files.export.breeze import in_breeze
 from tree_sway.files.export.tree_mesh import wood_mesh
 from tree_sway.files.export.usd_tree import branch_groups, influences, usd_of_tree
 from tree_sway.files.export.usd_writing import write_usd
+from tree_sway.growth.builtin import builtin_tree
 
 
 @pytest.fixture(scope='module')

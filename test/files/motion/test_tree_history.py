@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.sway_watch import SwayChange
-from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.motion.tree_history import TreeHistory
 from tree_sway.files.trees.source import open_tree
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.sway_watch import SwayChange
+from tree_sway.twin.tree_fit import TreeFit
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from tree_sway.commands.cli import main
-from tree_sway.core.observe.learned_tree import LearnedTree
-from tree_sway.core.observe.observed_tree import ObservedTree
-from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.learned_file import LearnedFile
 from tree_sway.files.trees.source import open_tree
+from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.tree_fit import TreeFit
 
 ONCE = LearnedTree(
     frequency=1.0, stiffness=0.8, stiffness_error=0.03, damping=1.5, damping_error=0.2,

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import calibrate, cli
-from tree_sway.core.identification.measured_sway import estimate_sway
 from tree_sway.errors import FormatError, TransportError
 from tree_sway.files.wind.phone import read_phone_sway
+from tree_sway.twin.identification.measured_sway import estimate_sway
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / 'examples' / 'data'

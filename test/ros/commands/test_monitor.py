@@ -10,7 +10,7 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from geometry_msgs.msg import Pose, PoseArray  # noqa: E402, I100
 
-from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway_ros.commands.monitor import StreamMonitor  # noqa: E402
 from tree_sway_ros.commands.text import status_line, summary  # noqa: E402
 from tree_sway_ros.process.topics import qos_profile, SEGMENT_POSES  # noqa: E402

@@ -11,9 +11,9 @@ pytestmark = pytest.mark.ros
 from rclpy.serialization import deserialize_message  # noqa: E402
 from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 
-from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402, I100
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
+from tree_sway.growth.builtin import builtin_tree  # noqa: E402, I100
 from tree_sway_ros.wire.markers import radius_classes, TreeMarkers  # noqa: E402
 
 TREE = builtin_tree('goldcrest')

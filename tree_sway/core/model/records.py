@@ -15,7 +15,7 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, RecordsOf
-from tree_sway.core.beams.field_counts import ROOMS
+from tree_sway.core.model.field_counts import ROOMS
 
 WIDTH = 16
 

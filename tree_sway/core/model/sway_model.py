@@ -26,9 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Singles
-from tree_sway.core.beams.field_counts import ROOMS
 from tree_sway.core.checks import GREATEST
 from tree_sway.core.model.drag_law import DragLaw
+from tree_sway.core.model.field_counts import ROOMS
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.spherical_harmonics import N_HARMONICS

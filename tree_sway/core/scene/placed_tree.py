@@ -7,14 +7,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import number_of, one_of, refuse_other_kind, within
 from tree_sway.core.model.settings import model_of, Settings
-from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.grown_tree import tree_and_species
 from tree_sway.core.tree.species import Species
@@ -52,7 +51,8 @@ class PlacedTree:
     leaf_on
         Whether it bears leaves; if None, by the scene or by its species.
     learned
-        What motion sensors told, which its species already has; None without.
+        What is known of this very tree, which its species already has, as a `LearnedTree` of the
+        house `twin`; carried along, None without.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class PlacedTree:
     species: Species = None  # type: ignore[assignment]
     model: int | str | None = None
     leaf_on: bool | None = None
-    learned: LearnedTree | None = None
+    learned: Any = None
 
     def __post_init__(self) -> None:
         """Check the values."""

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -21,11 +21,7 @@ from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
-from tree_sway.errors import inside, ParameterError
-
-if TYPE_CHECKING:
-    from tree_sway.core.observe.later_work import Submit
-    from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.errors import inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,49 +165,6 @@ class Scene(PlacedTrees):
         one = self.trees[0]
         where = one.settings_where_it_stands(chosen)
         return make_simulator(one.placed(), one.species, where, tolerance=tolerance, cache=cache)
-
-    def observed(
-        self,
-        settings: Settings,
-        at: Mapping[str, str | float],
-        rate: float,
-        *,
-        is_smoothed: bool = False,
-        has_band: bool = False,
-        submit: Submit | None = None,
-    ) -> ObservedTree:
-        """
-        Make the simulator of the one tree with motion sensors on the real one.
-
-        Parameters
-        ----------
-        settings
-            Settings, as for `simulator`.
-        at, rate, is_smoothed, has_band, submit
-            Arguments of `ObservedTree`.
-
-        Raises
-        ------
-        ParameterError
-            A scene of several trees, or an error of `ObservedTree`.
-
-        """
-        if not self.is_one_tree:
-            what = f'motion sensors on a scene of {len(self.trees)} trees'
-            raise ParameterError(what, where=self.name, cure='open the tree that they are on')
-        from tree_sway.core.observe.observed_tree import ObservedTree
-
-        one = self.trees[0]
-        return ObservedTree(
-            one.placed(),
-            one.species,
-            one.settings_where_it_stands(settings),
-            at=at,
-            rate=rate,
-            is_smoothed=is_smoothed,
-            has_band=has_band,
-            submit=submit,
-        )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
         """

@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.beams.branch_model import BranchModel
 from tree_sway.core.model.places import fill_places, Places
 from tree_sway.core.model.records import branch_layout
+from tree_sway.core.setup.beams.branch_model import BranchModel
 from tree_sway.core.setup.fitted_load import fill_loads
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.tree.tree import Tree

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.beams.beam import stacked
-from tree_sway.core.beams.branch_model import BranchModel
-from tree_sway.core.beams.wind_on_branch import exposure
 from tree_sway.core.rotation import cross, cross_matrix
+from tree_sway.core.setup.beams.beam import stacked
+from tree_sway.core.setup.beams.branch_model import BranchModel
+from tree_sway.core.setup.beams.wind_on_branch import exposure
 from tree_sway.core.setup.slanting_winds import SlantingWinds
 from tree_sway.core.setup.tree_motion import projectors
 

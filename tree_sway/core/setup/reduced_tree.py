@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
-from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.places import Places
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.beams.branch_model import BranchModel, TreeBeams
+from tree_sway.core.setup.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
 from tree_sway.core.setup.branch_places import places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree, Reduction

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.growth.grow import grow, height_of_stem, stem_range
 from tree_sway.core.scene.placed_tree import LARGEST, PlacedTree, SMALLEST
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.grown_tree import GrownTree, rooted
@@ -37,6 +36,7 @@ from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory
 from tree_sway.files.scenes.kind_classes import kind_classes, own_kinds
 from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.growth.grow import grow, height_of_stem, stem_range
 
 
 def is_stand_table(head: str, path: Path | None = None) -> bool:

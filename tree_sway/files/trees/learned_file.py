@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.observe.learned_tree import LearnedTree
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import Tree
@@ -20,10 +19,11 @@ from tree_sway.files.text_file import read_bytes
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.tree_yaml import read_yaml_tree
 from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
+from tree_sway.twin.learned_tree import LearnedTree
 
 if TYPE_CHECKING:
-    from tree_sway.core.observe.observed_tree import ObservedTree
-    from tree_sway.core.observe.tree_fit import TreeFit
+    from tree_sway.twin.observed_tree import ObservedTree
+    from tree_sway.twin.tree_fit import TreeFit
 
 _SUFFIXES = ('.yaml', '.yml')
 

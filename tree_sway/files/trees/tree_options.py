@@ -13,7 +13,6 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.growth.beyond_scan import grown_beyond, is_cut
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.setup.standing import standing_tree
 from tree_sway.core.tree.plausibility import refuse_implausible
@@ -23,6 +22,7 @@ from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.growth.beyond_scan import grown_beyond, is_cut
 
 _ENDS = ('start', 'end')
 _DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')

@@ -10,10 +10,10 @@ from tree_sway_lab.validation.section import Effort
 from tree_sway_lab.validation.sections import forestgales
 from tree_sway_lab.validation.sections.forestgales import inventory_with, measure, TREES
 
-from tree_sway.core.strength.critical_wind import ShareCurve
-from tree_sway.core.strength.strength_band import root_band, wood_band
 from tree_sway.core.wind.exposure import Exposure
-from tree_sway.studies.risk_kind import KindResult, RiskKind, SeasonCurves
+from tree_sway.forest.risk_kind import KindResult, RiskKind, SeasonCurves
+from tree_sway.simulation.critical_wind import ShareCurve
+from tree_sway.simulation.strength_band import root_band, wood_band
 
 
 def curve_to(critical: float, used: float) -> ShareCurve:

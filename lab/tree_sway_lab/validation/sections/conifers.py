@@ -8,13 +8,13 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.growth.grow import grow
-from tree_sway.core.growth.thickness import BREAST_HEIGHT
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
+from tree_sway.growth.grow import grow
+from tree_sway.growth.thickness import BREAST_HEIGHT
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
 CONIFERS = ('spruce', 'sitka', 'pine', 'douglas_fir')

@@ -1,0 +1,287 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree on the page follows a live sensor, says so, and goes on without it."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+import threading
+import time
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
+
+from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
+
+from tree_sway.commands import show  # noqa: E402
+from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.commands.learn_argument import Learning  # noqa: E402
+from tree_sway.commands.page_controls import page_controls  # noqa: E402
+from tree_sway.core.arrays import Floats  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
+from tree_sway.core.tree.species import species_named  # noqa: E402
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.files.trees.source import open_tree  # noqa: E402
+from tree_sway.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.live.motion import motion_feed  # noqa: E402
+from tree_sway.live.motion.live_motion import MotionSample  # noqa: E402
+from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: E402
+from tree_sway.page.session import Choices, Session  # noqa: E402
+from tree_sway.page.wind_source import RecordedWind  # noqa: E402
+from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
+from tree_sway.twin.sensor_place import place_on  # noqa: E402
+from tree_sway.twin.tree_fit import TreeFit  # noqa: E402
+
+DT, SECONDS = 1.0 / 60.0, 50
+TREE = builtin_tree('goldcrest')
+SEGMENT = place_on(TREE, f'{TREE.branch_names[0]}:0.7').segment
+BEGAN = 5000.0
+"""Time of this machine at which the session begins in [s]."""
+
+
+class Truth(NamedTuple):
+    """Wind (n, 3), displacement of the tip (n, 3), and what a sensor measures."""
+
+    wind: Floats
+    tips: Floats
+    motion: SensedMotion
+
+
+@cache
+def truth() -> Truth:
+    """Sway a softer tree in a wind of which the anemometer, away from it, misses a part."""
+    softer = replace(species_named('goldcrest'), modulus=6.0e9)
+    sim = make_simulator(TREE, softer, crown_coherence=0.3)
+    rng = np.random.default_rng(31)
+    wind = simulate_turbulence(4.0, rate=60.0, duration=SECONDS, rng=rng)
+    missed = simulate_turbulence(4.0, rate=60.0, duration=SECONDS, rng=rng)
+    there = wind + 0.7 * (missed - missed.mean(axis=0))
+    tips, poses = np.empty((len(wind), 3)), np.empty((len(wind), 7))
+    for k, each in enumerate(there):
+        sim.step(each, DT)
+        tips[k] = sim.tip_displacement
+        poses[k] = sim.place()[SEGMENT]
+    return Truth(wind, tips, SimulatedSensor(rate=100.0).measured(poses, DT, rng))
+
+
+class Sensor:
+    """The part of a live sensor that a feed reads, on a clock of its own."""
+
+    name, problem, note = 'phone', '', ''
+
+    def __init__(self) -> None:
+        self.now = BEGAN
+        motion = truth().motion
+        self._left = list(zip(*motion, strict=True))
+        self.ends_at = np.inf
+
+    def drain(self) -> list[MotionSample]:
+        """Return what came up to now, 40 ms late."""
+        found = []
+        while self._left and self._left[0][0] + 0.04 <= self.now - BEGAN:
+            at, force, spin = self._left.pop(0)
+            if at < self.ends_at:
+                found.append(MotionSample(BEGAN + at, tuple(force), tuple(spin), None))
+        return found
+
+
+class Sink:
+    """Takes what a session publishes, in place of a server."""
+
+    def describe(self, *_: Any) -> None:
+        """Take a description."""
+
+    def publish(self, _: bytes) -> None:
+        """Take a frame."""
+
+    def __init__(self) -> None:
+        self.messages: list[Any] = []
+
+    def announce(self, message: Any, *_: Any) -> None:
+        """Take a message."""
+        self.messages.append(message)
+
+
+@pytest.fixture
+def sensor(monkeypatch: pytest.MonkeyPatch) -> Sensor:
+    made = Sensor()
+    monkeypatch.setattr(motion_feed.time, 'monotonic', lambda: made.now)
+    return made
+
+
+def show_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    show.add_arguments(parser)
+    return parser.parse_args(['goldcrest'])
+
+
+def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
+    """Step a session with the wind of the truth; its tip displacement at each step."""
+    wind = truth().wind
+    record = RecordedWind(DT * np.arange(len(wind)), wind)
+    arguments = show_arguments()
+    feed = MotionFeed(placed)
+    session = Session(
+        lambda wanted: show.build_scene(wanted, arguments, feed.places),
+        Choices('goldcrest'),
+        record,
+        motion=feed,
+    )
+    session._server = Sink()  # type: ignore[assignment]
+    tips = np.empty((until * 60, 3))
+    for k in range(len(tips)):
+        sensor.now += DT
+        session._step(0.0)
+        tips[k] = session._scene.simulator.tip_displacement  # type: ignore[union-attr]
+    return session, tips
+
+
+def error(tips: Floats) -> float:
+    """Dynamic error over the true motion of the last 15 s, at the best of some delays."""
+    found = tips[-15 * 60 :]
+    errors = []
+    for late in range(8):
+        end = len(tips) - late
+        wanted = truth().tips[end - len(found) : end]
+        power = np.var(found - wanted, axis=0).sum() / np.var(wanted, axis=0).sum()
+        errors.append(float(np.sqrt(power)))
+    return min(errors)
+
+
+def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
+    _, alone = swayed(sensor, [])
+    sensor.now = BEGAN
+    session, tips = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')])  # type: ignore[arg-type]
+    assert error(tips) < 0.5 * error(alone)
+    status = session.status()['motion']
+    (told,) = status['sensors']
+    assert told['name'] == f'phone at segment:{SEGMENT}'
+    assert told['in_use']
+    assert told['problem'] == ''
+    low, high = status['band']
+    assert low < 0.0 < high < 0.5
+    assert told['rate'] == pytest.approx(100.0, rel=0.1)
+    assert 0.1 < told['residual'] < 3.0
+    assert 0.3 < status['explained'] < 0.95
+    learned = session._scene.simulator.learned
+    assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
+    print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
+
+
+def test_what_a_page_learns_is_kept_and_gone_on_with(
+    sensor: Sensor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    path = str(tmp_path / 'own.twin.yaml')
+    places = {'phone': f'segment:{SEGMENT}'}
+    arguments = show_arguments()
+    for run in (1, 2):
+        learning = Learning(path)
+        twin = show.build_scene(Choices('goldcrest'), arguments, places, learning)
+        assert isinstance(twin, ObservedTree)
+        fit = TreeFit(0.9, 1.2, 0.02, 0.2, 0.9, 0.2, 1.0)
+        monkeypatch.setattr(twin.observer._fit, 'found', fit)
+        learning.keep(twin)
+        found = open_tree(path)
+        assert found.learned is not None
+        assert found.learned.hours == pytest.approx(run)
+        # A tree that a viewer chooses learns nothing.
+        learning.keep(show.build_scene(Choices('goldcrest', count='2'), arguments, places))
+        learning.tell(twin)
+        assert f'own.twin.yaml: learned from {run} h of motion' in capsys.readouterr().out
+    # A file that becomes impossible to write is told, and the tree goes on.
+    monkeypatch.setattr(twin.observer._fit, 'found', fit._replace(hours=2.0))
+    Path(path).unlink()
+    tmp_path.rmdir()
+    learning.keep(twin)
+    assert 'own.twin.yaml: cannot be written' in capsys.readouterr().err
+
+
+def test_a_viewer_moves_the_sensor_and_a_place_that_is_none_is_refused(sensor: Sensor) -> None:
+    session, _ = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')], until=1)  # type: ignore[arg-type]
+
+    def choose(place: str) -> None:
+        session.apply('sensor_at', place)
+        end = time.monotonic_ns() + 60 * 10**9
+        while session._builder.wanted is not None:
+            assert time.monotonic_ns() < end
+            threading.Event().wait(0.01)
+        sensor.now += DT
+        session._step(0.0)
+
+    choose('segment:5')
+    (told,) = session.status()['motion']['sensors']
+    assert told['name'] == 'phone at segment:5'
+    for _ in range(30):
+        sensor.now += DT
+        session._step(0.0)
+    twin = session._scene.simulator
+    assert next(iter(twin.sensors.values())).counts.accepted > 40  # at 100 Hz
+    choose('99')
+    assert 'the stem has no height' in session._server.messages[-1]['refused']['reason']
+    assert session.status()['motion']['sensors'][0]['name'] == 'phone at segment:5'
+
+
+def test_a_sensor_that_falls_silent_leaves_the_wind(sensor: Sensor) -> None:
+    sensor.ends_at = 30.0
+    session, tips = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')])  # type: ignore[arg-type]
+    (told,) = session.status()['motion']['sensors']
+    assert not told['in_use']
+    assert 'silent' in told['problem']
+    twin = session._scene.simulator
+    assert np.abs(twin._added).max() < 1e-6
+    assert np.isfinite(tips).all()
+
+
+def test_a_pause_does_not_move_the_clocks_apart(sensor: Sensor) -> None:
+    feed = MotionFeed([])
+    feed.feed(None, 10.0)
+    assert feed._ahead == pytest.approx(10.0 - BEGAN)
+    sensor.now += 60.0
+    feed.feed(None, 10.0 + DT)
+    assert feed._ahead == pytest.approx(10.0 + DT - BEGAN - 60.0)
+
+
+@pytest.mark.parametrize(
+    ('extra', 'words'),
+    [
+        (['--motion', 'udp:5006'], '1 --motion and 0 --at'),
+        (['--learn', 'own.yaml'], 'no motion sensor to learn from'),
+        (['--motion', 'udp:5006', '--at', '0.2', '--learn', 'own.glb'], 'cannot store'),
+        (['--motion', 'udp:5006', '--at', '0.2', '--learn', 'none/own.yaml'], 'no such folder'),
+        (['--motion', 'udp:5006', '--at', '99'], 'the stem has no height'),
+        (['--motion', 'udp:5006', '--at', '0.2', '--stand', '9'], 'stand of 9 trees'),
+        (['--motion', 'motion.csv', '--at', '0.2'], 'does not begin with a kind of source'),
+        (['--motion', 'udp:5006', '--at', '0.2'] * 2, 'two sensors at udp://:5006'),
+        (
+            '--motion udp:5006?name=low --at 0.1 --motion udp://:5006?name=high --at 0.2'.split(),
+            'two sensors at udp://:5006; a sensor has one place',
+        ),
+        (
+            '--motion udp:5006?name=stem --at 0.2 --motion udp:5007?name=stem --at 0.2'.split(),
+            'two sensors of one name',
+        ),
+        (
+            ['--motion', 'udp:5006', '--at', '0.2', '--model', 'auto'],
+            'give a number of coordinates',
+        ),
+    ],
+)
+def test_mistakes_are_told_with_the_cure(
+    extra: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(['show', 'goldcrest', '--port', '0', '--seconds', '0', *extra]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_viewers_cannot_add_a_sensor() -> None:
+    """No control of the page opens an address; only who starts the command does."""
+    names = {each.name for each in page_controls(Choices('goldcrest'), RecordedWind(
+        np.arange(3.0), np.ones((3, 3))))}  # fmt: skip
+    assert not names & {'motion', 'at', 'sensor'}

@@ -1,0 +1,137 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Packets of MQTT: of a real broker, too large, broken."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+import random
+import shutil
+import socket
+import struct
+import subprocess
+import threading
+import time
+import tracemalloc
+
+import pytest
+
+from tree_sway.live.transports.mqtt import _packet, _Packets, _text, Mqtt
+
+HELD = b'\x20\x02\x00\x00'  # CONNACK
+GRANTED = b'\x90\x03\x00\x01\x00'  # SUBACK
+
+
+def publish(topic: str, payload: bytes) -> bytes:
+    return _packet(0x30, _text(topic) + payload)
+
+
+@pytest.fixture
+def answering(server: socket.socket) -> Iterator[Callable[..., None]]:
+    """Send packets to whoever connects first; the connection stays open."""
+    links: list[socket.socket] = []
+
+    def run(parts: Sequence[bytes]) -> None:
+        links.append(server.accept()[0])
+        with suppress(OSError):
+            for part in parts:
+                links[0].sendall(part)
+
+    yield lambda *parts: threading.Thread(target=run, args=(parts,), daemon=True).start()
+    for link in links:
+        link.close()
+
+
+def test_packets_are_cut_at_any_byte() -> None:
+    rng = random.Random(3)
+    bodies = [rng.randbytes(rng.choice([0, 3, 127, 128, 20_000])) for _ in range(50)]
+    data = b''.join(_packet(0x30, body) for body in bodies)
+    packets, found, place = _Packets(int), [], 0
+    while place < len(data):
+        size = rng.choice([1, 2, 5, 1000, 65_536])
+        found += [body for _, body in packets.feed(data[place : place + size])]
+        place += size
+    assert found == bodies
+
+
+def test_a_message_of_256_mib_takes_no_memory() -> None:
+    packets = _Packets(int)
+    block = bytes(65_536)
+    tracemalloc.start()
+    found = list(packets.feed(b'\x30\xff\xff\xff\x7f'))  # 268,435,455 bytes follow
+    for _ in range(4095):
+        found += packets.feed(block)
+    found += packets.feed(block[:-1] + publish('wind', b'5'))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert found == [(3, _text('wind') + b'5')]
+    assert peak < 1_000_000
+
+
+def test_a_large_message_is_passed_over_and_the_next_is_read(hear, server, answering) -> None:
+    big = publish('wind', bytes(300_000))
+    answering(HELD, GRANTED, big, publish('wind', b'5.0'))
+    heard = hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1]))
+    heard.until(lambda: heard.data == [b'5.0'])
+    assert heard.messages[0].origin == 'wind'
+    assert heard.link.refused == {'a message of more than 65536 bytes': 1}
+
+
+@pytest.mark.parametrize(
+    ('answer', 'said'),
+    [
+        (b'\x20\x02\x00\x05', 'not authorised'),
+        (b'\x20\x02\x00\x04', 'user or password'),
+        (b'\x20\x02\x00\x63', 'code 99'),
+        (HELD + b'\x90\x03\x00\x01\x80', 'refuses the topic'),
+        (b'\x30\xff\xff\xff\xff\x01', 'not MQTT'),
+        (b'HTTP/1.1 400 Bad Request\r\n\r\n', 'does not answer|not MQTT|closed|reset'),
+    ],
+)
+def test_a_refusal_of_a_broker_is_told(hear, server, answering, answer: bytes, said: str) -> None:
+    answering(answer)
+    heard = hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1]))
+    pattern = said.split('|')
+    heard.until(lambda: any(each in text for text in heard.said for each in pattern))
+
+
+@pytest.mark.parametrize('seed', range(30))
+def test_no_bytes_break_the_reader_of_packets(seed: int) -> None:
+    rng = random.Random(seed)
+    packets = _Packets(int)
+    try:
+        for _ in range(200):
+            for _, body in packets.feed(rng.randbytes(rng.randrange(300))):
+                assert len(body) <= 65_536
+    except ConnectionError:
+        return
+
+
+@pytest.fixture
+def mosquitto(tcp_port: int) -> Iterator[int]:
+    program = shutil.which('mosquitto') or shutil.which('mosquitto', path='/usr/sbin')
+    if program is None:
+        pytest.skip('mosquitto is not installed')
+    with subprocess.Popen(
+        [program, '-p', str(tcp_port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ) as process:
+        yield tcp_port
+        process.terminate()
+
+
+def test_a_real_broker_is_subscribed(hear, mosquitto: int) -> None:
+    """It keeps a message for those who come later, so nobody has to wait for the subscription."""
+    connect = _packet(0x10, _text('MQTT') + struct.pack('>BBH', 4, 2, 60) + _text(''))
+    retained = _packet(0x31, _text('farm/wind') + b'6.5')
+    end = time.monotonic() + 10.0
+    while True:
+        try:
+            with socket.create_connection(('127.0.0.1', mosquitto), 1.0) as link:
+                link.sendall(connect)
+                assert link.recv(4) == HELD
+                link.sendall(retained + b'\xe0\x00')
+            break
+        except ConnectionRefusedError:
+            assert time.monotonic() < end
+    heard = hear(Mqtt('127.0.0.1', ('farm/#',), mosquitto))
+    heard.until(lambda: heard.data == [b'6.5'])
+    assert heard.messages[0].origin == 'farm/wind'

@@ -1,0 +1,50 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The ring of samples reads as numpy does from the whole record, and its memory is bounded."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.twin.sample_ring import CAPACITY, KEPT, SampleRing
+
+DT = 1.0 / 60.0
+ALL = np.ones(9, dtype=np.bool_)
+
+
+def test_samples_are_averaged_within_a_step_and_joined_elsewhere() -> None:
+    rng = np.random.default_rng(3)
+    times = np.cumsum(rng.uniform(0.002, 0.03, 6000))
+    times[4000:] += 2.0  # a gap
+    values = rng.normal(0.0, 3.0, (6000, 9))
+    sample = np.zeros(9)
+    ring, asked, kinds = SampleRing(sample, ALL), 0.1, set()
+    for now, each in zip(times.tolist(), values, strict=True):
+        sample[:] = each
+        assert ring.keep(now) == KEPT
+        while asked < now - DT:
+            before = int(np.searchsorted(times, asked)) - 1
+            asked = max(asked, times[before] + 0.02 * DT)  # not of the time of a sample
+            found = ring.read(asked, DT)
+            within = np.abs(times - asked) < 0.5 * DT
+            is_gap = times[before + 1] - times[before] > 0.25
+            kinds.add((is_gap, within.sum() > 1))
+            if within.sum() > 1:
+                np.testing.assert_allclose(found, values[within].mean(axis=0), atol=1e-12)
+            elif is_gap:
+                assert found is None
+            else:
+                expected = [np.interp(asked, times, column) for column in values.T]
+                np.testing.assert_allclose(found, expected, atol=1e-9)
+            asked += 0.0171
+    assert kinds == {(False, False), (False, True), (True, False)}
+
+
+def test_the_oldest_samples_make_room() -> None:
+    sample = np.zeros(9)
+    ring, count = SampleRing(sample, ALL), CAPACITY + 100
+    for k in range(count):
+        sample[:] = k % 7
+        assert ring.keep(float(k)) == KEPT
+    assert ring.read(99.0, DT) is None
+    np.testing.assert_array_equal(ring.read(count - 1.0, DT), (count - 1) % 7)

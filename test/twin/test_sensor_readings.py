@@ -1,0 +1,172 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What the native core reads of sensors: by the model, beyond it, late, silent or refused."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.alignment import Alignment, GRAVITY
+from tree_sway.twin.late_wind import LateWind
+from tree_sway.twin.motion_sensor import MotionSensor
+from tree_sway.twin.sensor_place import PlaceMotion, SensorPlace
+from tree_sway.twin.sensor_readings import SensorReadings
+from tree_sway.twin.sensor_track import as_felt, FoundMounting, sensed_rows, SensorTrack
+
+M, N, DT = 7, 4, 1.0 / 60.0
+REST = (0.0, 0.0, GRAVITY)
+
+
+def readings(count: int, seed: int = 0) -> tuple[SensorReadings, list[PlaceMotion], Floats]:
+    """Return readings of sensors on a drawn model, their places and its state (3, m)."""
+    rng = np.random.default_rng(seed)
+    law: Any = SimpleNamespace(
+        all_stiffness=rng.uniform(9.0, 90.0, M), all_damping=rng.random(M), count=N,
+        air_damping=rng.random(N),
+    )  # fmt: skip
+    places = [PlaceMotion(*rng.normal(size=(2, 3, M))) for _ in range(count)]
+    sensors = [MotionSensor(f's{k}', SensorPlace(0, 0.5)) for k in range(count)]
+    for each in sensors:
+        each._sample[:] = 0.0
+    tracks = [SensorTrack(each, 1.0, DT) for each in sensors]
+    state = rng.normal(size=(3, M))
+    return SensorReadings(law, tracks, places, DT, state, LateWind()), places, state
+
+
+def track_of(of: SensorReadings) -> SensorTrack:
+    return of._tracks[0]
+
+
+@pytest.mark.parametrize('count', [0, 1, 3])
+def test_measurements_are_rows_by_the_state(count: int) -> None:
+    of, places, state = readings(count)
+    assert of.read(0.0, 5, 4) == 5
+    law = of._unknown
+    for k, place in enumerate(places):
+        rows = sensed_rows(place, law.all_stiffness, law.all_damping)
+        np.testing.assert_allclose(of._sensed[5, k], rows @ state.ravel(), atol=1e-12)
+    np.testing.assert_allclose(of.forces, law.air_damping * state[1, :N] + state[2, :N])
+    assert not of._sensed[[4, 6]].any()
+    assert not of.is_known.any()
+
+
+@pytest.mark.parametrize('has_gravity', [True, False])
+def test_what_is_beyond_the_model_is_turned_into_the_frame_of_the_tree(has_gravity: bool) -> None:
+    of, (place,), state = readings(1)
+    track, rng = track_of(of), np.random.default_rng(1)
+    turn = Rotation.random(random_state=3).as_matrix()
+    scale, noise = np.array([GRAVITY, 0.02]), np.full(3, 0.1)
+    found = Alignment(turn, scale, has_gravity, 0.9, noise)
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    track.take(FoundMounting(found, rng.normal(size=9)))
+    sample = rng.normal(size=9)
+    track.sensor._sample[:] = sample
+    assert track.sensor.ring.keep(0.3) == 0
+    of.read(0.3, 0, -1)
+    assert of.is_known.all()
+    law = of._unknown
+    rows = as_felt(sensed_rows(place, law.all_stiffness, law.all_damping), has_gravity=has_gravity)
+    expected = found.motion(sample) - track.bias - rows @ state.ravel()
+    np.testing.assert_allclose(of.beyond[0], expected, atol=1e-12)
+    np.testing.assert_allclose(track.watched_motion, found.motion(sample)[:2], atol=1e-12)
+    np.testing.assert_array_equal(track._sensed[0], sample)
+    np.testing.assert_array_equal(track._computed[0], of._sensed[0, 0])
+    assert track.native.count == 1
+
+
+def test_a_sensor_is_silent_after_a_second_and_counted_once() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.sensor.offer(0.0, acceleration=REST)
+    track.heed()
+    track.native.is_mounted = track.native.in_use = 1
+    for step in range(180):
+        of.read(step * DT, step, step - 1)
+        if step * DT < 0.9:
+            assert track.in_use
+    track.heed()
+    assert track.is_silent
+    assert not track.in_use
+    assert track.sensor.counts.silent == 1
+    assert 'silent for 3 s' in track.problem
+
+
+def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.is_mounted = track.native.in_use = 1
+
+    def judged(size: float, seconds: float) -> float:
+        """Return the time until use begins or ends [s]."""
+        was = track.in_use
+        for step in range(round(seconds / DT)):
+            track.judge(size)
+            if track.in_use != was:
+                return step * DT
+        return seconds
+
+    assert judged(9.0, 60.0) == 60.0
+    # A running mean over 2 s goes from 9 to 16 of 30.
+    assert judged(30.0, 60.0) == pytest.approx(2.0 * np.log(21.0 / 14.0), abs=2 * DT)
+    track.heed()
+    assert track.sensor.counts.disagreed == 1
+    assert track.native.count == -300
+    # From 16 to 4 of 1, and 5 s more.
+    assert judged(1.0, 60.0) == pytest.approx(2.0 * np.log(15.0 / 3.0) + 5.0, abs=3 * DT)
+
+
+def lateness_of(arrivals: list[tuple[float, float]], seconds: float) -> int:
+    """Return the steps by which a sensor is read late; arrivals are (when, stamp), both in [s]."""
+    of, *_ = readings(1)
+    k = 0
+    for step in range(round(seconds / DT)):
+        time = step * DT
+        while k < len(arrivals) and arrivals[k][0] <= time:
+            track_of(of).sensor.ring.keep(arrivals[k][1])
+            k += 1
+        of.read(time, step, -1)
+    return int(of.native.late)
+
+
+@pytest.mark.parametrize(('delay', 'every'), [(0.0, 0.01), (0.04, 0.01), (0.1, 0.05), (0.2, 0.1)])
+def test_sensors_are_read_when_their_samples_are_there(delay: float, every: float) -> None:
+    arrivals = [(k * every + delay, k * every) for k in range(round(10.0 / every))]
+    found = lateness_of(arrivals, 10.0) * DT
+    assert delay + every - DT <= found + 1e-9
+    assert found <= delay + every + 1.5 * DT
+
+
+def test_silence_and_a_stall_leave_the_lateness() -> None:
+    arrivals = [(0.01 * k + 0.02, 0.01 * k) for k in range(1000)]
+    usual = lateness_of(arrivals, 10.0)
+    assert lateness_of(arrivals, 30.0) == usual
+    stalled = [(9.0 if 8.6 < at < 9.0 else at, stamp) for at, stamp in arrivals]
+    assert lateness_of(stalled, 10.0) <= usual + 7
+
+
+def test_samples_known_ahead_need_no_lateness() -> None:
+    assert lateness_of([(0.01 * k, 0.01 * k + 0.5) for k in range(1000)], 10.0) == 0
+
+
+def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() -> None:
+    of, _, _ = readings(1)
+    track: Any = track_of(of)
+    track.sensor.quantities = ('acceleration', 'rate')
+    of.read(0.0, 0, -1)
+    found = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1))
+    track.search = lambda _: iter([FoundMounting(found, np.zeros(9))])
+    track._next_fit = 0
+    of.read(DT, 1, 0)
+    track.sensor.quantities = ('acceleration', 'rate', 'orientation')
+    for step in range(2, 40):
+        of.read(step * DT, step, step - 1)
+        track._next_fit = 10**9
+    assert track.alignment is None
+    assert not track.in_use

@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A spectrum that is found over many steps is the one of the whole record."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import ShortTimeFFT
+
+from tree_sway.twin.sensor_spectrum import SensorSpectrum
+
+FREQUENCY, DT, FORCES = 1.0, 0.1, 3
+LENGTH = 400
+
+
+def test_it_is_the_mean_over_stretches_that_overlap_by_half() -> None:
+    rng = np.random.default_rng(6)
+    motion, force = rng.normal(size=(1000, 2)), rng.normal(size=(1000, FORCES)) + 5.0
+    spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
+    for each in zip(motion, force, strict=True):
+        spectrum.add(*each, each[0])
+    # The fifth half ends with the record: its stretch has not been transformed yet.
+    assert spectrum.count == 3
+    series = np.hstack([motion[:, :2], force])
+    window = np.hanning(LENGTH + 1)[:-1]
+    welch = ShortTimeFFT(window, LENGTH // 2, 1.0 / DT, phase_shift=None)
+    stretches = [slice(first, first + LENGTH) for first in (0, 200, 400)]
+    means = [series[each] - series[each].mean(axis=0) for each in stretches]
+    waves = [welch.stft(each.T, k_offset=LENGTH // 2, p0=0, p1=1)[..., 0] for each in means]
+    inside = np.isin(
+        np.arange(LENGTH // 2 + 1), np.round(spectrum.circular * LENGTH * DT / 2 / np.pi)
+    )
+    wanted = np.mean([each[:, None] * each[None].conj() for each in waves], axis=0)
+    np.testing.assert_allclose(
+        spectrum.products, np.moveaxis(wanted[..., inside], 2, 0), atol=1e-9 * np.abs(wanted).max()
+    )
+    frequencies = np.round(spectrum.watched_frequencies * LENGTH * DT).astype(int)
+    power = 3.0 * wanted[[0, 1], [0, 1]].real
+    np.testing.assert_allclose(spectrum.end_block().watched, power[:, frequencies].T, rtol=1e-9)
+
+
+def test_a_gap_begins_a_stretch_anew() -> None:
+    spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
+    still = np.zeros(2), np.zeros(FORCES), np.zeros(2)
+    for _ in range(300):
+        spectrum.add(*still)
+    assert spectrum.until_first == pytest.approx(10.0)
+    spectrum.skip()
+    assert spectrum.until_first == pytest.approx(LENGTH * DT)
+    for _ in range(LENGTH + 4 + FORCES):
+        assert spectrum.count == 0
+        spectrum.add(*still)
+    assert spectrum.count == 1
+    assert spectrum.until_first == 0.0

@@ -1,0 +1,121 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway risk``: the wind at which each tree of an inventory reaches its strength."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+import csv
+import io
+from pathlib import Path
+import sys
+import time
+
+from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands.exposure import add_exposure_arguments, refuse_spacing_in_the_open
+from tree_sway.commands.progress import bar
+from tree_sway.commands.row_file import RowFile
+from tree_sway.core.checks import within
+from tree_sway.errors import ParameterError
+from tree_sway.files.paths import path_of
+from tree_sway.files.scenes.inventory.inventory_file import inventory_table
+from tree_sway.files.scenes.inventory.read_inventory import inventory_of
+from tree_sway.files.text_file import read_head
+from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
+from tree_sway.forest.command import add_cluster_arguments, refuse_wrong_cluster
+from tree_sway.forest.risk import risk_rows, risk_work, RiskWork, Row
+from tree_sway.forest.runner import cores
+
+_LEFT_OUT = (
+    'rot, wounds and forks, wet or shallow soil and pruning are not included; '
+    'it is no verdict on a tree'
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('inventory', metavar='INVENTORY', help='trees: species, height or dbh')
+    parser.add_argument(
+        '-o', '--output', default='risk.csv', metavar='FILE',
+        help='table, .csv, a row per tree; written as it is computed (%(default)s)',
+    )  # fmt: skip
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes; one per core if left out'
+    )
+    add_cluster_arguments(parser)
+    add_exposure_arguments(parser, with_anemometer=False)
+    parser.add_argument(
+        '--seed', type=int, default=0, metavar='N', help='of grown trees and gusts (%(default)s)'
+    )
+    parser.add_argument('--force', action='store_true', help='write over a file that is there')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compute a row per tree, write the table."""
+    if arguments.workers is not None:
+        within('--workers', arguments.workers, 1, 1024)
+    within('--seed', arguments.seed, 0, 2**31)
+    if arguments.spacing is not None:
+        within('--spacing', arguments.spacing, 0.1, 100.0, 'm')
+    refuse_wrong_cluster(arguments)
+    output = path_of(arguments.output)
+    if output.suffix.lower() != '.csv':
+        raise ParameterError(f"'{output}' is no table", where='--output', cure='end it with .csv')
+    if not arguments.force:
+        refuse_overwriting(output, '--output')
+    refuse_unwritable(output)
+    path = path_of(arguments.inventory)
+    inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
+    is_open = {each or arguments.exposure for each in inventory.exposures} == {'open'}
+    if arguments.spacing is not None and is_open:
+        refuse_spacing_in_the_open()
+    for note in inventory.notes:
+        print(f'note: {note}', file=sys.stderr)
+    work = risk_work(
+        inventory, arguments.seed, exposure=arguments.exposure, spacing=arguments.spacing
+    )
+    workers = arguments.workers or cores()
+    print(
+        f'{len(inventory.names)} trees of {len(work.kinds)} kinds; {_LEFT_OUT}',
+        file=sys.stderr, flush=True,
+    )  # fmt: skip
+    began = time.monotonic()
+    results = _each_tree(work, workers, arguments.scheduler, arguments.deadline)
+    rows = _written(output, results, len(inventory.names))
+    _sort(output, rows)
+    n_failed = sum(row['critical_wind_10m [m/s]'] is None for row in rows)
+    failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
+    print(f'{output}: {len(rows)} trees{failed} in {time.monotonic() - began:.1f} s')
+    return 0
+
+
+def _written(output: Path, results: Iterator[Row], n_trees: int) -> list[Row]:
+    """Write rows as their kinds are done, so that an interrupted table can be read."""
+    rows = list[Row]()
+    file = RowFile(output)
+    try:
+        for _, row in zip(bar(range(n_trees), 'trees'), results, strict=True):
+            file.write(list(row), list(row.values()))
+            rows.append(row)
+            if file.failure:
+                break
+    finally:
+        file.close()
+    return rows
+
+
+def _each_tree(
+    work: RiskWork, workers: int, scheduler: str | None, deadline: float
+) -> Iterator[Row]:
+    for _, rows in risk_rows(work, workers=workers, scheduler=scheduler, deadline=deadline):
+        yield from rows
+
+
+def _sort(output: Path, rows: list[Row]) -> None:
+    """Write the finished table anew in the order of the inventory."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
+    writer.writeheader()
+    writer.writerows(sorted(rows, key=lambda row: row['line']))
+    write_text_whole(output, text.getvalue())

@@ -1,0 +1,209 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Samples of a live motion sensor, with times of this machine, and news for the terminal.
+
+What a second sender sends is refused, counted and named (`OneSender`). Samples whose clock jumps
+are refused until the clock has been compared again (`SenderClock`).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+import math
+import time
+from typing import NamedTuple
+
+from tree_sway.errors import shown
+from tree_sway.live.live_source import LiveSource
+from tree_sway.live.motion.motion_reading import MotionReading, Numbers
+from tree_sway.live.motion.motion_registry import OpenedMotion
+from tree_sway.live.motion.sender_clock import SenderClock
+from tree_sway.live.one_sender import OneSender
+from tree_sway.live.reading import Refusal
+from tree_sway.live.transports.transport import Message
+
+SLOWEST = 5.0
+"""Least number of samples per second [Hz] that follows a tree."""
+_QUEUE = 8192
+_SILENT = 5.0
+"""Time [s] without a good sample after which a sensor is stale."""
+_INCOMPLETE = 1.0
+"""Time [s] without a sample of all quantities after which those that come are taken as all."""
+_SHOWN_LETTERS = 60
+_PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
+"""Time [s] after which silence, or messages that are not understood, are told."""
+_COUNTED = 40
+"""Samples over which the rate is counted."""
+_LONGEST_PAUSE = 2.0
+
+
+class MotionSample(NamedTuple):
+    """A sample at a time of `time.monotonic` [s], with the quantities of `MotionReading`."""
+
+    time: float
+    acceleration: Numbers | None
+    rate: Numbers | None
+    orientation: Numbers | None
+
+
+class LiveMotion(LiveSource):
+    """
+    Samples of a source, from `start` to `stop`.
+
+    Parameters
+    ----------
+    opened
+        The source.
+    log
+        Function called with a line of news, from the source's thread.
+    heard
+        Function called with each sample, from that thread.
+
+    """
+
+    def __init__(
+        self,
+        opened: OpenedMotion,
+        log: Callable[[str], None],
+        *,
+        heard: Callable[[MotionSample], None] | None = None,
+    ) -> None:
+        source = opened.source
+        super().__init__(
+            source.transport,
+            log,
+            messages='messages',
+            expects=source.expects,
+            patience=_PATIENCE,
+            longest_pause=_LONGEST_PAUSE,
+        )
+        self.name = opened.name
+        """Name of the sensor for viewers."""
+        self.quantities: tuple[str, ...] = ()
+        """What its samples have."""
+        self._source = source
+        self._heard = heard
+        self._clock = SenderClock(source.ticks)
+        self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
+        self._arrivals: deque[float] = deque(maxlen=_COUNTED)
+        self._senders = OneSender()
+        self._sent = self._refused_at = -math.inf
+        self._cause = ''
+
+    def _is_live(self) -> bool:
+        return time.monotonic() - self._sent < _SILENT
+
+    @property
+    def rate(self) -> float:
+        """Samples per second [Hz], of the newest ones; 0 before two of them."""
+        arrivals = list(self._arrivals)
+        passed = arrivals[-1] - arrivals[0] if arrivals else 0.0
+        return (len(arrivals) - 1) / passed if passed > 0.0 else 0.0
+
+    @property
+    def problem(self) -> str:
+        """Why it does not move the tree as far as its line is concerned; empty if it may."""
+        if self._clock.problem:
+            return self._clock.problem
+        state = self.state
+        if state == 'live':
+            is_slow = 0.0 < self.rate < SLOWEST and len(self._arrivals) == _COUNTED
+            slow = f'{self.rate:.1f} samples per second are too few: set 20 or more'
+            return slow if is_slow else ''
+        if self._link.is_up:
+            if state == 'stale':
+                now = time.monotonic()
+                silence = f'{now - self._sent:.0f} s'
+                if now - self._refused_at < _SILENT:
+                    return f'all was refused for {silence}: {self._cause}'
+                return f'silent for {silence}: check battery and network'
+            if state == 'unknown' and not self.refused and not self.other:
+                return 'its clock is being compared'
+        return self._why_nothing()
+
+    @property
+    def note(self) -> str:
+        """Who else sends; empty if nobody does."""
+        return self._senders.problem or self._clock.mixture
+
+    def drain(self) -> list[MotionSample]:
+        """Return the samples since the last call."""
+        found = list[MotionSample]()
+        while self._samples:
+            found.append(self._samples.popleft())
+        return found
+
+    def _news(self) -> str:
+        return f'{self.name}: {self.problem}'
+
+    def _take(self, message: Message) -> None:
+        """Read a message; called by the link's thread."""
+        now = time.monotonic()
+        readings = self._source.read(message)
+        self.other += not readings
+        good = [each for each in readings if isinstance(each, MotionReading)]
+        for each in readings:
+            if isinstance(each, Refusal):
+                self._refuse(each.reason)
+        if not good:
+            return
+        origin = message.origin
+        before = self._senders.current
+        if not self._senders.admit(origin, now):
+            cause = f'another sender, {shown(origin, _SHOWN_LETTERS)}'
+            if self._senders.refused.get(origin) == 1:
+                self._log(f'{self.name}: refused {cause}, until {before} is silent')
+            self._refuse(cause, len(good))
+            return
+        if origin != before:
+            self._clock = SenderClock(self._source.ticks)
+        self._use(good, now)
+
+    def _use(self, readings: list[MotionReading], now: float) -> None:
+        """Bring samples to the clock of this machine, and pass them on."""
+        stamps = [each.time for each in readings if each.time is not None]
+        if stamps and not self._clock.note(max(stamps), now, min(stamps)):
+            if self._clock.ticks is not None:
+                mixture = self._clock.mixture
+                if mixture and mixture not in self.refused:
+                    self._log(f'{self.name}: {mixture}')
+                self._refuse(mixture or 'its clock jumped', len(readings))
+            elif self._clock.problem:
+                self._refuse('its clock is of an unknown unit', len(readings))
+            return
+        for each in readings:
+            is_whole = set(self.quantities) <= set(each.quantities)
+            if not is_whole and now - self._sent <= _INCOMPLETE:
+                self._leave_out(each.quantities)
+                continue
+            self._sent = now
+            at = now if each.time is None else self._clock.local(each.time)
+            sample = MotionSample(at, each.acceleration, each.rate, each.orientation)
+            self.accepted += 1
+            self._arrivals.append(at)
+            if not self.quantities or not is_whole:
+                self.quantities = each.quantities
+                measured = ' and '.join(_WORDS[name] for name in self.quantities)
+                self._log(f'{self.name}: {measured} come')
+            self._samples.append(sample)
+            if self._heard is not None:
+                self._heard(sample)
+
+    def _refuse(self, cause: str, count: int = 1) -> None:
+        self._cause, self._refused_at = cause, time.monotonic()
+        super()._refuse(cause, count)
+
+    def _leave_out(self, quantities: Sequence[str]) -> None:
+        """Refuse a sample without a quantity that others have."""
+        measured = ' and '.join(_WORDS[name] for name in quantities)
+        cause = f'{measured} alone: send all of a sample in one message'
+        if cause not in self.refused:
+            self._log(f'{self.name}: refused {cause}')
+        self._refuse(cause)
+
+
+_WORDS = {
+    'acceleration': 'acceleration', 'rate': 'angular rate', 'orientation': 'orientation',
+}  # fmt: skip

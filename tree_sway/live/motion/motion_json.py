@@ -1,0 +1,125 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Motion in JSON: one object per sample, or a list of them.
+
+``{"t": 12.34, "ax": 0.1, "ay": -0.2, "az": 9.8, "gx": 0.01, "gy": 0, "gz": 0}``, with any names
+that a table of motion may have, or three axes together: ``"acceleration": [0.1, -0.2, 9.8]``,
+``"linear_acceleration": {"x": 0.1, "y": -0.2, "z": 9.8}``. An orientation is ``qx``, ``qy``,
+``qz``, ``qw``, or four together. A value that is no number is kept as not a number, so that the
+sensor counts its refusal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+import math
+from typing import Any
+
+import numpy as np
+
+from tree_sway.files.column_names import motion_of, rank_of
+from tree_sway.files.time_stamps import dates
+from tree_sway.live.motion.motion_reading import MotionReading, Numbers
+from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.values import number
+from tree_sway.live.reading import Refusal
+from tree_sway.live.transports.transport import Message
+
+EXPECTS = (
+    'JSON with a time and acceleration or angular rate: '
+    '{"t": 1.25, "ax": 0.1, "ay": 0, "az": 9.8, "gx": 0, "gy": 0, "gz": 0}'
+)
+_KIND = 'JSON'
+_MOST = 500
+"""Largest number of samples in one message."""
+_LONGEST = 40
+_MOST_NAMES = 64
+_DEEPEST = 2
+_QUANTITIES = ('acceleration', 'rate', 'orientation')
+
+
+def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
+    """Read a message; nothing for one without motion."""
+    document = parse_json(message.data)
+    samples = document if isinstance(document, list) else [document]
+    if len(samples) > _MOST:
+        return [Refusal(_KIND, f'more than {_MOST} samples in a message')]
+    found = [_sample(each) for each in samples if isinstance(each, Mapping)]
+    return [each for each in found if each is not None]
+
+
+def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
+    """Return the sample of an object; None without motion."""
+    parts: dict[str, dict[str, float]] = {'acceleration': {}, 'rate': {}, 'orientation': {}}
+    time: float | None = None
+    has_time = False
+    for name, value in _leaves(document):
+        place = _place(name)
+        if place == ('time', ''):
+            has_time = True
+            time = _time(value)
+        elif place is not None:
+            known = number(value)
+            parts[place[0]][place[1]] = math.nan if known is None else known
+    acceleration, rate = (_axes(parts[name], 'xyz') for name in ('acceleration', 'rate'))
+    orientation = _axes(parts['orientation'], 'xyzw')
+    if acceleration is None and rate is None and orientation is None:
+        named = [name for name, axes in parts.items() if axes]
+        return Refusal(_KIND, f'{named[0]} without all of its axes') if named else None
+    if has_time and time is None:
+        return Refusal(_KIND, 'its time is neither a number nor a date')
+    return MotionReading(time, acceleration, rate, orientation)
+
+
+def _time(value: Any) -> float | None:
+    """Return a number of any unit, or the seconds of a date since 1970."""
+    found = number(value)
+    if found is None and isinstance(value, str):
+        times = dates([value[:_LONGEST]])
+        found = times.epoch if np.isfinite(times.seconds).all() else None
+    return found
+
+
+def _axes(found: Mapping[str, float], names: str) -> Numbers | None:
+    if any(axis not in found for axis in names):
+        return None
+    return tuple(found[axis] for axis in names)
+
+
+def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, Any]]:
+    """Yield values with their names, those of axes together with the axis behind it."""
+    for key, value in list(document.items())[:_MOST_NAMES]:
+        name = str(key)[:_LONGEST]
+        whole = _whole(name)
+        if whole and isinstance(value, list | tuple):
+            wanted = 'xyzw' if whole == 'orientation' else 'xyz'
+            if len(value) == len(wanted):
+                yield from (
+                    (f'{whole}.{axis}', each) for axis, each in zip(wanted, value, strict=True)
+                )
+        elif whole and isinstance(value, Mapping):
+            axes = {str(axis).lower(): each for axis, each in list(value.items())[:_MOST_NAMES]}
+            yield from ((f'{whole}.{axis}', axes[axis]) for axis in 'xyzw' if axis in axes)
+        elif isinstance(value, Mapping):
+            if depth < _DEEPEST:
+                yield from _leaves(value, depth + 1)
+        elif not isinstance(value, list):
+            yield name, value
+
+
+@lru_cache(4096)
+def _whole(name: str) -> str:
+    """Quantity of a name of all axes together, which is that of its axes without them."""
+    quantity = (motion_of(f'{name}_x') or ('',))[0]
+    return quantity if quantity in _QUANTITIES else ''
+
+
+@lru_cache(4096)
+def _place(name: str) -> tuple[str, str] | None:
+    """Quantity and axis of a name; None for any other."""
+    if rank_of(name, 'time') is not None:
+        return 'time', ''
+    quantity, _, axis = motion_of(name) or ('', '', '')
+    return (quantity, axis) if quantity in _QUANTITIES and axis in tuple('xyzw') else None

@@ -1,0 +1,268 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A phone with phyphox, whose remote access is on: its samples as they come.
+
+``/config`` tells which buffers the sensors of the opened experiment fill, and ``/get`` gives what
+is new in them: ``accX=12.5|acc_time`` are the values where the time is above 12.5 s (phyphox wiki,
+"Remote-interface communication"; version 1.1.8 and later). Experiments of acceleration with and
+without g, of the gyroscope, and any of one's own with several of them are read. An angular rate is
+interpolated to the times of the acceleration.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Mapping, Sequence
+import json
+import math
+from typing import Any, NamedTuple
+
+import aiohttp
+
+from tree_sway.live.motion.motion_reading import MotionReading, Numbers
+from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.values import number
+from tree_sway.live.reading import Refusal
+from tree_sway.live.transports.event_loop import run_until_over
+from tree_sway.live.transports.transport import Message, Receiver
+
+EXPECTS = 'the remote access of phyphox, with an experiment of acceleration or the gyroscope'
+_LARGEST = 4 * 2**20
+_TIMEOUT = 5.0
+_LOOK_AGAIN = 2.0
+"""Time [s] without a new sample after which the newest one is looked for: data may be cleared."""
+_WAITING = 2000
+_PATIENCE = 3.0
+"""Time [s] after which an experiment's sensor without any sample is one that the phone lacks."""
+_AHEAD = 2
+"""Samples by which a buffer may be longer than another: the phone answers while it fills them."""
+_SENSORS = (
+    ('acceleration', ('accelerometer', 'linear_acceleration')),
+    ('rate', ('gyroscope',)),
+)
+"""Quantities, and the sources of phyphox that have them, best first."""
+_KIND = 'phyphox'
+
+Sample = tuple[float, Numbers]
+
+
+class Buffers(NamedTuple):
+    """Names of the buffers of a sensor: three axes and the time."""
+
+    axes: tuple[str, str, str]
+    time: str
+
+
+class PhyphoxPhone:
+    """
+    Transport of the answers of a phone, and reader of them.
+
+    Parameters
+    ----------
+    url
+        Address that phyphox shows, without a path.
+    every
+        Time between two questions in [s].
+
+    """
+
+    def __init__(self, url: str, every: float) -> None:
+        self.url = url
+        self._every = every
+        self.silence = 10.0
+        self._buffers: dict[str, Buffers] = {}
+        self._waiting: dict[str, deque[Sample]] = {}
+        self._newest: dict[str, float] = {}
+        self._heard: set[str] = set()
+
+    def __str__(self) -> str:
+        """Return its address."""
+        return self.url
+
+    def listen(self, receiver: Receiver) -> None:
+        """Deliver each answer with new samples; a `ConnectionError` says what to change."""
+        run_until_over(self._poll(receiver), receiver)
+
+    async def _poll(self, receiver: Receiver) -> None:
+        timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
+        # Phones of some versions answer one request for each connection.
+        connector = aiohttp.TCPConnector(force_close=True)
+        async with aiohttp.ClientSession(timeout=timeout, connector=connector) as session:
+            self._begin(await self._document(session, '/config', {}))
+            receiver.opened()
+            loop = asyncio.get_running_loop()
+            heard = -math.inf
+            while True:
+                asked = loop.time()
+                if asked - heard > _LOOK_AGAIN:
+                    await self._look(session)
+                    heard = asked
+                answer = await self._document(session, '/get', self._question())
+                if self._note(answer):
+                    heard = asked
+                    receiver.deliver(Message(json.dumps(answer['buffer']).encode(), '/get'))
+                await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
+
+    def _begin(self, config: Any) -> None:
+        self._buffers = buffers_of(config)
+        if not self._buffers:
+            title = str(config.get('title', ''))[:40] if isinstance(config, dict) else ''
+            raise ConnectionError(
+                f"experiment '{title}' has neither acceleration nor gyroscope: open "
+                "'Acceleration (with g)' in phyphox, or one of your own with both"
+            )
+        self._waiting = {name: deque(maxlen=_WAITING) for name in self._buffers}
+        self._newest = {}
+        self._heard = set()
+
+    async def _look(self, session: aiohttp.ClientSession) -> None:
+        """Take the newest sample that is there now as the one to go on from."""
+        times = {each.time: '' for each in self._buffers.values()}
+        answer = await self._document(session, '/get', times)
+        status = answer.get('status') if isinstance(answer, dict) else None
+        if isinstance(status, dict) and status.get('measuring') is False:
+            raise ConnectionError('the measurement is paused: press play in phyphox')
+        for name, each in self._buffers.items():
+            values = values_of(answer, each.time)
+            self._newest[name] = values[-1] if values and math.isfinite(values[-1]) else 0.0
+
+    def _question(self) -> dict[str, str]:
+        asked: dict[str, str] = {}
+        for name, each in self._buffers.items():
+            after = f'{self._newest.get(name, 0.0):.9g}'
+            asked[each.time] = after
+            asked |= {axis: f'{after}|{each.time}' for axis in each.axes}
+        return asked
+
+    def _note(self, answer: Any) -> bool:
+        """Note the newest times of an answer; whether it has new samples."""
+        is_new = False
+        for name, each in self._buffers.items():
+            rows = rows_of(answer, each)
+            times = values_of(answer, each.time) if rows is None else [at for at, _ in rows]
+            known = [value for value in times if math.isfinite(value)]
+            if known:
+                self._newest[name] = known[-1]
+                is_new = True
+        return is_new
+
+    async def _document(
+        self, session: aiohttp.ClientSession, path: str, asked: Mapping[str, str]
+    ) -> Any:
+        try:
+            async with session.get(
+                f'{self.url}{path}', params=asked, allow_redirects=False
+            ) as answer:
+                if answer.status != 200:
+                    raise ConnectionError(f'HTTP {answer.status}: is it phyphox 1.1.8 or later?')
+                data = b''
+                async for block in answer.content.iter_any():
+                    data += block
+                    if len(data) > _LARGEST:
+                        raise ConnectionError(f'more than {_LARGEST} bytes')
+        except asyncio.TimeoutError:
+            raise ConnectionError(f'no answer within {_TIMEOUT:g} s') from None
+        except aiohttp.ClientConnectionError:
+            raise ConnectionError(
+                'no answer: is remote access on in phyphox, its screen lit and the phone in this '
+                'network?'
+            ) from None
+        document = parse_json(data)
+        if not isinstance(document, dict):
+            raise ConnectionError(f'its answer is no JSON: expected {EXPECTS}')
+        return document
+
+    def read(self, message: Message) -> Sequence[MotionReading | Refusal]:
+        """Read an answer; samples of the acceleration wait until the rate is known about them."""
+        document = {'buffer': parse_json(message.data)}
+        found = list[MotionReading | Refusal]()
+        for name, each in self._buffers.items():
+            rows = rows_of(document, each)
+            if rows is None:
+                return [Refusal(_KIND, f'buffers of the {name} differ in length')]
+            good = [row for row in rows if math.isfinite(row[0])]
+            found += [Refusal(_KIND, 'its time is no number')] * (len(rows) - len(good))
+            self._waiting[name].extend(good)
+        first, *others = (name for name in self._waiting if not self._is_missing(name))
+        if others:
+            return found + self._joined(self._waiting[first], self._waiting[others[0]])
+        found += [_reading(first, *each) for each in self._waiting[first]]
+        self._waiting[first].clear()
+        return found
+
+    def _is_missing(self, name: str) -> bool:
+        """Whether a sensor of the experiment sends nothing, as the phone has none."""
+        if name in self._heard or self._waiting[name]:
+            self._heard.add(name)
+            return False
+        spans = [each[-1][0] - each[0][0] for each in self._waiting.values() if each]
+        return max(spans, default=0.0) > _PATIENCE
+
+    @staticmethod
+    def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading | Refusal]:
+        """Read accelerations with the rate at their times, up to the newest rate."""
+        found = list[MotionReading | Refusal]()
+        while forces and rates and forces[0][0] <= rates[-1][0]:
+            at, force = forces.popleft()
+            while len(rates) > 1 and rates[1][0] < at:
+                rates.popleft()
+            if rates[0][0] <= at and len(rates) > 1:
+                found.append(MotionReading(at, force, _between(rates[0], rates[1], at)))
+        return found
+
+
+def _reading(quantity: str, time: float, values: Numbers) -> MotionReading:
+    if quantity == 'acceleration':
+        return MotionReading(time, values)
+    return MotionReading(time, None, values)
+
+
+def _between(before: Sample, after: Sample, at: float) -> Numbers:
+    share = (at - before[0]) / max(after[0] - before[0], 1e-9)
+    return tuple(a + share * (b - a) for a, b in zip(before[1], after[1], strict=True))
+
+
+def buffers_of(config: Any) -> dict[str, Buffers]:
+    """Return the buffers of acceleration and rate of an experiment, by ``/config``."""
+    inputs = config.get('inputs') if isinstance(config, dict) else None
+    sources: dict[str, Buffers] = {}
+    for each in inputs if isinstance(inputs, list) else ():
+        outputs = each.get('outputs') if isinstance(each, dict) else None
+        named: dict[str, str] = {}
+        for output in outputs if isinstance(outputs, list) else ():
+            if isinstance(output, dict):
+                named |= {str(key): str(name) for key, name in output.items()}
+        if {'x', 'y', 'z', 't'} <= named.keys():
+            axes = named['x'], named['y'], named['z']
+            sources.setdefault(str(each.get('source')), Buffers(axes, named['t']))
+    found: dict[str, Buffers] = {}
+    for quantity, kinds in _SENSORS:
+        known = next((sources[kind] for kind in kinds if kind in sources), None)
+        if known is not None:
+            found[quantity] = known
+    return found
+
+
+def rows_of(answer: Any, buffers: Buffers) -> list[Sample] | None:
+    """
+    Return the new samples of a sensor in an answer; None if its buffers differ in length by many.
+
+    All values of an answer are later than one moment, so buffers agree from their first value on.
+    """
+    times = values_of(answer, buffers.time)
+    columns = [values_of(answer, axis) for axis in buffers.axes]
+    lengths = [len(each) for each in (times, *columns)]
+    if max(lengths) - min(lengths) > _AHEAD:
+        return None
+    return list(zip(times, zip(*columns, strict=False), strict=False))
+
+
+def values_of(answer: Any, name: str) -> list[float]:
+    """Return the values of a buffer in an answer, not a number where there is none."""
+    buffers = answer.get('buffer') if isinstance(answer, dict) else None
+    held = buffers.get(name) if isinstance(buffers, dict) else None
+    values = held.get('buffer') if isinstance(held, dict) else None
+    known = (number(each) for each in (values if isinstance(values, list) else ()))
+    return [math.nan if each is None else each for each in known]

@@ -1,0 +1,140 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Lines of instruments of any maker, read by the first reader that recognises them.
+
+Sentences with a mark or a checksum come first, then JSON, then the makers' own lines; numbers and
+``name=value``, which many lines resemble, come last. A new reader is called in
+`InstrumentLines._read`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+import re
+
+from tree_sway.core.wind.limits import is_wind
+from tree_sway.files.wind.nmea import parse_nmea, SENTENCES
+from tree_sway.files.wind.sensor_line import SensorLine
+from tree_sway.files.wind.sonic_ascii import KINDS, parse_sonic
+from tree_sway.live.readers.json_options import names_of, unit_factor
+from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.readers.number_columns import columns_of, read_numbers
+from tree_sway.live.readers.wxt import read_wxt
+from tree_sway.live.readers.young import read_young
+from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
+from tree_sway.live.source_address import SourceAddress
+from tree_sway.live.transports.transport import Message
+
+LINE_KINDS = ('auto', *SENTENCES, *KINDS)
+"""Sentences that may be chosen where an instrument sends several."""
+_MOST_LINES = 64
+"""Number of lines of a datagram that are read."""
+EXPECTS = (
+    'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill, Vaisala WXT, Young, SDI-12, JSON, '
+    'name=value, or numbers as 5.3,270'
+)
+_PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z/]*)')
+
+
+@dataclass
+class InstrumentLines:
+    """
+    Reader of lines.
+
+    It keeps to the kind of the first good line, as others may measure from another direction.
+
+    Parameters
+    ----------
+    sentence
+        One of `LINE_KINDS` to read; ``auto`` is the kind of the first good line.
+    heading
+        Bearing of the bow or the north mark, clockwise from true north [rad].
+    declination
+        Magnetic declination, east positive [rad].
+    columns
+        Meaning of numbers in a line, as `columns_of`.
+    factor
+        Metres per second in the unit of a line without one.
+    names
+        Where the wind is in a line of JSON.
+
+    """
+
+    sentence: str = 'auto'
+    heading: float = 0.0
+    declination: float = 0.0
+    columns: Sequence[str] = ()
+    factor: float = 1.0
+    names: WindNames = field(default_factory=WindNames)
+    found: str = field(default='', init=False)
+    """First good kind; empty before it."""
+
+    @property
+    def reading(self) -> str:
+        """Kind that is read; empty before it is known."""
+        return self.found if self.sentence == 'auto' else self.sentence
+
+    def __call__(self, message: Message) -> Sequence[Reading]:
+        """Read the lines of a message."""
+        found = list[Reading]()
+        lines = message.data.decode('utf-8', 'replace').splitlines()
+        if len(lines) > _MOST_LINES:
+            found.append(Refusal('lines', f'more than {_MOST_LINES} lines in a message'))
+        for line in lines[:_MOST_LINES]:
+            if not line.strip():
+                continue
+            for each in self._read(line):
+                is_good = isinstance(each, WindReading) and is_wind(each.speed, each.up, 0.0)
+                if is_good and not self.reading:
+                    self.found = each.kind
+                if not self.reading or each.kind == self.reading:
+                    found.append(each)
+        return found
+
+    def _read(self, line: str) -> Iterator[Reading]:
+        """Read a line; nothing if no reader recognises it."""
+        heading = self.heading
+        parsed = parse_nmea(line, heading, self.declination) or parse_sonic(line, heading)
+        if parsed is not None:
+            yield _of_sensor_line(parsed)
+            return
+        if line.lstrip().startswith(('{', '[')):
+            document = parse_json(line.encode())
+            if document is not None:
+                yield from self.names.read(document, 'JSON')
+            return
+        reading = (
+            read_wxt(line, heading)
+            or read_young(line, heading, self.factor)
+            or read_numbers(line, self.columns, heading, self.factor)
+        )
+        if reading is not None:
+            yield reading
+        elif pairs := _PAIR.findall(line):
+            named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
+            yield from self.names.read(named, 'name=value')
+
+
+def _of_sensor_line(line: SensorLine) -> Reading:
+    """Make a reading; the reason of a refusal leaves out the line's own text."""
+    if line.velocity is None:
+        return Refusal(line.kind, line.refusal.split("'")[0].rstrip(': '))
+    return of_velocity(line.kind, line.velocity)
+
+
+def lines_of(address: SourceAddress) -> InstrumentLines:
+    """Make a reader from the options of an address; a `TreeSwayError` for a wrong one."""
+    sentence = address.text_of('sentence', 'auto')
+    if sentence not in LINE_KINDS:
+        raise address.error(f"sentence is '{sentence}'", f'use {", ".join(LINE_KINDS)}')
+    return InstrumentLines(
+        sentence,
+        address.angle('heading_degrees'),
+        address.angle('declination_degrees'),
+        columns_of(address.text_of('columns')),
+        unit_factor(address),
+        names_of(address),
+    )

@@ -1,0 +1,99 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Numbers in a line, by their order: ``5.3``, ``5.3,270``, and answers of SDI-12.
+
+One number is a speed, two are a speed and a direction in degrees; of more, the option ``columns``
+says which is which, as ``columns=direction,speed`` or ``columns=u,v,w``. An answer of SDI-12 has
+an address and signed values, ``0+332+000.04+00``; those of Gill are a direction, a speed and a
+status, or components and a status (WindSonic manual 1405-PS-0019, 14.5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+import re
+
+from tree_sway.errors import ParameterError
+from tree_sway.files.text_file import finite
+from tree_sway.live.readers.values import bearing_of, is_calm
+from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
+
+COLUMNS = 'speed direction gust u v w -'.split()
+"""Meanings of a column; components point east, north and up, the way the air goes."""
+KIND_PLAIN = 'numbers'
+KIND_SDI12 = 'SDI-12'
+_SDI12 = re.compile(r'\w((?:[+-]\d+(?:\.\d*)?){2,})(?:[@-\x7f]{3})?')
+_SIGNED = re.compile(r'[+-]\d+(?:\.\d*)?')
+_GAP = re.compile(r'[,;\s]+')
+_LABELS = re.compile(r'^\$|\x02|\x03|m/s', re.IGNORECASE)
+_ERROR = 999.0
+"""Gill's value for a direction or speed that could not be measured."""
+
+
+def columns_of(text: str) -> tuple[str, ...]:
+    """Read the option ``columns``; a `ParameterError` for an unknown one, or no speed."""
+    names = tuple(name.strip() for name in text.split(',')) if text else ()
+    unknown = [name for name in names if name not in COLUMNS]
+    if unknown or (names and 'speed' not in names and not {'u', 'v'} <= set(names)):
+        what = f"columns are '{text}'"
+        raise ParameterError(what, cure=f'use speed, or u and v, among {", ".join(COLUMNS)}')
+    return names
+
+
+def read_numbers(
+    line: str, columns: Sequence[str], heading: float, factor: float
+) -> Reading | None:
+    """Read a line; None if it has anything but numbers."""
+    answer = _SDI12.fullmatch(line.strip())
+    if answer is not None:
+        texts = _SIGNED.findall(answer[1])
+        kind = KIND_SDI12
+        columns = columns or _gill_columns(texts)
+    else:
+        texts = [cell for cell in _GAP.split(_LABELS.sub('', line).strip()) if cell]
+        kind = KIND_PLAIN
+        columns = columns or {1: ('speed',), 2: ('speed', 'direction')}.get(len(texts), ())
+    values = [finite(text) for text in texts]
+    if not values or None in values:
+        return None
+    if not columns:
+        return Refusal(kind, f'{len(values)} numbers; say which: columns=speed,direction')
+    if len(values) < len([each for each in columns if each != '-']):
+        return Refusal(kind, f'{len(values)} numbers for {len(columns)} columns')
+    by_name = dict(zip(columns, (value or 0.0 for value in values), strict=False))
+    return _reading(kind, by_name, heading, factor)
+
+
+def _gill_columns(texts: Sequence[str]) -> tuple[str, ...]:
+    """Meaning of the values of an instrument of Gill; a direction has no point."""
+    if len(texts) != 3 or '.' in texts[2]:
+        return ()
+    return ('gill_u', 'gill_v', 'status') if '.' in texts[0] else ('direction', 'speed', 'status')
+
+
+def _reading(kind: str, values: dict[str, float], heading: float, factor: float) -> Reading:
+    if values.get('status', 0.0) not in (0.0, 60.0):
+        return Refusal(kind, f'status is {values["status"]:g}, not 00')
+    if 'gill_u' in values:
+        # U is from south to north of the instrument, V from east to west.
+        values['u'], values['v'] = -values['gill_v'], values['gill_u']
+    if {'u', 'v'} <= set(values):
+        east = factor * values['u']
+        north = factor * values['v']
+        cosine = math.cos(heading)
+        sine = math.sin(heading)
+        turned = cosine * east + sine * north, cosine * north - sine * east
+        return of_velocity(kind, (*turned, factor * values.get('w', 0.0)))
+    speed = values['speed']
+    if speed < 0.0 or speed >= _ERROR:
+        return Refusal(kind, f'speed is {speed:g}')
+    bearing = None
+    if 'direction' in values:
+        bearing = bearing_of(values['direction'])
+        if bearing is None and not is_calm(speed):
+            return Refusal(kind, f'direction is {values["direction"]:g} degrees')
+        bearing = 0.0 if bearing is None else bearing + heading
+    gust = factor * values['gust'] if 'gust' in values else None
+    return WindReading(kind, factor * speed, bearing, gust=gust)

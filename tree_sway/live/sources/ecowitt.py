@@ -1,0 +1,67 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Stations that send to a server: Ecowitt, Froggit, Ambient, and all that know Weather Underground.
+
+Ecowitt posts a form with ``windspeedmph``, ``windgustmph`` and ``winddir``; in the protocol of
+Weather Underground the same names are in the query of a GET. Speeds are in miles per hour in both.
+A station sends every 8 to 60 s: a shorter interval than 20 s is the wind itself, others are means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from hashlib import sha256
+from urllib.parse import parse_qsl
+
+from tree_sway.doorkeeper import is_loopback
+from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.reading import Reading, Refusal
+from tree_sway.live.source_address import SourceAddress
+from tree_sway.live.source_kind import Source, SourceKind
+from tree_sway.live.transports.http_server import HttpServer
+from tree_sway.live.transports.transport import Message
+
+_KIND = 'upload'
+_MOST_FIELDS = 500
+_SHORTEST_PASSKEY = 8
+_NAMES = WindNames()
+
+
+def read_upload(message: Message) -> Sequence[Reading]:
+    """Read a form of the two protocols."""
+    try:
+        form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
+    except ValueError:
+        return [Refusal(_KIND, 'too many fields')]
+    named = dict(form)
+    if secret := named.pop('PASSKEY', ''):
+        named.setdefault('ID', f'station {sha256(secret.encode()).hexdigest()[:8]}')
+    return _NAMES.read(named, _KIND)
+
+
+def open_ecowitt(address: SourceAddress) -> Source:
+    """
+    Open a server on a port: ``ecowitt:8080``, for this machine alone.
+
+    ``host=0.0.0.0`` opens it to the network, for whoever sends the word in ``passkey_file``.
+    """
+    text = address.place
+    if not text.isdigit() or not 0 < int(text) < 65_536:
+        raise address.error('no port', 'give ecowitt:8080, and that port in the station')
+    host = address.text_of('host', '127.0.0.1')
+    passkey = address.secret('passkey_file')
+    if not is_loopback(host) and len(passkey) < _SHORTEST_PASSKEY:
+        raise address.error(
+            f'{host} is open to the network, without a passkey of {_SHORTEST_PASSKEY} letters',
+            'write one to a file, name it as passkey_file=FILE, and give it in the station: as '
+            'its password, or in its path, as /PASSKEY/',
+        )
+    server = HttpServer(int(text), host, passkey)
+    expects = 'the upload of Ecowitt or of Weather Underground, with windspeedmph'
+    return Source(server, read_upload, 'weather station', expects)
+
+
+SOURCES = (
+    SourceKind(('ecowitt',), 'ecowitt:PORT', 'a station that sends to this machine', open_ecowitt),
+)

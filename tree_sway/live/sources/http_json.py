@@ -1,0 +1,69 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""JSON of an HTTP server, requested now and then: Home Assistant, Davis WeatherLink Live, any."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from urllib.parse import parse_qsl, urlencode
+
+from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
+from tree_sway.live.readers.json_options import names_of
+from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.reading import Read, Reading
+from tree_sway.live.source_address import SourceAddress
+from tree_sway.live.source_kind import Source, SourceKind
+from tree_sway.live.transports.http_poll import HttpPoll
+from tree_sway.live.transports.transport import Message
+
+SHORTEST, LONGEST = 0.2, 86_400.0
+"""Interval of requests [s]."""
+OPTIONS = (
+    *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
+    *('name', 'mean', 'from_degrees'),
+)
+"""Options of ours in a query; others belong to the server."""
+_EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
+_KIND = 'JSON'
+
+
+def json_reader(names: WindNames) -> Read:
+    """Return a reader of documents."""
+
+    def read(message: Message) -> Sequence[Reading]:
+        document = parse_json(message.data)
+        return () if document is None else names.read(document, _KIND)
+
+    return read
+
+
+def open_http(address: SourceAddress) -> Source:
+    """
+    Open an address: ``http://host/state.json?speed=PATH&direction=PATH&every=60``.
+
+    ``token_file`` is a file with a token for the header ``Authorization``.
+    """
+    if not address.host:
+        raise address.error('no host', 'give http://host/path')
+    parts = address.parts
+    if not parts.fragment:
+        theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in OPTIONS]
+        address.options = {k: v for k, v in address.options.items() if k in OPTIONS}
+        parts = parts._replace(query=urlencode(theirs))
+    every = address.number('every', 60.0, SHORTEST, LONGEST)
+    token = address.secret('token_file')
+    headers = {'Authorization': f'Bearer {token}'} if token else {}
+    transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
+    interval = every if every >= LEAST_INTERVAL else 0.0
+    return Source(transport, json_reader(names_of(address)), address.host, _EXPECTS, interval)
+
+
+SOURCES = (
+    SourceKind(
+        ('http', 'https'),
+        'http://host/path?speed=PATH&direction=PATH&every=60',
+        'JSON of an HTTP server',
+        open_http,
+    ),
+)

@@ -1,0 +1,94 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Instruments with Modbus, such as most low-cost ultrasonic anemometers on RS-485.
+
+Makers differ in registers and scales: ``speed`` and ``direction`` are the addresses of the two,
+as in the manual; ``scale`` and ``direction_scale`` are m/s and degrees in one count. A register
+has a signed word of 16 bits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import re
+import struct
+
+from tree_sway.live.readers.values import bearing_of, is_calm
+from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.source_address import SourceAddress
+from tree_sway.live.source_kind import Source, SourceKind
+from tree_sway.live.transports.modbus import KINDS, Modbus, PORT
+from tree_sway.live.transports.transport import Message
+
+_PLACE = re.compile(r'(/[^\s:]+|COM\d+|[^/\s:]+)(?::(\d{1,7}))?')
+_KIND = 'Modbus'
+_LARGEST = 65_535
+_MOST = 60
+_BAUD = 9600
+_NO_DIRECTION = -1
+
+
+def open_modbus(address: SourceAddress) -> Source:
+    """
+    Open an instrument: ``modbus:HOST:502?...`` or ``modbus:/dev/ttyUSB0:9600?...``.
+
+    ``device`` is its number on the line, ``kind`` holding or input registers.
+    """
+    place = _PLACE.fullmatch(address.place)
+    if place is None:
+        raise address.error('no host or device', 'give modbus:HOST or modbus:/dev/ttyUSB0:9600')
+    speed = address.whole('speed', 0, 0, _LARGEST)
+    direction = address.whole('direction', _NO_DIRECTION, _NO_DIRECTION, _LARGEST)
+    scale = address.number('scale', 0.1, 1e-6, 1e3)
+    turn = address.number('direction_scale', 1.0, 1e-6, 1e3)
+    heading = address.angle('heading_degrees')
+    kind = address.text_of('kind', 'holding')
+    registers = [speed, direction] if direction != _NO_DIRECTION else [speed]
+    first = min(registers)
+    count = max(registers) - min(registers) + 1
+    if kind not in KINDS or count > _MOST:
+        raise address.error(
+            f'kind is {kind}, {count} registers', f'use {" or ".join(KINDS)}, up to {_MOST} apart'
+        )
+
+    def read(message: Message) -> Sequence[Reading]:
+        size = len(message.data) // 2
+        words = struct.unpack(f'>{size}h', message.data[: 2 * size])
+        if len(words) < count:
+            return [Refusal(_KIND, f'{len(words)} registers of {count}')]
+        value = scale * words[speed - first]
+        if value < 0.0:
+            return [Refusal(_KIND, f'speed is {value:g}')]
+        bearing = None
+        if direction != _NO_DIRECTION:
+            degrees = turn * words[direction - first]
+            bearing = bearing_of(degrees)
+            if bearing is None and not is_calm(value):
+                return [Refusal(_KIND, f'direction is {degrees:g} degrees')]
+            bearing = heading + (bearing or 0.0)
+        return [WindReading(_KIND, value, bearing)]
+
+    is_serial = place[1].startswith(('/', 'COM'))
+    number = int(place[2] or (_BAUD if is_serial else PORT))
+    transport = Modbus(
+        place[1],
+        first,
+        count,
+        kind,
+        address.whole('device', 1, 0, 247),
+        port=PORT if is_serial else number,
+        baud=number if is_serial else None,
+        every=address.number('every', 1.0, 0.02, 3600.0),
+    )
+    return Source(transport, read, f'Modbus {place[1]}', 'registers of speed and direction')
+
+
+SOURCES = (
+    SourceKind(
+        ('modbus',),
+        'modbus:/dev/ttyUSB0:9600?speed=0&direction=1&scale=0.01',
+        'an instrument with Modbus',
+        open_modbus,
+    ),
+)

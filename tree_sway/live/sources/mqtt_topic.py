@@ -1,0 +1,77 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A topic of an MQTT broker: Home Assistant, Zigbee, rtl_433, ChirpStack, The Things Network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from urllib.parse import unquote
+
+from tree_sway.live.readers.instrument_lines import lines_of
+from tree_sway.live.readers.values import bearing_of
+from tree_sway.live.reading import Read, Reading, WindReading
+from tree_sway.live.source_address import SourceAddress
+from tree_sway.live.source_kind import Source, SourceKind
+from tree_sway.live.transports.mqtt import Mqtt, PORT, TLS_PORT
+from tree_sway.live.transports.transport import Message
+
+
+def open_mqtt(address: SourceAddress) -> Source:
+    """
+    Open a topic: ``mqtt://host/topic``, of JSON or of plain numbers.
+
+    ``field`` is the path of the speed, as ``speed``; ``direction_topic`` is that of a direction
+    that comes by itself; ``user`` and ``password_file`` log in.
+    """
+    topic = unquote(address.parts.path.removeprefix('/'))
+    if 'field' in address.options:
+        address.options.setdefault('speed', address.options['field'])
+    address.text_of('field')
+    read: Read = lines_of(address)
+    vane = address.text_of('direction_topic')
+    transport = broker_of(address, (topic, vane) if vane else (topic,))
+    expects = 'JSON with a wind speed (say where: field=PATH), or a number'
+    return Source(transport, _WithVane(read, vane) if vane else read, topic, expects)
+
+
+def broker_of(address: SourceAddress, topics: tuple[str, ...]) -> Mqtt:
+    """Open topics of the broker of an address; a `ParameterError` without a host or a topic."""
+    if not address.host or not topics[0]:
+        raise address.error('no host or topic', 'give mqtt://host/topic')
+    is_encrypted = address.scheme == 'mqtts'
+    return Mqtt(
+        address.host,
+        topics,
+        address.port(TLS_PORT if is_encrypted else PORT),
+        address.text_of('user') or unquote(address.parts.username or ''),
+        address.secret('password_file') or unquote(address.parts.password or ''),
+        is_encrypted,
+    )
+
+
+@dataclass
+class _WithVane:
+    """Reader of speeds, with the newest direction of a topic of its own."""
+
+    read: Read
+    topic: str
+    bearing: float | None = field(default=None, init=False)
+
+    def __call__(self, message: Message) -> Sequence[Reading]:
+        if message.origin == self.topic:
+            self.bearing = bearing_of(message.data.decode('utf-8', 'replace'))
+            return ()
+        return [self._turned(each) for each in self.read(message)]
+
+    def _turned(self, reading: Reading) -> Reading:
+        if not isinstance(reading, WindReading):
+            return reading
+        return WindReading(reading.kind, reading.speed, self.bearing, gust=reading.gust)
+
+
+SOURCES = (
+    SourceKind(
+        ('mqtt', 'mqtts'), 'mqtt://host/topic?field=PATH', 'a topic of an MQTT broker', open_mqtt
+    ),
+)

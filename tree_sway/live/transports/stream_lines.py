@@ -1,0 +1,52 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Lines out of a stream of bytes, and a question that is sent to instruments that wait for one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import time
+
+from tree_sway.live.transports.lines import Lines, LONGEST
+from tree_sway.live.transports.transport import Message, Receiver
+
+READ_FOR = 0.1
+"""Interval at which a silent stream checks whether to end [s]."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """Bytes that an instrument answers, sent every some seconds [s]; none if they are empty."""
+
+    text: bytes = b''
+    every: float = 1.0
+
+
+NO_QUESTION = Question()
+"""For an instrument that sends by itself."""
+
+
+def deliver_lines(
+    receiver: Receiver,
+    read: Callable[[], bytes],
+    write: Callable[[bytes], object],
+    question: Question,
+) -> None:
+    """
+    Deliver the lines of a stream until the receiver is over.
+
+    ``read`` returns what has come within `READ_FOR`, maybe nothing.
+    """
+    lines = Lines()
+    due = time.monotonic()
+    while not receiver.is_over:
+        if question.text and time.monotonic() >= due:
+            write(question.text)
+            due = time.monotonic() + question.every
+        for line in lines.feed(read()):
+            receiver.deliver(Message(line))
+        if lines.dropped:
+            receiver.refuse(f'a line of more than {LONGEST} bytes', lines.dropped)
+            lines.dropped = 0
+        receiver.rest()

@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of a WebSocket, after a request that is sent first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from urllib.parse import urlsplit
+
+import aiohttp
+
+from tree_sway.live.transports.event_loop import run_until_over
+from tree_sway.live.transports.http_failure import failure_without_address
+from tree_sway.live.transports.transport import Message, Receiver
+
+_LARGEST = 2**18
+"""Largest message [bytes]; a larger one ends the connection."""
+_HEARTBEAT = 10.0
+"""Interval at which the server is asked for a sign of life [s]."""
+_CONNECT_FOR = 5.0
+
+
+@dataclass(frozen=True)
+class WebSocket:
+    """An address of the scheme ``ws`` or ``wss``, and a text to send when it is open."""
+
+    url: str
+    hello: str = ''
+    headers: Mapping[str, str] = field(default_factory=dict, repr=False)
+    silence: float = 30.0
+
+    def __str__(self) -> str:
+        """Return its address, without the query."""
+        parts = urlsplit(self.url)
+        return f'{parts.scheme}://{parts.netloc.rpartition("@")[2]}{parts.path}'
+
+    def listen(self, receiver: Receiver) -> None:
+        """Deliver each message; a `ConnectionError` for a server that speaks something else."""
+        with failure_without_address():
+            run_until_over(self._follow(receiver), receiver)
+
+    async def _follow(self, receiver: Receiver) -> None:
+        timeout = aiohttp.ClientTimeout(total=None, connect=_CONNECT_FOR)
+        async with (
+            aiohttp.ClientSession(timeout=timeout, headers=dict(self.headers)) as session,
+            session.ws_connect(self.url, heartbeat=_HEARTBEAT, max_msg_size=_LARGEST) as socket,
+        ):
+            receiver.opened()
+            if self.hello:
+                await socket.send_str(self.hello)
+            async for message in socket:
+                if message.type is aiohttp.WSMsgType.TEXT:
+                    receiver.deliver(Message(message.data.encode()))
+                elif message.type is aiohttp.WSMsgType.BINARY:
+                    receiver.deliver(Message(message.data))
+            raise ConnectionError('closed by the other side')

@@ -1,0 +1,97 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Motion of the coordinates without correction that the correction of others causes by drag.
+
+A stem that sways otherwise than in the wind alone moves its hanging twigs through the air, whose
+drag couples the coordinates of both. Without it, twigs would follow the corrected stem as they do
+in still air, which is another amplitude and phase::
+
+    x_u'' + c_u x_u' + k_u x_u = - (1 - t_u) sum over j of D_uj v_j
+
+v_j are the rates of the correction, D the drag per rate in the mean wind, t_u the share of the
+correction of u that is applied, and c_u, k_u damping, by wood and air, and stiffness.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LastAddress, LIBRARY
+from tree_sway.core.native.structures import NativeDragged
+from tree_sway.core.oscillators.propagator import held_propagator
+
+if TYPE_CHECKING:
+    from tree_sway.twin.disturbance import Disturbance
+    from tree_sway.twin.observer import Observer
+
+
+class DraggedMotion:
+    """
+    What the correction of an observer moves by drag.
+
+    Parameters
+    ----------
+    observer
+        The observer.
+    dt
+        Time step in [s].
+
+    """
+
+    def __init__(self, observer: Observer, dt: float) -> None:
+        self._observer = observer
+        self._dt = dt
+        m = len(observer.damping)
+        self._state = np.zeros((3, m))
+        self.motion = self._state[:2]
+        """Displacement and rate of each coordinate, (2, m)."""
+        self._law = np.zeros((2, 3, m))
+        self._drag = np.zeros((observer.count, m))
+        self._native = NativeDragged(
+            coordinates=m, corrected=observer.count, law=self._law,
+            drag=self._drag, trust=observer.trust, state=self._state,
+        )  # fmt: skip
+        self._given_at, self._out_at = LastAddress(), LastAddress()
+        self._found_for: tuple[Disturbance | None, Floats | None] = None, None
+
+    def step(self, correction: Floats, n_periods: int, out: Floats) -> None:
+        """
+        Move by some time steps.
+
+        Parameters
+        ----------
+        correction
+            Displacement and rate of the correction that is applied, (2, count).
+        n_periods
+            Number of time steps.
+        out
+            The correction with what it drags, of each coordinate, (2, m), written.
+
+        """
+        present = self._observer.forces, self._observer.damping
+        if any(now is not then for now, then in zip(present, self._found_for, strict=True)):
+            self._find_law()
+            self._found_for = present
+        given_at, out_at = self._given_at.of(correction), self._out_at.of(out)
+        LIBRARY.sway_drag(self._native.at, given_at, n_periods, out_at)
+
+    def _find_law(self) -> None:
+        """Find how the coordinates move in the present wind, with its drag per rate (m, m)."""
+        observer = self._observer
+        if observer.forces is None:
+            return
+        drag = observer.forces.drag
+        damping = observer.damping + np.diag(drag)
+        stiffness = observer.all_stiffness
+        self._law[:] = held_propagator(damping, stiffness, self._dt)
+        by_others = drag.copy()
+        np.fill_diagonal(by_others, 0.0)
+        self._drag[:] = -by_others[:, : observer.count].T
+
+    def reset(self) -> None:
+        """Return to rest."""
+        self._state[:] = 0.0

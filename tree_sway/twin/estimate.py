@@ -1,0 +1,76 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+State estimate of a steady-state filter: prediction and correction, in preallocated arrays.
+
+What a sensor tells arrives with its noise, at every step anew. The motion that is shown moves by
+the same law, and comes nearer to the estimate by a share of their difference at each
+step: noise is averaged, while free sway, which both follow alike, is not late.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.structures import NativeFilter, NativeReadings
+from tree_sway.twin.steady_filter import SteadyFilter
+
+
+class Estimate:
+    """
+    A filter, its state, and the innovations of the last steps.
+
+    Parameters
+    ----------
+    gains
+        Law and gains.
+    rows
+        Row of each measurement among the readings of all sensors, 9 of each, (p,).
+    old
+        Estimate from which it continues; from zero if None.
+
+    """
+
+    def __init__(self, gains: SteadyFilter, rows: Ints, old: Estimate | None = None) -> None:
+        self.gains = gains
+        m, (p, lag) = len(gains.backward), (len(rows), max(gains.backward.shape[1], 1))
+        self.state, self.calm = np.zeros((2, 3, m))
+        """Displacement, rate and disturbance of each coordinate, as told and calm, (3, m)."""
+        self.calm_at = address(self.calm)
+        if old is not None:
+            self.state[:], self.calm[:] = old.state, old.calm
+        self.innovations = np.zeros((lag, p))
+        """What the last steps had beyond what was expected, limited, the oldest first, (l, p)."""
+        self._backward = gains.backward.reshape(m, -1)
+        self._past = np.zeros(m)
+        self._native = NativeFilter(
+            coordinates=m, measurements=p, lag=lag,
+            law=np.ascontiguousarray(gains.law.step), sensed=gains.sensed.T.copy(),
+            gain=gains.gain.T.copy(), deviation=gains.deviation, row=rows, state=self.state,
+            calm=self.calm, innovations=self.innovations,
+        )  # fmt: skip
+
+    def advance(self, readings: NativeReadings, n_periods: int) -> None:
+        """Move by a number of steps, correct by sensors that are known, and judge these."""
+        LIBRARY.sway_correct(self._native.at, readings.at, n_periods)
+
+    def move(self, n_periods: int) -> None:
+        """Move by a number of steps."""
+        for _ in range(n_periods):
+            for each in (self.state, self.calm):
+                each[:] = (self.gains.law.step * each).sum(axis=1)
+
+    def scale(self, share: float) -> None:
+        """Scale the motion by a share."""
+        self.state *= share
+        self.calm *= share
+
+    def past_change(self) -> Floats:
+        """
+        Find what the innovations since tell about the displacements of the lag ago, (m,).
+
+        The array is reused.
+        """
+        return np.dot(self._backward, self.innovations.reshape(-1), out=self._past)

@@ -1,0 +1,142 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Gains for the sensors in use and the present wind, found a part at each step.
+
+A sensor on the stem tells about a hanging twig only what both have in common by the law of the
+gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
+the sensors take away enough of its variance even if each limb meets gusts of its own; elsewhere
+the tree sways in the wind alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
+from tree_sway.twin.steady_filter import (
+    filter_in_parts,
+    SteadyFilter,
+    SwayLaw,
+    told_shares_in_parts,
+)
+from tree_sway.twin.unknown_motion import UnknownMotion
+
+NOISE = 3.5
+"""Noise for which gains are found, over the noise of the sensors."""
+
+_TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
+"""
+Shares of the variance of a coordinate that the sensors take away below and above which its
+correction is not applied, and applied whole.
+"""
+
+_DUE = 45
+"""Steps after which new gains are in use: their parts are fewer."""
+
+
+class Gains(NamedTuple):
+    """
+    Gains for some sensors.
+
+    ``used`` are their numbers, ``noise`` that of their measurements, (p,), and ``trust`` the share
+    of the correction of each coordinate to apply, (n,).
+    """
+
+    used: tuple[int, ...]
+    noise: Floats
+    filter: SteadyFilter
+    trust: Floats
+
+
+class GainDesign:
+    """
+    Gains that are being found.
+
+    Parameters
+    ----------
+    unknown
+        Law of the unknown motion.
+    tracks, places
+        Sensors, and how each is moved by the coordinates of the model.
+    lag
+        Steps by which the smoothed motion is late.
+    submit
+        As `LaterWork` takes it.
+
+    """
+
+    def __init__(
+        self,
+        unknown: UnknownMotion,
+        tracks: Sequence[SensorTrack],
+        places: Sequence[PlaceMotion],
+        lag: int,
+        submit: Submit | None = None,
+    ) -> None:
+        self._unknown, self._tracks, self._places = unknown, tracks, places
+        self._lag, self._submit = lag, submit
+        self._wanted: tuple[int, ...] = ()
+        self._work: LaterWork[Gains] | None = None
+        self.used: tuple[int, ...] = ()
+        """Sensors for which gains are found, and which are all in use."""
+
+    def advance(self) -> Gains | None:
+        """Find gains where others are needed; return them when they are due."""
+        in_use = tuple([k for k, track in enumerate(self._tracks) if track.native.in_use])
+        if not in_use:
+            self.stop()
+            return None
+        if self._work is None and in_use == self.used and not self._unknown.is_outdated:
+            return None
+        if self._work is None or in_use != self._wanted:
+            self._wanted, self._work = in_use, self._begin(in_use)
+        found = self._work.advance()
+        if found is not None:
+            self._work, self.used = None, found.used
+        return found
+
+    def stop(self) -> None:
+        """Give up what was found."""
+        self.used, self._work = (), None
+
+    def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
+        """Begin to find the gains of some sensors."""
+        law, apart = self._unknown.find(), self._unknown.apart
+        assert apart is not None
+        found = [self.felt(k) for k in used]
+        sensed = np.concatenate([rows for rows, _ in found])
+        noise = np.concatenate([each for _, each in found])
+        return LaterWork(_in_parts(used, law, apart, sensed, noise, self._lag), _DUE, self._submit)
+
+    def felt(self, which: int) -> tuple[Floats, Floats]:
+        """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
+        track, unknown = self._tracks[which], self._unknown
+        assert track.alignment is not None
+        first = self._places[which].first(unknown.count)
+        rows = sensed_rows(first, unknown.stiffness, unknown.damped)
+        felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
+        uses = list(track.uses)
+        return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
+
+
+def _in_parts(
+    used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats, lag: int
+) -> Iterator[Gains | None]:
+    """Find the gains of some sensors, judged by gusts of each limb; None until they are found."""
+    for gains in filter_in_parts(law, sensed, NOISE * noise, lag):
+        yield None
+        if gains is not None:
+            found = gains
+    for told in told_shares_in_parts(found, apart, NOISE * noise):
+        if told is None:
+            yield None
+            continue
+        trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
+        yield Gains(used, noise, found, trust)

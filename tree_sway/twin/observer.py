@@ -1,0 +1,328 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Filter of the motion of a tree beyond that of the model, from all of its sensors.
+
+The observer holds the difference between the real and the computed motion on the first coordinates
+of a model. At each step the difference moves by its own law, and what the sensors measure beyond
+the model corrects it (`estimate`). Sensors that are late are read at an earlier step, and the
+difference is moved on to the present. Without a usable sensor the difference fades.
+
+The motion of the present is the calm one of `Estimate`; the smoothed one is that of
+`smoothed_motion`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native.structures import NativeCorrection
+from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.twin.disturbance import Disturbance
+from tree_sway.twin.estimate import Estimate
+from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
+from tree_sway.twin.late_wind import LateWind
+from tree_sway.twin.later_work import Submit
+from tree_sway.twin.running_fit import RunningFit
+from tree_sway.twin.sensor_place import place_motion
+from tree_sway.twin.sensor_readings import LATEST, SensorReadings
+from tree_sway.twin.sensor_track import SensorTrack
+from tree_sway.twin.smoothed_motion import SMOOTHED_LAG, SmoothedMotion
+from tree_sway.twin.steady_filter import SteadyFilter
+from tree_sway.twin.sway_watch import SwayChange
+from tree_sway.twin.tree_fit import TreeFit
+from tree_sway.twin.unknown_motion import UnknownMotion
+
+if TYPE_CHECKING:
+    from tree_sway.core.run.simulator import SwaySimulator
+
+MOST_COORDINATES = 32
+"""Largest number of coordinates that sensors correct."""
+
+_FADE = 0.3
+"""Time constant in [s] with which the correction fades without a sensor."""
+
+_TRUSTED_WITHIN = 2.0
+"""Time constant in [s] with which the applied shares follow those of new gains."""
+
+
+class Observer:
+    """
+    The difference between a real tree and its model.
+
+    Parameters
+    ----------
+    simulator
+        The model in the wind alone.
+    tracks
+        Sensors on the tree.
+    dt
+        Time step in [s].
+    before
+        The observer before, whose fit goes on; None for a model that is as it was made.
+    wind
+        Wind of the tree, which is made as late as the sensors tell.
+    is_smoothed
+        Whether the smoothed state is kept too.
+    submit
+        As `LaterWork` takes it.
+
+    """
+
+    def __init__(
+        self,
+        simulator: SwaySimulator,
+        tracks: Sequence[SensorTrack],
+        dt: float,
+        *,
+        before: Observer | None = None,
+        wind: LateWind | None = None,
+        is_smoothed: bool = False,
+        submit: Submit | None = None,
+    ) -> None:
+        self.tracks, self._dt = list(tracks), dt
+        oscillators: Any = simulator.banks[0].oscillators
+        swing = self._swing = oscillators.swing
+        m = oscillators.shapes.shape[1]
+        n = self.count = min(MOST_COORDINATES, m)
+        """Number of coordinates that are corrected."""
+        places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
+        frequency = float(simulator.frequencies(1)[0])
+        with one_thread():
+            self._unknown = UnknownMotion(simulator, n, dt)
+            self._readings = SensorReadings(
+                self._unknown, self.tracks, places, dt, swing, wind or LateWind(), submit
+            )
+        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
+        if before is not None:
+            self._fit.follow(before._fit)
+        lag = SMOOTHED_LAG if is_smoothed else 0
+        self._design = GainDesign(self._unknown, self.tracks, places, lag, submit)
+        self._smoothed = SmoothedMotion(m, n) if is_smoothed else None
+        self._step, self._done = -1, -1
+        self._estimate: Estimate | None = None
+        self.trust = np.zeros(n)
+        """Share of the correction of each coordinate that is applied [-], (count,)."""
+        self._wanted_trust = np.zeros(n)
+        self.noise = np.zeros(0)
+        """Standard deviation of the noise of the measurements in use, (p,)."""
+        self._ahead: dict[int, tuple[Floats, int]] = {}
+        self._swing_at = [address(each) for each in swing[:2]]
+        self._moved = np.zeros((2, n))
+        self.energies = np.zeros(2)
+        """
+        Energies of the corrected and of the uncorrected motion, (2,).
+
+        Both are twice those per unit mass, and 0 before a sensor was in use.
+        """
+        self._find_native()
+
+    def refresh(self) -> None:
+        """Read stiffness and damping of the model again, after a change."""
+        self._unknown.read_model()
+        self._unknown.forget_changed_model()
+        self._readings.read_model()
+        self._find_native()
+
+    def _find_native(self) -> None:
+        """Let the native core correct the present model."""
+        self._native = NativeCorrection(
+            coordinates=self.count, stiffness=self.stiffness,
+            wanted=self._wanted_trust, trust=self.trust, moved=self._moved, energies=self.energies,
+        )  # fmt: skip
+
+    @property
+    def late(self) -> int:
+        """Steps by which sensors are read late."""
+        return int(self._readings.native.late)
+
+    @property
+    def stiffness(self) -> Floats:
+        """Stiffness of the coordinates that are corrected [1/s^2], (count,)."""
+        return self._unknown.stiffness
+
+    @property
+    def all_stiffness(self) -> Floats:
+        """Stiffness of all coordinates of the model [1/s^2], (m,)."""
+        return self._unknown.all_stiffness
+
+    @property
+    def forces(self) -> Disturbance | None:
+        """What the wind does not tell, in the wind of the last gains; None before any."""
+        return self._unknown.forces
+
+    @property
+    def damping(self) -> Floats:
+        """Damping of all coordinates by the wood [1/s], (m,)."""
+        return self._unknown.all_damping
+
+    @property
+    def damped(self) -> Floats:
+        """Damping of the coordinates that are corrected, by wood and air, [1/s], (count,)."""
+        return self._unknown.damped
+
+    @property
+    def unknown(self) -> Disturbance:
+        """What the wind does not tell, in the present wind."""
+        return self._unknown.present_forces(keeps_old=self.is_active)
+
+    @property
+    def gains(self) -> SteadyFilter | None:
+        """Gains of the correction; None before any."""
+        return None if self._estimate is None else self._estimate.gains
+
+    @property
+    def fit(self) -> TreeFit | None:
+        """Stiffness and damping by the sensors, over those of the model as it was made."""
+        return self._fit.found
+
+    @property
+    def mean_wind(self) -> float:
+        """Mean speed of the wind in the last half minute in [m/s]."""
+        return self._unknown.mean_speed
+
+    def sway_change(self, sensor: int) -> SwayChange | None:
+        """Return how the sway has changed by a sensor; None before there is a past."""
+        return self._fit.watches[sensor].change
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a sensor is in use."""
+        return bool(self._design.used)
+
+    def step(
+        self,
+        time: float,
+        wind: tuple[float, float, float],
+        n_periods: int = 1,
+    ) -> Floats:
+        """
+        Observe a step.
+
+        Parameters
+        ----------
+        time
+            Time of the end of the step in [s].
+        wind
+            Mean wind that moves the tree in [m/s], finite.
+        n_periods
+            Number of time steps that were joined to this one.
+
+        Returns
+        -------
+        Floats
+            Correction of displacement and rate, (2, count). The array is reused.
+
+        """
+        self._step += 1
+        self._unknown.note_wind(math.hypot(*wind))
+        if self._smoothed is not None:
+            self._smoothed.note_computed(self._step, self._swing[0])
+        at = self._readings.read(time, self._step, self._done)
+        if at >= 0:
+            self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
+        gains = self._design.advance()
+        if gains is not None:
+            self._take(gains)
+        if self._estimate is None:
+            self._smooth_unmeasured()
+        elif not self.is_active:
+            self._judge_refused(self._estimate)
+            self._fade(self._estimate, n_periods)
+            self._smooth_unmeasured()
+        else:
+            self._judge_refused(self._estimate)
+            self._fit.advance(self._design.used)
+            self._correct(self._estimate, at, n_periods)
+        return self._moved
+
+    def _take(self, gains: Gains) -> None:
+        """Go on with other gains."""
+        picked = [self.tracks[k].picked for k in gains.used]
+        # Where each measurement is among the readings, (k, 9).
+        rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
+        self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
+        self.noise, self._wanted_trust[:] = gains.noise, gains.trust
+        for k in gains.used:
+            self.tracks[k].tells_little = not gains.trust.any()
+        self._ahead = {}
+
+    def _correct(self, estimate: Estimate, at: int, n_periods: int) -> None:
+        """Correct the estimate by the measurements of a step, unless it was done before."""
+        share = 0.0
+        if at >= 0:
+            # More than one step where sensors have become less late.
+            n_periods *= min(at - self._done, LATEST)
+            estimate.advance(self._readings.native, n_periods)
+            share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
+            if self._smoothed is not None:
+                first = max(self._done + 1, at - LATEST)
+                self._smoothed.note_estimated(first, at, estimate.state[0])
+                self._smoothed.smooth(at, self.trust, estimate.past_change())
+            self._done = at
+        self._carry(estimate, self._readings.native.late, share)
+
+    def _carry(self, estimate: Estimate, late: int, share: float) -> None:
+        """Bring the calm motion to the present, where trust goes a share of its way."""
+        if late not in self._ahead:
+            ahead = estimate.gains.law.ahead(late)
+            self._ahead[late] = ahead, address(ahead)
+        _, ahead_at = self._ahead[late]
+        LIBRARY.sway_carry(self._native.at, ahead_at, estimate.calm_at, share, *self._swing_at)
+
+    def _judge_refused(self, estimate: Estimate) -> None:
+        """Judge refused sensors by the motion expected without any sensor."""
+        for k, track in enumerate(self.tracks):
+            if track.in_use or not self._readings.is_known[k]:
+                continue
+            felt, noise = self._design.felt(k)
+            expected = np.einsum('ij,jk,ik->i', felt, self._unknown.variance, felt)
+            missed = self._readings.beyond[k, track.picked] - felt @ estimate.state.ravel()
+            squares = np.square(missed) / (expected + np.square(NOISE * noise))
+            track.judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
+
+    def _smooth_unmeasured(self) -> None:
+        """Smooth without a measurement: the motion is the one that was estimated then."""
+        if self._smoothed is None:
+            return
+        at, present = self._step - self.late, self._estimate
+        self._smoothed.note_estimated(at, at, 0.0 if present is None else present.state[0])
+        self._smoothed.smooth(at, self.trust, None)
+
+    @property
+    def smoothed(self) -> Floats:
+        """Displacements of `LATE_STEPS` ago by what was measured since, (m,), reused."""
+        assert self._smoothed is not None
+        return self._smoothed.displacements
+
+    def note_dragged(self, displacements: Floats) -> None:
+        """Note what the correction has moved by drag at this step, (m,)."""
+        if self._smoothed is not None:
+            self._smoothed.add_computed(self._step, displacements)
+
+    def limit(self, share: float) -> None:
+        """Scale the energy of the correction by a share, and count it for the sensors in use."""
+        if self._estimate is not None:
+            self._estimate.scale(math.sqrt(share))
+        for k in self._design.used:
+            self.tracks[k].sensor.counts.clamped += 1
+
+    def reset(self) -> None:
+        """Forget the correction; what is known about the sensors stays."""
+        self._estimate = None
+        self._design.stop()
+        for each in (self.trust, self._moved, self.energies):
+            each[:] = 0.0
+        if self._smoothed is not None:
+            self._smoothed.reset()
+
+    def _fade(self, estimate: Estimate, n_periods: int) -> None:
+        estimate.move(n_periods)
+        estimate.scale(math.exp(-n_periods * self._dt / _FADE))
+        self._carry(estimate, 0, 0.0)

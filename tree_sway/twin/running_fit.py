@@ -1,0 +1,145 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Fits of stiffness and damping while the sensors measure, a candidate at each step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.sensor_spectrum import SensorSpectrum
+from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
+from tree_sway.twin.sway_watch import SwayWatch
+from tree_sway.twin.tree_fit import fits, N_CANDIDATES, Spectrum, TreeFit
+from tree_sway.twin.unknown_motion import UnknownMotion
+
+_FIRST, _LATER, _LATEST = 40.0, 1.4, 600.0
+"""
+Motion in [s] from which the tree is first fitted, how much more there is each time, and most that
+is awaited.
+"""
+
+_SOON = 5.0
+"""Time in [s] that a fit waits for the first stretch of further sensors."""
+
+
+class RunningFit:
+    """
+    The last fit of a tree, and the next one.
+
+    Parameters
+    ----------
+    unknown
+        Law of the unknown motion; its model is the one that fits are relative to.
+    tracks, places
+        Sensors, and how each is moved by the coordinates of the model.
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+    submit
+        As `LaterWork` takes it.
+
+    """
+
+    def __init__(
+        self,
+        unknown: UnknownMotion,
+        tracks: Sequence[SensorTrack],
+        places: Sequence[PlaceMotion],
+        frequency: float,
+        dt: float,
+        submit: Submit | None = None,
+    ) -> None:
+        self._unknown, self._tracks, self._submit = unknown, tracks, submit
+        n = unknown.count
+        self._places = [each.first(n) for each in places]
+        self._frequency, self._dt = frequency, dt
+        self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
+        self.watches = [SwayWatch(each, frequency, submit) for each in self._spectra]
+        """Whether the tree still sways as it did, by each sensor."""
+        self._uses: list[tuple[int, ...]] = [()] * len(tracks)
+        self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
+        self._east = self._north = 0.0
+        self._n_winds = 0
+        self._work: LaterWork[TreeFit] | None = None
+        self._fit_after = _FIRST
+        self.found: TreeFit | None = None
+        """Stiffness and damping by the sensors, over those of the model as it was made."""
+
+    def follow(self, before: RunningFit) -> None:
+        """Go on from a fit before, whose model is as it was made."""
+        self._stiffness, self._damping = before._stiffness, before._damping
+        self.found = before.found
+
+    def add(self, is_known: NDArray[np.bool_], forces: Floats, east: float, north: float) -> None:
+        """Add the motion that sensors have just read, forces of the wind, (n,), and the wind."""
+        self._east += east
+        self._north += north
+        self._n_winds += 1
+        for k, (known, track) in enumerate(zip(is_known.tolist(), self._tracks, strict=True)):
+            if known and track.uses != self._uses[k]:
+                self._begin(k)
+            spectrum, watch = self._spectra[k], self.watches[k]
+            if known:
+                spectrum.add(track.fitted_motion, forces, track.watched_motion)
+                if watch.is_due:
+                    winds = self._east, self._north, self._n_winds
+                    watch.advance(winds, track.fitted_noise, track.watched_noise)
+            elif track.is_silent:
+                spectrum.skip()
+
+    def _begin(self, which: int) -> None:
+        """Begin the spectrum of a sensor whose quantities have changed anew."""
+        self._uses[which] = self._tracks[which].uses
+        spectrum = SensorSpectrum(self._frequency, self._dt, len(self._stiffness))
+        self._spectra[which] = spectrum
+        self.watches[which] = SwayWatch(spectrum, self._frequency, self._submit)
+
+    def advance(self, used: Sequence[int]) -> None:
+        """Go on with a fit, or begin one by the sensors in use once there is enough motion."""
+        if self._work is not None:
+            found = self._work.advance()
+            if found is not None:
+                self.found, self._work = found, None
+            return
+        longest = max([each.seconds for each in self._spectra])
+        if longest < self._fit_after:
+            return
+        measured = [k for k in used if self._spectra[k].count]
+        seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
+        forces = self._unknown.forces
+        if seconds < self._fit_after or forces is None:
+            return
+        spectra = [self._spectra[k] for k in used]
+        if any(not each.count and each.until_first < _SOON for each in spectra):
+            return
+        self._fit_after = min(_LATER * seconds, seconds + _LATEST)
+        parts = fits(
+            [self._spectrum(k) for k in measured],
+            self._stiffness,
+            self._damping,
+            forces.air_damping,
+            forces.covariance,
+            1.0 if self.found is None else self.found.drag,
+        )
+        self._work = LaterWork(parts, N_CANDIDATES * len(measured) + 1, self._submit)
+
+    def _spectrum(self, which: int) -> Spectrum:
+        """Spectrum of a sensor, and its rows by the model as it was made."""
+        track, measured = self._tracks[which], self._spectra[which]
+        has_gravity = track.alignment is None or track.alignment.has_gravity
+        rows = sensed_rows(self._places[which], self._stiffness, self._damping)
+        felt = as_felt(rows, has_gravity=has_gravity)
+        return Spectrum(
+            felt[3 * track.fitted : 3 * track.fitted + 3],
+            measured.products,
+            measured.circular,
+            measured.count,
+            measured.seconds,
+        )

@@ -1,0 +1,166 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What all sensors measure beyond the model, at the newest step that their samples cover.
+
+A sensor that sends late is read at an earlier step, and compared with the motion that the model
+had then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LIBRARY
+from tree_sway.core.native.structures import NativeReadings
+from tree_sway.twin.late_wind import LateWind, LONGEST_WAY
+from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.sensor_track import (
+    FoundMounting,
+    LagRange,
+    NO_LAG,
+    ROWS,
+    SensorTrack,
+)
+from tree_sway.twin.unknown_motion import UnknownMotion
+
+LATEST = 30
+"""Largest number of steps by which sensors are read late."""
+
+_KEPT = 64
+"""Steps whose measurements are kept, ``SWAY_SLOTS`` of the native core."""
+
+_MOUNTED_AFTER = 12
+"""Steps after which a mounting that is looked for is known."""
+
+_LEAST_LAG, _LEAST_CHANGE = 1.0, 0.2
+"""
+Least lag of the wind in [s] that is believed at first, and least change of it afterwards.
+
+Gusts reach single limbs later than the stem too: only the sensor that found a lag changes it.
+"""
+
+
+class SensorReadings:
+    """
+    Readings of the sensors on a tree.
+
+    Parameters
+    ----------
+    unknown
+        Law of the unknown motion, with stiffness and damping of the model.
+    tracks, places
+        Sensors, and how each is moved by the coordinates of the model.
+    dt
+        Time step in [s].
+    swing
+        Displacement, rate and force of each coordinate in the wind alone, (m,).
+    wind
+        Wind of the tree, which is made as late as the sensors tell.
+    submit
+        As `LaterWork` takes it.
+
+    """
+
+    def __init__(
+        self,
+        unknown: UnknownMotion,
+        tracks: Sequence[SensorTrack],
+        places: Sequence[PlaceMotion],
+        dt: float,
+        swing: Sequence[Floats],
+        wind: LateWind,
+        submit: Submit | None = None,
+    ) -> None:
+        self._unknown, self._tracks = unknown, tracks
+        self._dt, self._wind, self._submit = dt, wind, submit
+        self._told_lag: SensorTrack | None = None
+        self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
+        self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
+        self._forces = np.zeros((_KEPT, unknown.count))
+        self.forces = self._forces[0]
+        """Force of the wind on each coordinate at the step that was read, (n,)."""
+        self.beyond = np.zeros((len(tracks), 9))
+        """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
+        self.is_known = np.zeros(len(tracks), dtype=np.bool_)
+        """Which of them there are, (k,)."""
+        shapes = [np.stack([each.displacement, each.rotation]) for each in places]
+        self._law = np.zeros((2, len(unknown.all_stiffness)))
+        eta, rate, force = swing
+        self.native = NativeReadings(
+            sensors=len(tracks), coordinates=len(eta), corrected=unknown.count,
+            sensor=np.array([each.native.at for each in tracks], dtype=np.int64),
+            shapes=np.array(shapes), stiffness=self._law[0], damping=self._law[1],
+            air_damping=unknown.air_damping, eta=eta, rate=rate, force=force,
+            sensed=self._sensed, still=self._forces, beyond=self.beyond, is_known=self.is_known,
+        )  # fmt: skip
+        """Readings in the native core."""
+        self.read_model()
+
+    def read_model(self) -> None:
+        """Read stiffness and damping of the model again."""
+        self._law[:] = self._unknown.all_stiffness, self._unknown.all_damping
+
+    def read(self, time: float, step: int, done: int) -> int:
+        """
+        Compute what sensors would measure, and read them.
+
+        Parameters
+        ----------
+        time
+            Time of the end of the step in [s].
+        step, done
+            Number of the step, and of the newest one that was read before.
+
+        Returns
+        -------
+        int
+            The step that was read; -1 if it was done before, as sensors have become later.
+
+        """
+        for track in self._tracks:
+            if track.heed() and self._search is not None and self._search[0] is track:
+                self._search = None  # it looks at what the sensor measured before
+        self._find_mounting()
+        then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
+        if then >= 0:
+            self.forces = self._forces[then % _KEPT]
+        return then
+
+    def _find_mounting(self) -> None:
+        """Go on with finding a mounting, or begin with that of the next sensor that is due."""
+        if self._search is None:
+            for due in self._tracks:
+                if due.is_due:
+                    break
+            else:
+                return
+            search = due.search(self._lags_of(due))
+            self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
+        track, work = self._search
+        found = work.advance()
+        if found is not None:
+            self._search = None
+            track.take(found)
+            if found.lag:
+                self._told_lag = track
+                self._wind.delay_more(found.lag * self._dt)
+                for each in self._tracks:
+                    each.delay_model(found.lag)
+
+    def _lags_of(self, track: SensorTrack) -> LagRange:
+        """Find which lags of the wind a sensor may tell."""
+        delay = self._wind.delay
+        if self._told_lag not in (None, track):
+            return NO_LAG
+        if delay:
+            least = round(_LEAST_CHANGE / self._dt)
+        else:
+            least = max(round(_LEAST_LAG / self._dt), track.window)
+        earliest = -math.floor(delay / self._dt)
+        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)

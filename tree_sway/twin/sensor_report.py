@@ -1,0 +1,80 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What is known about each sensor of an observed tree, for viewers and diagnostics."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from tree_sway.twin.motion_sensor import SensorCounts
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.sway_watch import SwayChange
+
+
+class SensorReport(NamedTuple):
+    """
+    State of a sensor.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    in_use
+        Whether the tree follows it.
+    problem
+        Why not, and what to do; empty if it is in use.
+    residual
+        Size of what remains between it and the corrected tree, over the size that is expected [-].
+    rate
+        Samples per second [Hz]; 0 before two samples.
+    late
+        Time by which it is read late in [s].
+    counts
+        Counts of its samples.
+    notes
+        Properties that were recognised, such as a unit, how late the wind is, and what the sensor
+        measures no more.
+    change
+        Whether the tree sways as it did; None before there is a past.
+
+    """
+
+    name: str
+    in_use: bool
+    problem: str
+    residual: float
+    rate: float
+    late: float
+    counts: SensorCounts
+    notes: tuple[str, ...]
+    change: SwayChange | None = None
+
+    @property
+    def refused(self) -> int:
+        """Number of refused samples."""
+        return self.counts.refused
+
+
+def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
+    """Report every sensor of a tree."""
+    found = []
+    late = tuple(filter(None, [twin.late_wind.note]))
+    for number, track in enumerate(twin.observer.tracks):
+        sensor, alignment = track.sensor, track.alignment
+        recognised = () if alignment is None else (*alignment.notes, *late)
+        lost = [f'it measures no {name} any more: restart it' for name in sensor.lost]
+        found.append(
+            SensorReport(
+                sensor.name,
+                track.in_use,
+                track.problem,
+                math.sqrt(max(track.excess, 0.0)),
+                0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
+                twin.observer.late * twin.period,
+                sensor.counts,
+                (*recognised, *lost),
+                twin.observer.sway_change(number),
+            )
+        )
+    return found

@@ -1,0 +1,161 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Averaged spectrum of the motion of a sensor and of the known forces (Welch 1967).
+
+Stretches overlap by half. While the next half is measured, the last stretch is transformed, a
+series at each step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.spectrum_change import WATCHED_BAND
+
+Waves = NDArray[np.complex128]
+"""Complex amplitudes."""
+
+_BAND = (0.5, 2.2)
+"""Frequencies over the first one of the tree."""
+
+_CYCLES = 40.0
+"""Length of a stretch in periods of the first frequency."""
+
+_HALVES = 3
+"""Halves that are kept: the last stretch, and the half that is being measured."""
+
+
+class SpectrumBlock(NamedTuple):
+    """
+    Power of east and north together at each frequency, (f,), a sum over ``n_stretches``.
+
+    ``watched`` is that of the watched motion, of east and north, (g, 2), and ``seconds`` the
+    length of the motion in [s].
+    """
+
+    power: Floats
+    watched: Floats
+    n_stretches: int
+    seconds: float
+
+
+class SensorSpectrum:
+    """
+    Averaged spectrum of the angular rate or acceleration of a sensor, and of the known forces.
+
+    That of the watched motion, the acceleration where there is one, is over a wider band.
+
+    Parameters
+    ----------
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+    count
+        Number of coordinates whose forces are known.
+
+    """
+
+    def __init__(self, frequency: float, dt: float, count: int) -> None:
+        self._dt = dt
+        half = self._half = round(0.5 * _CYCLES / (frequency * dt))
+        # East, north, the force on each coordinate, and the watched motion to east and north.
+        self._n_products = 2 + count
+        n_series = self._n_products + 2
+        self._series = np.zeros((_HALVES, half, n_series))
+        self._window = np.hanning(2 * half + 1)[:-1]
+        self._stretch = np.zeros(2 * half)
+        axis = np.fft.rfftfreq(2 * half, dt)
+        inside = np.flatnonzero((axis > _BAND[0] * frequency) & (axis < _BAND[1] * frequency))
+        self._inside = slice(int(inside[0]), int(inside[-1]) + 1)
+        self.circular: Floats = 2.0 * np.pi * np.asarray(axis[self._inside], dtype=np.float64)
+        """Circular frequencies in [rad/s], (f,)."""
+        n_frequencies = len(self.circular)
+        shape = (n_frequencies, self._n_products)
+        self._waves = np.zeros(shape, dtype=np.complex128)
+        self._products = np.zeros((*shape, self._n_products), dtype=np.complex128)
+        low, high = (edge * frequency for edge in WATCHED_BAND)
+        self._is_watched = (axis > low) & (axis < high)
+        self.watched_frequencies: Floats = np.asarray(axis[self._is_watched], dtype=np.float64)
+        """Frequencies of the watched motion in [Hz], (g,)."""
+        self._watched = np.zeros((len(self.watched_frequencies), 2))
+        self._block = SpectrumBlock(np.zeros(n_frequencies), self._watched.copy(), 0, 0.0)
+        self._now, self._filled, self._n_halves = 0, 0, 0
+        self._n_series = self._next = n_series
+        self.count = 0
+        """Number of stretches."""
+        self.seconds = 0.0
+        """Length of the motion so far in [s]."""
+
+    def add(self, motion: Floats, force: Floats, watched: Floats) -> None:
+        """Add motions to east and north, (2,), and forces of the known wind, (count,)."""
+        np.concatenate((motion, force, watched), out=self._series[self._now, self._filled])
+        self._filled += 1
+        self.seconds += self._dt
+        if self._next < self._n_series:
+            self._transform_next()
+        if self._filled == self._half:
+            self._n_halves += 1
+            self._now, self._filled = (self._now + 1) % _HALVES, 0
+            if self._n_halves > 1:
+                self._next = 0
+
+    @property
+    def until_first(self) -> float:
+        """Motion in [s] that is missing to the first stretch."""
+        measured = self._n_halves * self._half + self._filled
+        return 0.0 if self.count else max(2 * self._half - measured, 0) * self._dt
+
+    def skip(self) -> None:
+        """Forget an unfinished stretch: the motion has a gap."""
+        self._filled = self._n_halves = 0
+        self._next = self._n_series
+
+    def _transform_next(self) -> None:
+        """Transform a series of the last stretch, and average after the last one."""
+        series, stretch, half = self._series[..., self._next], self._stretch, self._half
+        stretch[:half] = series[self._now - 2]
+        stretch[half:] = series[self._now - 1]
+        stretch -= stretch.mean()
+        stretch *= self._window
+        waves = np.fft.rfft(stretch)
+        if self._next < self._n_products:
+            self._waves[:, self._next] = waves[self._inside]
+        else:
+            axis = self._next - self._n_products
+            self._watched[:, axis] += np.square(np.abs(waves[self._is_watched]))
+        self._next += 1
+        if self._next == self._n_series:
+            self._products += self._waves[:, :, None] * self._waves[:, None].conj()
+            self.count += 1
+
+    @property
+    def block_seconds(self) -> float:
+        """Length of the motion of the present block in [s]."""
+        return self.seconds - self._block.seconds
+
+    def end_block(self) -> SpectrumBlock:
+        """Begin a block; return the last one."""
+        before = self._block
+        power = self._products[:, (0, 1), (0, 1)].real.sum(axis=1)
+        self._block = SpectrumBlock(power, self._watched.copy(), self.count, self.seconds)
+        return SpectrumBlock(
+            power - before.power,
+            self._watched - before.watched,
+            self.count - before.n_stretches,
+            self.seconds - before.seconds,
+        )
+
+    def power_of_noise(self, deviation: float) -> float:
+        """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
+        return deviation**2 * float(np.square(self._window).sum())
+
+    @property
+    def products(self) -> Waves:
+        """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
+        return self._products / max(self.count, 1)

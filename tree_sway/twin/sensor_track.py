@@ -1,0 +1,343 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+One sensor over time: first its mounting is found, then it is in use while it agrees.
+
+Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
+the model has in the wind alone. From then on its mounting is found again after 1.4 times as long,
+and so on, from all motion of the last ten minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.native.library import LIBRARY
+from tree_sway.core.native.structures import NativeSensor
+from tree_sway.twin.alignment import (
+    align,
+    Alignment,
+    averaged,
+    GRAVITY,
+    LEAST_NOISE,
+    TELLS_LITTLE,
+)
+from tree_sway.twin.motion_sensor import MotionSensor
+from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.wind_lag import find_lag
+
+LEARNING = 20.0
+"""Motion in [s] from which the mounting of a sensor is found first."""
+
+_LATER, _MEMORY = 1.4, 600.0
+_ABSENT_AFTER = 1.0
+_KNOCKED = 5.0
+_COMPARED = 1.0
+"""Periods of the first sway over which motions are averaged to find a mounting."""
+
+_CEILING = np.array([20.0, 10.0, 3.0])
+"""Largest noise that a sensor may state, in the same units: above, it tells nothing."""
+
+ROWS = 12
+"""Rows of a sensor: acceleration, its part by tilted gravity, rate and rotation, three of each."""
+
+
+def sensed_rows(motion: PlaceMotion, stiffness: Floats, damping: Floats) -> Floats:
+    """
+    Rows of a sensor by displacement, rate and force of coordinates of unit mass, (12, 3 m).
+
+    The specific force that a sensor turned by theta feels beyond gravity is ``a + g z x theta`` in
+    the frame of the tree.
+    """
+    still = np.zeros_like(motion.rotation)
+    tilted = GRAVITY * np.stack([-motion.rotation[1], motion.rotation[0], still[0]])
+    moved = motion.displacement
+    return np.concatenate([
+        np.hstack([-moved * stiffness, -moved * damping, moved]),
+        np.hstack([tilted, still, still]),
+        np.hstack([still, motion.rotation, still]),
+        np.hstack([motion.rotation, still, still]),
+    ])  # fmt: skip
+
+
+def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
+    """Join the rows (12, ...) of a sensor to acceleration, rate and rotation, (9, ...)."""
+    out = rows[3:].copy()
+    out[:3] = rows[:3] + (rows[3:6] if has_gravity else 0.0)
+    return out
+
+
+class LagRange(NamedTuple):
+    """Earliest and latest lag of the wind in steps, and the least change of it that counts."""
+
+    earliest: int
+    latest: int
+    least: int
+
+
+NO_LAG = LagRange(0, 0, 1)
+"""Range of a wind whose lag is not in question."""
+
+
+class FoundMounting(NamedTuple):
+    """
+    How a sensor is mounted, and its mean difference from the model then, (9,).
+
+    ``lag`` is by how many steps the tree moves later than the model.
+    """
+
+    alignment: Alignment
+    bias: Floats
+    lag: int = 0
+
+
+def _mountings(
+    sensed: Floats, computed: Floats, reference: Floats | None, window: int, lags: LagRange
+) -> Iterator[FoundMounting]:
+    """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
+    upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
+    found = align(sensed, upright, free, reference, window)
+    lag = _lag(sensed, upright, free, window, lags, has_gravity=found.has_gravity)
+    if lag:
+        later, earlier = lagging(lag, len(sensed))
+        sensed, upright, free = sensed[later], upright[earlier], free[earlier]
+        found = align(sensed, upright, free, reference, window)
+    if found.problem:
+        lag = 0
+    bias = np.zeros(9)
+    if not found.problem:
+        model = upright if found.has_gravity else free
+        bias = (found.motion(sensed) - model).mean(axis=0)
+    yield FoundMounting(found, bias, lag)
+
+
+def _lag(
+    sensed: Floats,
+    upright: Floats,
+    free: Floats,
+    window: int,
+    lags: LagRange,
+    *,
+    has_gravity: bool,
+) -> int:
+    """
+    By how many steps a sensor moves later than the model, where that is sure; else 0.
+
+    Gravity tells the lean in gusts, which a softer tree has in common with its model. The rest is
+    sway, which resembles itself a period later.
+    """
+    model = upright if has_gravity else free
+    told = [rows for rows in (slice(0, 3), slice(3, 6)) if np.isfinite(sensed[:, rows]).all()]
+    if has_gravity and slice(0, 3) in told:
+        told = told[:1]
+    pairs = [
+        (averaged(sensed[:, rows], window), averaged(model[:, rows], window)) for rows in told
+    ]
+    if not pairs or lags.earliest == lags.latest:
+        return 0
+    found = find_lag(pairs, lags.earliest, lags.latest, window)
+    return found.steps if found.is_sure and abs(found.steps) >= lags.least else 0
+
+
+def lagging(lag: int, count: int) -> tuple[slice, slice]:
+    """Rows of a sensor, and those of a model by a lag before, of a number of rows each."""
+    return slice(max(lag, 0), count + min(lag, 0)), slice(max(-lag, 0), count + min(-lag, 0))
+
+
+class SensorTrack:
+    """
+    A sensor, what is known about it, and whether it is in use.
+
+    Parameters
+    ----------
+    sensor
+        The sensor.
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+
+    """
+
+    def __init__(self, sensor: MotionSensor, frequency: float, dt: float) -> None:
+        self.sensor, self._dt = sensor, dt
+        self.alignment: Alignment | None = None
+        self.tells_little = False
+        """Whether it is in use, and tells too little of any coordinate to correct the tree."""
+        self._mounting = np.zeros(21)
+        self.bias = self._mounting[12:]
+        """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
+        self.uses: tuple[int, ...] = ()
+        """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
+        self.picked = slice(0, 0)
+        """Rows of a sample, (9,), of these."""
+        self._sensed = np.zeros((round(_MEMORY / dt), 9))
+        self._computed = np.zeros((len(self._sensed), ROWS))
+        self._window = max(round(_COMPARED / (frequency * dt)), 1)
+        self._next_fit = round(LEARNING / dt)
+        self._quantities = sensor.quantities
+        self._moved = np.zeros(9)
+        self.native = NativeSensor(
+            ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
+            computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
+            newest=sensor.newest, excess=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
+        )  # fmt: skip
+        """Its state in the native core."""
+        self.fitted_motion = self.watched_motion = self._moved[:2]
+        """
+        The last sample of this quantity, and of the acceleration, to east and north, (2,).
+
+        Without an acceleration, the first of the others is watched. The acceleration tells more of
+        fast sway than the angular rate, which is less above its noise.
+        """
+        self.fitted_noise = self.watched_noise = 0.0
+        """Standard deviations of their noise in each sample, as measured."""
+
+    def _uses(self) -> tuple[int, ...]:
+        given = self._quantities
+        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
+        return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
+
+    @property
+    def fitted(self) -> int:
+        """Quantity whose spectrum is compared with the model's: the rate where there is one."""
+        return 1 if 1 in self.uses else self.uses[0]
+
+    @property
+    def noise(self) -> Floats:
+        """Standard deviation of the noise at each step, (3,)."""
+        known = LEAST_NOISE
+        if self.alignment is not None:
+            known = np.maximum(self.alignment.noise, LEAST_NOISE)
+        known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
+        period = self.sensor.period
+        # Samples that are joined by lines have the same noise in several steps.
+        held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
+        return known * math.sqrt(held)
+
+    @property
+    def in_use(self) -> bool:
+        """Whether its motion corrects the tree."""
+        return bool(self.native.in_use)
+
+    @property
+    def excess(self) -> float:
+        """Squared innovations over those expected, a running mean [-]."""
+        return float(self.native.excess)
+
+    @property
+    def problem(self) -> str:
+        """Why it does not correct the tree, and what to do; empty if it does."""
+        name, native = self.sensor.name, self.native
+        if self.in_use:
+            return f'{name}: {TELLS_LITTLE}' if self.tells_little else ''
+        counts = self.sensor.counts
+        if counts.accepted == 0 and counts.refused:
+            return f'{name}: all of {counts.refused} samples were refused: {counts.why_refused}'
+        if counts.accepted == 0:
+            return f'{name}: no sample yet'
+        if self.is_silent and self.sensor.trouble:
+            return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
+        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+            return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
+        if self.is_silent:
+            return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
+        if self.alignment is None:
+            left = (self._next_fit - native.count) * self._dt
+            return f'{name}: its mounting is found within {left:.0f} s of sway'
+        if self.alignment.problem:
+            return f'{name}: {self.alignment.problem}'
+        if native.is_refused:
+            return f'{name}: it disagrees with the tree: check that it is still fixed'
+        return f'{name}: it is followed from the next sample on'
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether there was no sample for longer than networks delay one."""
+        return bool(self.native.absent > _ABSENT_AFTER)
+
+    def heed(self) -> bool:
+        """
+        Heed what has become of the sensor since the last step.
+
+        Returns whether it measures other quantities, of which no mounting is known.
+        """
+        native, counts = self.native, self.sensor.counts
+        counts.silent = native.silences
+        if native.disagreements != counts.disagreed:
+            counts.disagreed = native.disagreements
+            # A knock may have moved it: its mounting is found from what comes after.
+            native.count = -round(_KNOCKED / self._dt)
+            self._next_fit = round(LEARNING / self._dt)
+        if (given := self.sensor.quantities) == self._quantities:
+            return False
+        self._quantities = given
+        self.alignment = None
+        native.in_use = native.is_mounted = native.is_refused = native.count = 0
+        native.is_awaited = 1
+        native.excess = 1.0
+        self._next_fit = round(LEARNING / self._dt)
+        return True
+
+    @property
+    def is_due(self) -> bool:
+        """Whether it has seen enough motion for its mounting to be found again."""
+        return bool(self.native.count >= self._next_fit)
+
+    def search(self, lags: LagRange = NO_LAG) -> Iterator[FoundMounting]:
+        """Find its mounting from the motion so far, as a work of one part."""
+        self._next_fit = math.ceil(_LATER * self.native.count)
+        sensed, computed = self._remembered()
+        return _mountings(sensed, computed.T.copy(), self.sensor.reference, self._window, lags)
+
+    @property
+    def window(self) -> int:
+        """Steps in a period of the first sway."""
+        return self._window
+
+    def _remembered(self) -> tuple[Floats, Floats]:
+        """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
+        n, size = max(self.native.count, 0), len(self._sensed)
+        first = n % size if n > size else 0
+        memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
+        return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
+
+    def delay_model(self, lag: int) -> None:
+        """Remember the model as if its wind had been later by a number of steps."""
+        sensed, computed = self._remembered()
+        later, earlier = lagging(lag, len(sensed))
+        kept = max(len(sensed) - abs(lag), 0)
+        self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
+        gone = self.native.count - kept
+        if gone > 0:
+            self._next_fit -= gone
+            self.native.count = kept
+
+    def take(self, mounting: FoundMounting) -> None:
+        """Read the sensor by another mounting from now on."""
+        found = self.alignment = mounting.alignment
+        native = self.native
+        native.is_awaited, native.is_mounted = 0, not found.problem
+        native.in_use = native.is_mounted and not native.is_refused
+        if found.problem:
+            return
+        self.uses = self._uses()
+        self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
+        written = self._mounting
+        written[:9], written[9:11] = found.turn.ravel(), found.scale
+        written[11] = GRAVITY if found.has_gravity else 0.0
+        first, watched = 3 * self.fitted, 3 * self.uses[0]
+        self.fitted_motion = self._moved[first : first + 2]
+        self.watched_motion = self._moved[watched : watched + 2]
+        self.fitted_noise = float(found.noise[self.fitted])
+        self.watched_noise = float(found.noise[self.uses[0]])
+        self.bias[:] = mounting.bias
+
+    def judge(self, size: float) -> None:
+        """Judge it by the mean square of its innovations over that expected."""
+        LIBRARY.sway_judge(self.native.at, size)

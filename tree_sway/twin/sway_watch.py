@@ -1,0 +1,238 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Whether a tree still sways as it did, by the spectrum of a sensor against its own past.
+
+Of each block of motion the middle of the spectrum is found, the mean of the logarithms of the
+frequencies by their power, less the noise of the sensor. A tree that loses a limb, or whose roots
+come loose, sways at other frequencies. So does one in another wind, a little: more wind moves the
+slow modes more. The middle of the last blocks is therefore compared with the one that the blocks
+before foretell for their wind, by a line over the logarithm of the mean wind whose slope is known
+roughly before anything is measured.
+
+The loss of a small limb moves the middle by less than chance does. It changes the power in narrow
+bands, which `spectrum_change` compares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.sensor_spectrum import SensorSpectrum
+from tree_sway.twin.spectrum_change import BandChange, CHANGED, SpectrumChange
+
+BLOCK = 600.0
+"""Motion of a block in [s]."""
+
+_RECENT, _LEAST_PAST = 2, 3
+"""Blocks that are compared with those before, and least number of these."""
+
+_SCATTER, _KNOWN_LIKE = 0.02, 6.0
+"""
+Standard deviation of the middle of a block by chance [-], before anything is measured, which is
+known as by that many blocks.
+"""
+
+_SLOPE = 0.08
+"""Standard deviation of the slope of the middle over the logarithm of the wind [-]."""
+
+_CHANGED = 4.0
+"""Difference over its error from which the tree sways differently."""
+
+_LEAST_POWER = 1.0
+"""Least power of the sway over that of the noise [-]: with less, a block tells nothing."""
+
+_COMPARED_AFTER = 10
+"""Steps after which the bands of a block are compared: their parts are fewer."""
+
+_CAUSES = 'as after the loss of a limb, with loose roots, ice or other leaves'
+
+
+@dataclass(frozen=True)
+class SwayChange:
+    """
+    A difference of the last blocks from those before.
+
+    Parameters
+    ----------
+    ratio
+        Middle of the spectrum over the one foretold [-].
+    error
+        Standard deviation of its logarithm [-].
+    hours
+        Length of the motion before in [h].
+    band
+        Largest change of the power in a band; None before any was looked for.
+
+    """
+
+    ratio: float
+    error: float
+    hours: float
+    band: BandChange | None = None
+
+    @property
+    def size(self) -> float:
+        """Return the larger difference over the least one that counts [-]."""
+        of_band = 0.0 if self.band is None else self.band.size / CHANGED
+        return max(self.of_middle, of_band)
+
+    @property
+    def of_middle(self) -> float:
+        """Return the difference of the middle over the least one that counts [-]."""
+        return abs(math.log(self.ratio)) / self.error / _CHANGED
+
+    @property
+    def is_change(self) -> bool:
+        """Whether it is beyond chance and wind."""
+        return self.size > 1.0
+
+    @property
+    def changed_band(self) -> BandChange | None:
+        """The band whose power has changed, where the middle of the spectrum does not tell it."""
+        return self.band if self.is_change and self.of_middle <= 1.0 else None
+
+    def __str__(self) -> str:
+        """Return it as a sentence."""
+        percent, error = 100.0 * (self.ratio - 1.0), 100.0 * self.error
+        if (band := self.changed_band) is not None:
+            return (
+                f'it sways differently: {band.power:.2g} times the power of {self.hours:.2g} h '
+                f'before at {band.low:.2f} to {band.high:.2f} Hz, {_CAUSES}'
+            )
+        if self.is_change:
+            return (
+                f'it sways differently: at frequencies {percent:+.0f} % from those of '
+                f'{self.hours:.2g} h before (+- {error:.1f} % by chance and wind), {_CAUSES}'
+            )
+        return (
+            f'it sways as before: at frequencies {percent:+.1f} % from those of '
+            f'{self.hours:.2g} h before (+- {error:.1f} % by chance and wind)'
+        )
+
+
+class _Middle(NamedTuple):
+    """Logarithms of the middle of a spectrum [Hz] and of the mean wind [m/s] of a block."""
+
+    frequency: float
+    wind: float
+
+
+class SwayWatch:
+    """
+    Blocks of the motion of a sensor, the last ones against those before.
+
+    Parameters
+    ----------
+    spectrum
+        Spectrum of the sensor.
+    frequency
+        First frequency of the model in [Hz].
+    submit
+        As `LaterWork` takes it.
+
+    """
+
+    def __init__(
+        self, spectrum: SensorSpectrum, frequency: float, submit: Submit | None = None
+    ) -> None:
+        self._spectrum, self._submit = spectrum, submit
+        self._bands = SpectrumChange(spectrum.watched_frequencies, frequency)
+        self._work: LaterWork[BandChange] | None = None
+        self._blocks: list[_Middle] = []
+        self._began = (0.0, 0.0, 0)
+        self.change: SwayChange | None = None
+        """The first change, else the last comparison; None before any."""
+
+    @property
+    def is_due(self) -> bool:
+        """Whether a block ends, or bands are being compared."""
+        return self._work is not None or self._spectrum.block_seconds >= BLOCK
+
+    def advance(self, winds: tuple[float, float, int], noise: float, watched_noise: float) -> None:
+        """
+        End a block, or go on with comparing its bands.
+
+        Parameters
+        ----------
+        winds
+            Sums of the winds so far to east and north [m/s], and their number.
+        noise, watched_noise
+            Noise of the sensor, and that of its watched motion.
+
+        """
+        if self._work is not None and (found := self._work.advance()) is not None:
+            self._work = None
+            self._take(found)
+        if self._spectrum.block_seconds < BLOCK:
+            return
+        block = self._spectrum.end_block()
+        east, north, count = (now - then for now, then in zip(winds, self._began, strict=True))
+        wind = east / count, north / count
+        self._began = winds
+        floor = 2.0 * block.n_stretches * self._spectrum.power_of_noise(noise)
+        power = np.maximum(block.power - floor, 0.0)
+        if power.sum() > max(_LEAST_POWER * floor * len(power), 1e-300):
+            frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
+            self._compare(_Middle(float(frequency), math.log(max(math.hypot(*wind), 0.1))))
+        if block.n_stretches:
+            parts = self._bands.add(
+                block.watched / block.n_stretches,
+                self._spectrum.power_of_noise(watched_noise),
+                block.seconds,
+                wind,
+            )
+            self._work = LaterWork(parts, _COMPARED_AFTER, self._submit)
+
+    def _take(self, band: BandChange) -> None:
+        """Take the largest change of a band; once a band has changed, that stays."""
+        before = None if self.change is None else self.change.band
+        if self.change is not None and (before is None or before.size <= CHANGED):
+            self.change = replace(self.change, band=band)
+
+    def _compare(self, last: _Middle) -> None:
+        """Add a block, and compare; once the middle has changed, that stays."""
+        self._blocks.append(last)
+        past, recent = self._blocks[:-_RECENT], self._blocks[-_RECENT:]
+        before = self.change
+        if len(past) < _LEAST_PAST or (before is not None and before.of_middle > 1.0):
+            return
+        found, wind = np.mean(recent, axis=0).tolist()
+        foretold, error = _foretold(np.array(past), wind)
+        hours = len(past) * BLOCK / 3600.0
+        band = None if before is None else before.band
+        self.change = SwayChange(math.exp(found - foretold), error, hours, band)
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether the tree sways differently since some block."""
+        return self.change is not None and self.change.is_change
+
+
+def _foretold(past: Floats, wind: float) -> tuple[float, float]:
+    """
+    Foretell the middle of the last blocks in their wind, by those before, (n, 2).
+
+    Returns
+    -------
+    tuple[float, float]
+        The logarithm, and its standard deviation.
+
+    """
+    middle = past.mean(axis=0)
+    frequency, winds = (past - middle).T
+    known = float(np.square(winds).sum()) / _SCATTER**2
+    slope = float(winds @ frequency) / _SCATTER**2 / (known + 1.0 / _SLOPE**2)
+    left = frequency - slope * winds
+    squares = _KNOWN_LIKE * _SCATTER**2 + float(np.square(left).sum())
+    scatter = squares / (_KNOWN_LIKE + max(len(past) - 2, 0))
+    apart = wind - float(middle[1])
+    of_slope = apart**2 / (known * _SCATTER**2 / scatter + 1.0 / _SLOPE**2)
+    variance = scatter * (1.0 / len(past) + 1.0 / _RECENT) + of_slope
+    return float(middle[0]) + slope * apart, math.sqrt(variance)
