@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 import numpy as np
 
 from tree_sway import grow, simulate, simulate_turbulence
-from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind import WindProfile
 
 HEIGHT, SPEED, RATE = 12.0, 9.0, 30.0
 ATTENUATION = 2.0

@@ -7,6 +7,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 import re
 import sys
@@ -23,18 +24,24 @@ PACKAGES = {
     'tree_sway_lab': {'tree_sway', 'tree_sway_ros', 'tree_sway_lab'},
 }
 
-#: Layer of each room of the library; a room imports only from lower layers and from itself.
-LAYERS = {
-    'errors': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'doorkeeper': 1,
-    'installed_models': 2, 'core': 3, 'growth': 4, 'twin': 4, 'simulation': 5, 'files': 6,
-    'parameters': 6, 'live': 7, 'stream': 7, 'page': 8, 'pictures': 8, 'commands': 9, 'forest': 10,
-}  # fmt: skip
-#: Storey of each room of the core: imports point to lower storeys or stay in the room.
+#: Storey of each house and of each module that is a house of its own: who stands outside enters
+#: by the face, from a higher storey. Houses of the library first, then those of the core.
 STOREYS = {
-    'arrays': 0, 'native': 1, 'rotation': 1, 'checks': 1, 'random_source': 1, 'tree': 1,
-    'wind': 2, 'oscillators': 2, 'leaves': 3, 'model': 3, 'setup': 4, 'run': 5, 'fidelity': 6,
-    'scene': 7,
+    'errors': 0, 'faces': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'doorkeeper': 1,
+    'installed_models': 2, 'core': 20, 'growth': 21, 'twin': 21, 'simulation': 22, 'files': 23,
+    'parameters': 23, 'live': 24, 'stream': 24, 'page': 25, 'pictures': 25, 'commands': 26,
+    'forest': 27,
+    'core.arrays': 3, 'core.rotation': 4, 'core.checks': 4, 'core.random_source': 4,
+    'core.native': 4, 'core.drag': 5, 'core.species': 5, 'core.tree': 6, 'core.wind': 7,
+    'core.oscillators': 7, 'core.leaves': 8, 'core.settings': 8, 'core.tree_state': 7,
+    'core.model': 9, 'core.setup': 10, 'core.run': 11, 'core.fidelity': 12, 'core.scene': 13,
 }  # fmt: skip
+#: Rooms with a face of their own.
+WINGS = {
+    'core.wind.simulated', 'files.export', 'files.models', 'files.motion', 'files.recording',
+    'files.scenes', 'files.trees', 'files.wind',
+}  # fmt: skip
+LARGEST_FACE = 25
 CORE_LIBRARIES = {'numpy', 'scipy', 'tree_sway'}
 NOT_IN_CORE = {
     'asyncio', 'datetime', 'glob', 'io', 'logging', 'multiprocessing', 'os', 'pathlib', 'random',
@@ -54,9 +61,26 @@ def name_of(path: Path) -> str:
     return '.'.join(parts[:-1] if parts[-1] == '__init__' else parts)
 
 
-def room_of(module: str) -> str:
-    """Room of a module of ours: the name below the package; empty for the package's root."""
-    return module.split('.')[1] if '.' in module else ''
+def house_of(module: str) -> str:
+    """House of a module of the library; empty for the package's root and for other packages."""
+    top, _, rest = module.partition('.')
+    parts = rest.split('.')
+    return '.'.join(parts[: 1 + (parts[0] == 'core')]) if top == 'tree_sway' else ''
+
+
+def faces() -> dict[str, list[str]]:
+    """Names on the face of each house and wing."""
+    found = {}
+    for path in LIBRARY.rglob('__init__.py'):
+        module = name_of(path)
+        if (room := module.partition('.')[2]) in STOREYS | dict.fromkeys(WINGS) and room != 'core':
+            found[module] = [
+                alias.name
+                for node in import_nodes(path)
+                if node.col_offset
+                for alias in node.names
+            ]
+    return found
 
 
 @cache
@@ -82,9 +106,44 @@ def imports_of(path: Path) -> Iterator[tuple[int, str, ast.AST]]:
 MODULES = {name_of(path) for path in FILES}
 
 
-def test_every_room_has_a_layer() -> None:
-    rooms = {room_of(name_of(path)) for path in LIBRARY.rglob('*.py')} - {''}
-    assert rooms == set(LAYERS)
+def test_every_house_has_a_storey() -> None:
+    houses = {house_of(name_of(path)) for path in LIBRARY.rglob('*.py')} - {''}
+    assert houses == set(STOREYS)
+
+
+def test_a_house_is_entered_by_its_face() -> None:
+    """From outside, nothing is imported from a module within; a module alone is its own face."""
+    wrong = []
+    for path in FILES:
+        own = house_of(name_of(path))
+        for node in import_nodes(path):
+            for alias in node.names:
+                module = node.module if isinstance(node, ast.ImportFrom) else alias.name
+                house = house_of(module or '')
+                room = (module or '').partition('.')[2]
+                is_within = f'{module}.{alias.name}' in MODULES and house != 'core'
+                if house and house != own and (is_within or room not in {house, *WINGS}):
+                    wrong.append(f'{path}:{node.lineno} imports {alias.name} past the face')
+    assert not wrong, '\n'.join(wrong)
+
+
+def test_a_face_is_small_and_every_name_on_it_is_there() -> None:
+    wrong = []
+    for module, names in faces().items():
+        face = import_module(module)
+        assert face.__doc__
+        if len(names) > LARGEST_FACE:
+            wrong.append(f'{module} offers {len(names)} names')
+        wrong += [f'{module} lacks {name}' for name in names if not hasattr(face, name)]
+        wrong += [
+            f'{module}.{name} is a module too' for name in names if f'{module}.{name}' in MODULES
+        ]
+    assert not wrong, '\n'.join(wrong)
+
+
+def test_a_name_that_a_face_does_not_offer_is_refused() -> None:
+    with pytest.raises(AttributeError, match=r"'tree_sway\.core\.tree' has no attribute 'Treee'"):
+        import_module('tree_sway.core.tree').Treee  # noqa: B018
 
 
 def test_a_package_imports_none_above_it() -> None:
@@ -113,13 +172,11 @@ def test_imports_are_absolute_and_never_from_the_package_root() -> None:
 def test_imports_point_down() -> None:
     wrong = []
     for path in sorted(LIBRARY.rglob('*.py')):
-        room = room_of(name_of(path))
+        own = house_of(name_of(path))
         for line, module, _ in imports_of(path):
-            if module.split('.')[0] != 'tree_sway' or not room:
-                continue
-            other = room_of(module)
-            if other != room and LAYERS[other] >= LAYERS[room]:
-                wrong.append(f'{path}:{line}: {room} imports {module}')
+            other = house_of(module)
+            if own and other and other != own and STOREYS[other] >= STOREYS[own]:
+                wrong.append(f'{path}:{line}: {own} imports {module}')
     assert not wrong, '\n'.join(wrong)
 
 
@@ -145,7 +202,23 @@ def test_the_core_check_sees_what_it_looks_for(text: str) -> None:
 
 
 def test_no_import_cycle() -> None:
-    graph = {name_of(path): {m for _, m, _ in imports_of(path) if m in MODULES} for path in FILES}
+    """A name of a face is one of the module that it is in."""
+    homes = {
+        (name_of(path), alias.name): node.module
+        for path in LIBRARY.rglob('__init__.py')
+        for node in import_nodes(path)
+        if node.col_offset and isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    graph = {
+        name_of(path): {
+            home if (home := homes.get((module, alias.name))) else module
+            for _, module, node in imports_of(path)
+            for alias in node.names
+            if module in MODULES and not (node.col_offset and path.name == "__init__.py")
+        }
+        for path in FILES
+    }
     done: set[str] = set()
 
     def visit(module: str, trail: tuple[str, ...]) -> None:
@@ -157,20 +230,3 @@ def test_no_import_cycle() -> None:
 
     for module in graph:
         visit(module, ())
-
-
-def test_rooms_of_the_core_have_an_order() -> None:
-    wrong = []
-    for path in sorted((LIBRARY / 'core').rglob('*.py')):
-        parts = name_of(path).split('.')
-        if len(parts) < 3:
-            continue
-        own = parts[2]
-        assert own in STOREYS, f'{own} has no storey'
-        for line, module, _ in imports_of(path):
-            if not module.startswith('tree_sway.core.'):
-                continue
-            other = module.split('.')[2]
-            if other != own and STOREYS[other] >= STOREYS[own]:
-                wrong.append(f'{path}:{line}: {own} imports {module}')
-    assert not wrong, '\n'.join(wrong)

@@ -12,9 +12,9 @@ import pytest
 
 from tree_sway import installed_models as module
 from tree_sway.commands.cli import main
-from tree_sway.core.model.settings import MODELS, OF_LAB, Settings
 from tree_sway.core.run.rigid import RigidBank
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import MODELS, OF_LAB, Settings
 from tree_sway.errors import MissingDependencyError, ParameterError
 from tree_sway.installed_models import GROUP, installed_models
 from tree_sway.parameters.sway_parameters import SWAY

@@ -16,7 +16,7 @@ import time
 
 import numpy as np
 
-from tree_sway.stream.client import StreamClient
+from tree_sway.stream import StreamClient
 
 
 def main() -> None:

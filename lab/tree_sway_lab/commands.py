@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from tree_sway.commands.command import Command
+from tree_sway.commands import Command
 
 COMMANDS: dict[str, Command] = {
     'battery': Command(

@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 
 RATIOS: tuple[tuple[float, float], ...] = ((0.65, 0.6), (0.5, 0.6), (0.4, 0.35))
 """Length and diameter of a child over its parent's: long twigs, stiff twigs, light twigs."""

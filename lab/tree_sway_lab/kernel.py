@@ -17,8 +17,7 @@ import sys
 import time
 from typing import Any, cast, TypeVar
 
-from tree_sway.cache.folder import cache_folder
-from tree_sway.cache.source import ROOT, source_digest
+from tree_sway.cache import cache_folder, ROOT, source_digest
 from tree_sway.errors import MissingDependencyError
 
 try:

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 
 
 def settings_called(model: str, settings: Settings) -> Settings:

@@ -17,8 +17,7 @@ import heapq
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 from tree_sway.errors import ParameterError
 
 MOST_SEGMENTS = 10_000

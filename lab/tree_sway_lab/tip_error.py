@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import tips_of_poses, Tree
+from tree_sway.core.tree import tips_of_poses, Tree
 
 
 class Swaying(Protocol):

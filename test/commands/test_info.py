@@ -16,12 +16,12 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.commands import cli
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.settings import Settings
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 MODULUS, DENSITY = 8e9, 900.0
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tree_sway.commands.record_clock import RecordClock
-from tree_sway.commands.record_wind import WindTable
+from tree_sway.commands.wind_recording import WindTable
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.live.reading import WindReading
 

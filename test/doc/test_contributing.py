@@ -38,7 +38,7 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
 
 
 def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
-    module = 'tree_sway/core/tree/species.csv'
+    module = 'tree_sway/core/species/species.csv'
     text = (ROOT / module).read_text(encoding='utf-8')
     (row,) = blocks_of('A new species')
     changed_copy(tmp_path, module, re.sub('^ash,', f'{row}ash,', text, flags=re.M))
@@ -59,7 +59,7 @@ def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
 #: program, and what it prints with the change alone.
 CHANGES = {
     'species': (
-        'tree_sway/core/tree/species.csv',
+        'tree_sway/core/species/species.csv',
         'ash,ash,broadleaf,no,9.5e9', 'ash,ash,broadleaf,no,8.5e9',
         "from tree_sway import species_named; print(species_named('ash').modulus)", '8500000000.0',
     ),
@@ -87,8 +87,8 @@ CHANGES = {
         '0.5',
     ),
     'air': (
-        'tree_sway/core/model/drag_law.py', 'AIR_DENSITY = 1.225', 'AIR_DENSITY = 1.0',
-        'from tree_sway.core.model.drag_law import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
+        'tree_sway/core/drag/drag_law.py', 'AIR_DENSITY = 1.225', 'AIR_DENSITY = 1.0',
+        'from tree_sway.core.drag.drag_law import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
     ),
     'unit': (
         'tree_sway/files/columns.json', '"mph": 0.44704,', '"mph": 0.44704, "yd/s": 0.9144,',

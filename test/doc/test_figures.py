@@ -15,11 +15,11 @@ import pytest
 
 from tree_sway.cache.model_cache import MOST
 from tree_sway.commands import cli
-from tree_sway.core.model import load_spreads
-from tree_sway.core.model.settings import USUAL
-from tree_sway.core.tree.species import ROOT_MOMENT, species_named
+from tree_sway.core.drag import load_spreads
+from tree_sway.core.settings import USUAL
+from tree_sway.core.species.species import ROOT_MOMENT, species_named
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
-from tree_sway.files.scenes import kind_classes
+from tree_sway.files.scenes import classes as kind_classes
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
 from tree_sway.page import page_client, server

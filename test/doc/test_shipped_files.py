@@ -15,7 +15,7 @@ import pytest
 import yaml
 
 from tree_sway import open_scene
-from tree_sway.core.model.settings import model_of, Settings
+from tree_sway.core.settings import model_of, Settings
 from tree_sway.forest.plan import read_study
 
 HERE = Path(__file__).parent

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.tree.species import species_like
+from tree_sway.core.species.species import species_like
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import COLUMNS, folded, MOTIONS, rank_of, unit_factor, UNITS
 from tree_sway.files.motion.motion_file import read_motion

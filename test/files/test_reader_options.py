@@ -3,7 +3,7 @@
 import pytest
 
 from tree_sway.errors import ParameterError
-from tree_sway.files.reader_options import reader_options
+from tree_sway.files.reading_options import reader_options
 
 
 def test_words_become_options():

@@ -19,7 +19,7 @@ from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.simulation.simulate import simulate
+from tree_sway.simulation.rig import simulate
 
 DIAMETERS = ('stem_diameter', 'stemDiameter', 'trunk_diameter', 'trunk diameter', 'stem_diam')
 

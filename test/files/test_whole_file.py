@@ -7,9 +7,9 @@ import stat
 import pytest
 
 from tree_sway.errors import FormatError
+from tree_sway.files.atomic_file import whole_file, write_text_whole
 from tree_sway.files.paths import path_of
 from tree_sway.files.text_file import read_text
-from tree_sway.files.whole_file import whole_file, write_text_whole
 
 
 def written_until(file, error):

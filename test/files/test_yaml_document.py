@@ -5,7 +5,7 @@ from dataclasses import fields
 from jsonschema import Draft202012Validator
 import pytest
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species.species import Species
 from tree_sway.errors import FormatError
 from tree_sway.files.yaml_document import read_yaml, tree_schema
 

@@ -17,8 +17,8 @@ import threading
 import time
 
 import pytest
-from test.forest.conftest import SeparateCluster, StartCluster
 
+from test.forest.conftest import SeparateCluster, StartCluster
 from tree_sway.commands import cli
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.forest import cluster

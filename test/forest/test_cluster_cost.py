@@ -20,6 +20,7 @@ import time
 from urllib.parse import urlsplit
 
 import pytest
+
 from test.forest.conftest import StartCluster
 
 pytest.importorskip('distributed', reason='needs dask.distributed')

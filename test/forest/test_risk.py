@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.core.wind.exposure import Exposure, EXPOSURES
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
 from tree_sway.forest import risk_command
 from tree_sway.forest.risk import risk_work, Row, rows_of_kind
 from tree_sway.forest.risk_kind import compute_kind, KindResult, RiskKind, SeasonCurves
 from tree_sway.simulation.critical_wind import ShareCurve
+from tree_sway.simulation.exposure import Exposure, EXPOSURES
 from tree_sway.simulation.strength_band import wood_band
 
 pytest.importorskip('distributed', reason='needs dask.distributed')

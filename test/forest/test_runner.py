@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.core.model.settings import USUAL
+from tree_sway.core.settings import USUAL
 from tree_sway.errors import FormatError, ParameterError, TreeSwayError
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.forest import cluster, runner

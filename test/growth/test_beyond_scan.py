@@ -12,7 +12,7 @@ import pytest
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import Tree
 from tree_sway.growth.beyond_scan import grown_beyond, is_cut
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 TWIG, TRUSTED = 0.003, 0.05
 

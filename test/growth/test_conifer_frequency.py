@@ -15,10 +15,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
-from tree_sway.growth.grow import grow
+from tree_sway.core.species.species import species_named
+from tree_sway.growth.growing import grow
 
 FEW = {('spruce', 10.0), ('pine', 30.0), ('fir', 20.0), ('larch', 20.0)}
 LONG, FAST = (

@@ -12,7 +12,7 @@ import pytest
 from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.setup.beams.greenhill import greenhill_length
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.growth.benjamina import grow_benjamina
 from tree_sway.growth.broadleaf import grow_broadleaf

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, SpeciesError
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 
 def rng() -> np.random.Generator:

@@ -12,7 +12,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.growth import forms
 from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 SEEDS = range(3)
 

@@ -5,9 +5,9 @@
 import numpy as np
 import pytest
 
-from tree_sway.core.tree.species import species_keys
+from tree_sway.core.species.species import species_keys
 from tree_sway.errors import ParameterError
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 from tree_sway.growth.stem_by_age import stem_growth, stem_of_age
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test.live.test_two_instruments import Two
 
+from test.live.test_two_instruments import Two
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.transports.transport import Message
 

@@ -19,11 +19,11 @@ from urllib.request import Request, urlopen
 
 import numpy as np
 import pytest
-from test.live.conftest import Broker, Heard, in_a_loop
 
-from tree_sway.core.model.settings import Settings
+from test.live.conftest import Broker, Heard, in_a_loop
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.settings import Settings
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.files.trees.source import open_scene
 from tree_sway.files.wind.sensor_line import checksum_of

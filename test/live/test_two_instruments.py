@@ -10,8 +10,8 @@ import socket
 from typing import Any
 
 import pytest
-from test.live.test_live_wind import Told
 
+from test.live.test_live_wind import Told
 from tree_sway.live import live_source, live_wind
 from tree_sway.live.transports.transport import Message
 

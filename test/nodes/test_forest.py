@@ -11,7 +11,7 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
 from std_srvs.srv import Trigger  # noqa: E402
 
-from tree_sway.core.model.settings import USUAL  # noqa: E402
+from tree_sway.core.settings import USUAL  # noqa: E402
 from tree_sway.errors import TreeSwayError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402

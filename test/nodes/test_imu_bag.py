@@ -18,14 +18,14 @@ from tree_sway_lab.twin.simulated_sensor import SimulatedSensor  # noqa: E402
 
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
-from tree_sway.core.tree.species import species_named  # noqa: E402
+from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.core.tree.tree import tips_of_poses  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.motion.imu_bag import read_imu_bag  # noqa: E402
 from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
-from tree_sway.simulation.simulate import PlacedMotion, simulate  # noqa: E402
+from tree_sway.simulation.rig import PlacedMotion, simulate  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
 from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
 from tree_sway_ros.wire.cdr import poses_of, stamp_of  # noqa: E402

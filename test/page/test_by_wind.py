@@ -18,8 +18,8 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.files.export.tree_mesh import leaf_mesh
 from tree_sway.growth.builtin import builtin_tree
 from tree_sway.stream.scene_state import SceneState

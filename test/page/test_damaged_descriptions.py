@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.stream.placing import Placer
 from tree_sway.stream.protocol import decode_description, encode_description

@@ -21,8 +21,8 @@ Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.page.one_file import page_of_scene  # noqa: E402
 

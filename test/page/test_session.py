@@ -18,9 +18,9 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway_lab.kinds.kinds import kind_called  # noqa: E402
 from tree_sway_lab.validation.truth import SETTINGS, WOOD  # noqa: E402
 
-from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page import wind_source  # noqa: E402

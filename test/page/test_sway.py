@@ -19,13 +19,13 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 from tree_sway_lab.example_trees import leafy_sapling  # noqa: E402
 
-from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene import shared_tables  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
-from tree_sway.core.setup.prepare import prepare  # noqa: E402
-from tree_sway.core.tree.species import species_named  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
+from tree_sway.core.setup.preparation import prepare  # noqa: E402
+from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.growth.builtin import BUILTIN_TREES  # noqa: E402

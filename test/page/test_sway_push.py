@@ -15,11 +15,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.run.pushes import Spring  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.core.tree.tree import Tree  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.stream.scene_state import SceneState  # noqa: E402

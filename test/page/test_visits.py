@@ -16,7 +16,7 @@ import pytest
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.core.model.settings import Settings  # noqa: E402
+from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402

@@ -13,10 +13,10 @@ import pytest
 from scipy.integrate import trapezoid
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
-from tree_sway.simulation.simulate import Rig, simulate
+from tree_sway.simulation.rig import Rig, simulate
 
 STEADY = np.tile([3.0, 0.0, 0.0], (1200, 1))
 

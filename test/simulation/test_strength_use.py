@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.tree.species import ROOT_MOMENT, species_named
-from tree_sway.simulation.simulate import Rig
+from tree_sway.core.settings import Settings
+from tree_sway.core.species.species import ROOT_MOMENT, species_named
+from tree_sway.simulation.rig import Rig
 from tree_sway.simulation.wood_strain import WoodStrain
 
 STEADY = np.tile([3.0, 0.0, 0.0], (1200, 1))

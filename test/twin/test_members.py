@@ -11,10 +11,10 @@ import pytest
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import simulate
+from tree_sway.growth.growing import grow
+from tree_sway.simulation.rig import simulate
 from tree_sway.twin import members as members_module
 from tree_sway.twin import observed_tree as observed_tree_module
 from tree_sway.twin.members import Uncertainty, uncorrelated_draws

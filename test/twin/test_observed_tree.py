@@ -21,12 +21,12 @@ from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway.core.arrays import Floats
 from tree_sway.core.run.tuning import Tuning
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 from tree_sway.twin.later_work import Submit
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on

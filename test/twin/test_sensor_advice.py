@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
-from tree_sway.growth.grow import grow
+from tree_sway.core.species.species import species_named
+from tree_sway.growth.growing import grow
 from tree_sway.twin.sensor_advice import advised_places
 from tree_sway.twin.sensor_place import place_on
 

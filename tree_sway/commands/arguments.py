@@ -13,20 +13,23 @@ import sys
 from typing import Any
 
 from tree_sway.commands.progress import waiting
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.model.settings import model_of, Settings
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.setup.season import LEAVES
-from tree_sway.core.tree.species import Species, species_named
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.scene import Scene
+from tree_sway.core.settings import model_of, Settings
+from tree_sway.core.setup import LEAVES
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, shown, SpeciesError
-from tree_sway.files.export.tree_export import write_tree
-from tree_sway.files.reader_options import reader_options
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.source import open_scene, open_tree
-from tree_sway.files.trees.tree_options import same
-from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
-from tree_sway.files.whole_file import refuse_unwritable
+from tree_sway.files import reader_options, refuse_unwritable
+from tree_sway.files.export import write_tree
+from tree_sway.files.trees import (
+    is_species_file,
+    open_scene,
+    open_tree,
+    read_species,
+    same,
+    TreeFile,
+)
 
 OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
 _TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'

@@ -23,17 +23,14 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.progress import waiting
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.season import is_in_leaf
-from tree_sway.core.tree.plausibility import sway_oddity
-from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import is_in_leaf
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import sway_oddity
 from tree_sway.errors import inside, ParameterError, TransportError
-from tree_sway.files.paths import path_of
-from tree_sway.files.wind.phone import read_phone_sway
-from tree_sway.files.wind.sway_table import read_csv_sway, SwayRecord
-from tree_sway.twin.identification.calibration import calibrate, Calibration
-from tree_sway.twin.identification.free_decay import FreeDecay
-from tree_sway.twin.identification.measured_sway import estimate_sway
+from tree_sway.files import path_of
+from tree_sway.files.wind import read_csv_sway, read_phone_sway, SwayRecord
+from tree_sway.twin import calibrate, Calibration, estimate_sway, FreeDecay
 
 _YAML = ('.yaml', '.yml')
 _PERIOD = 1.0

@@ -26,21 +26,25 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.wind_arguments import add_wind_arguments, opened_wind, refuse_unused_wind
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator, solved
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator, Scene, solved
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import prepare
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.export.gltf_tree import morphing_tree
-from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
-from tree_sway.files.export.obj_scene import ObjScene
-from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
-from tree_sway.files.export.usd_writing import write_usd
-from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
-from tree_sway.files.models.model_writer import NATIVE_SUFFIX, write_model, write_native_model
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files import write_text_whole
+from tree_sway.files.export import (
+    mjcf_of_tree,
+    morphing_tree,
+    ObjScene,
+    sdf_of_tree,
+    SUFFIXES,
+    write_gltf,
+    write_tree,
+    write_usd,
+)
+from tree_sway.files.models import NATIVE_SUFFIX, write_model, write_native_model
+from tree_sway.files.models import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.trees import TreeFile
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -144,7 +148,7 @@ def _write_moments(
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
     """Write a page that sways by itself."""
-    from tree_sway.page.one_file import page_of_scene
+    from tree_sway.page import page_of_scene
 
     settings = Settings(in_leaf=chosen_leaves(arguments))
     with waiting('finding what sways'):

@@ -8,11 +8,11 @@ import argparse
 from typing import Any
 
 from tree_sway.commands.arguments import refuse_unused
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.simulation import Exposure, exposure_of, EXPOSURES
+from tree_sway.twin import LearnedTree
 
 
 def add_exposure_arguments(

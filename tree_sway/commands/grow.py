@@ -16,14 +16,13 @@ from tree_sway.commands.arguments import (
     write_tree_file,
 )
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.species import species_keys, species_named
+from tree_sway.core.tree import rooted
 from tree_sway.errors import ParameterError, TreeError
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.growth.grow import grow
-from tree_sway.growth.stem_by_age import stem_growth, stem_of_age
+from tree_sway.files.trees import TreeFile
+from tree_sway.growth import grow, stem_growth, stem_of_age
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

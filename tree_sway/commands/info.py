@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.cache.model_cache import MODELS
+from tree_sway.cache import MODELS
 from tree_sway.commands.arguments import (
     add_exact_argument,
     add_leaves_argument,
@@ -31,20 +31,15 @@ from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.placed_tree import Kind, PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.season import in_season
-from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
-from tree_sway.core.tree.plausibility import oddities, sway_oddity
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.scene import Kind, make_simulator, PlacedTree, Scene
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import in_season, TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import BREAST_HEIGHT, breast_height_diameter, oddities, sway_oddity, Tree
 from tree_sway.errors import LONGEST_NOTE, shown, TreeError
-from tree_sway.parameters.sway_parameters import SWAY
-from tree_sway.simulation.strength_use import StrengthUse
-from tree_sway.twin.sensor_advice import advised_places
+from tree_sway.parameters import SWAY
+from tree_sway.simulation import StrengthUse
+from tree_sway.twin import advised_places
 
 _GRAVITY = 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from tree_sway.commands.arguments import what_was_written
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene import Scene, Simulator
 from tree_sway.errors import FormatError, inside, ParameterError
-from tree_sway.files.trees.learned_file import LearnedFile, refuse_no_learned_file
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.files.trees import LearnedFile, refuse_no_learned_file
+from tree_sway.twin import LearnedTree
 
 if TYPE_CHECKING:
-    from tree_sway.twin.observed_tree import ObservedTree
+    from tree_sway.twin import ObservedTree
 
 
 def add_learn_argument(parser: argparse.ArgumentParser) -> None:
@@ -82,7 +81,7 @@ class Learning:
         """Write what a simulator has learned, if anything is new; say if that is impossible."""
         if simulator not in self._files:
             return
-        from tree_sway.twin.observed_tree import ObservedTree
+        from tree_sway.twin import ObservedTree
 
         assert isinstance(simulator, ObservedTree)
         try:
@@ -94,7 +93,7 @@ class Learning:
         """Say what a simulator has learned, and where it is."""
         if simulator not in self._files:
             return
-        from tree_sway.twin.observed_tree import ObservedTree
+        from tree_sway.twin import ObservedTree
 
         assert isinstance(simulator, ObservedTree)
         print(f'{self._files[simulator].path}: {simulator.learned or "nothing was learned"}')

@@ -14,8 +14,7 @@ from tree_sway.commands.motion_arguments import add_place_argument, sensors_and_
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.live.motion.live_motion import MotionSample
-    from tree_sway.live.motion.motion_feed import MotionFeed
+    from tree_sway.live import MotionFeed, MotionSample
 
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,9 +48,7 @@ def sensing(
         address.
 
     """
-    from tree_sway.live.motion.live_motion import LiveMotion
-    from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor
-    from tree_sway.live.motion.motion_registry import open_motion
+    from tree_sway.live import LiveMotion, MotionFeed, open_motion, PlacedSensor
 
     placed = []
     addresses = set[str]()

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.relative_damping import relative_damping
+from tree_sway.core.setup import relative_damping, TreeReductions
 
 
 def mode_table(whole: TreeReductions, count: int) -> tuple[list[dict[str, Any]], float]:

@@ -12,13 +12,10 @@ import re
 from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.commands.progress import bar
 from tree_sway.core.checks import within
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
-from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.scene import Run, Simulator
+from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.errors import ParameterError
-from tree_sway.page.wind_source import blow, WindSource
+from tree_sway.page import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
 _LATEST = 86400.0

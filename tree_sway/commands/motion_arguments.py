@@ -9,12 +9,11 @@ from pathlib import Path
 import sys
 
 from tree_sway.core.checks import within
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import inside, ParameterError
-from tree_sway.files.motion.motion_file import read_motion
-from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.simulation.simulate import PlacedMotion
-from tree_sway.twin.sensor_place import place_on
+from tree_sway.files.motion import MotionRecord, read_motion
+from tree_sway.simulation import PlacedMotion
+from tree_sway.twin import place_on
 
 
 def add_motion_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,17 +12,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from tree_sway.core.fidelity.estimate import DIAL
-from tree_sway.core.leaves.calendar import FIRST_MONTH, LAST_MONTH
-from tree_sway.core.tree.species import species_keys
-from tree_sway.growth.builtin import BUILTIN_TREES
-from tree_sway.growth.stem_by_age import OLDEST
+from tree_sway.core.fidelity import DIAL
+from tree_sway.core.leaves import FIRST_MONTH, LAST_MONTH
+from tree_sway.core.species import species_keys
+from tree_sway.growth import BUILTIN_TREES, OLDEST
 from tree_sway.installed_models import installed_models
-from tree_sway.live.live_wind import LiveWind
-from tree_sway.page.session import Choices
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
-from tree_sway.parameters.sway_parameters import SWAY
-from tree_sway.stream.controls import Control, PAUSE_AND_RESET, Value
+from tree_sway.live import LiveWind
+from tree_sway.page import Choices, RecordedWind, SimulatedWind, WindSource
+from tree_sway.parameters import SWAY
+from tree_sway.stream import Control, PAUSE_AND_RESET, Value
 
 _COUNTS = ('1', '9', '100')
 _LOWEST, _HIGHEST = 2.0, 40.0

@@ -35,15 +35,19 @@ from tree_sway.commands.wind_arguments import (
     simulated_speed,
 )
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene import Scene, Simulator
+from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.paths import is_file, path_of
-from tree_sway.page.wind_source import RecordedWind
-from tree_sway.parameters.sway_parameters import SWAY
-from tree_sway.pictures.pictures import picture_in_wind
-from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_tip, STUDY_COLUMNS
+from tree_sway.files import is_file, path_of
+from tree_sway.page import RecordedWind
+from tree_sway.parameters import SWAY
+from tree_sway.pictures import (
+    picture_in_wind,
+    plot_strength,
+    plot_study,
+    plot_wind_and_tip,
+    STUDY_COLUMNS,
+)
 
 _SETTLING = 60.0
 _SETTLING_STEP = 1.0 / 15.0

@@ -19,7 +19,7 @@ from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
-from tree_sway.page.film import browser, page_pictures
+from tree_sway.page import browser, page_pictures
 
 _LEAVES = 2800
 """Share of the leaves, so that frames are drawn fast enough."""
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
     refuse_unused_wind(arguments)
-    from tree_sway.pictures.animation import animate_poses, check_film, write_pictures
+    from tree_sway.pictures import animate_poses, check_film, write_pictures
 
     target = check_film(output_path(arguments))
     scene = opened_scene(arguments)

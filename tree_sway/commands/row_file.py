@@ -11,7 +11,7 @@ import sys
 import time
 from typing import TextIO
 
-from tree_sway.core.wind.limits import shorter_than
+from tree_sway.core.wind import shorter_than
 from tree_sway.errors import FormatError
 
 

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.errors import ParameterError, TransportError
-from tree_sway.files.wind.record import WindRecord
+from tree_sway.files.wind import WindRecord
 
 if TYPE_CHECKING:
-    from tree_sway.live.live_wind import LiveWind
-    from tree_sway.live.reading import WindReading
+    from tree_sway.live import LiveWind, WindReading
 
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
@@ -53,8 +52,7 @@ def listening(
     ``heard`` is called with each reading. A `ParameterError` reports a wrong address, or a record
     beside it.
     """
-    from tree_sway.live.live_wind import LiveWind
-    from tree_sway.live.registry import open_source
+    from tree_sway.live import LiveWind, open_source
 
     if getattr(arguments, 'wind', None) is not None:
         raise ParameterError('both --sensor and --wind', cure='give one of the two')

@@ -28,28 +28,20 @@ from tree_sway.commands.page_controls import page_controls, sensor_place
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
-from tree_sway.core.leaves.calendar import is_bare, species_in_month
-from tree_sway.core.model.settings import model_of, Settings, USUAL
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.leaves import is_bare, species_in_month
+from tree_sway.core.scene import PlacedTree, Scene, Simulator
+from tree_sway.core.settings import model_of, Settings, USUAL
+from tree_sway.core.species import species_named
+from tree_sway.core.tree import rooted
 from tree_sway.errors import FormatError, inside, ParameterError
-from tree_sway.files.motion.tree_history import refuse_no_history, TreeHistory
-from tree_sway.files.scenes.critical_winds import read_critical_winds
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.source import open_scene, scene_of_files
-from tree_sway.growth.grow import grow
-from tree_sway.growth.stem_by_age import stem_of_age
-from tree_sway.live.motion.motion_feed import MotionFeed
-from tree_sway.page.page_settings import PageSettings
-from tree_sway.page.server import PageServer
-from tree_sway.page.session import Choices, RATE, Session
-from tree_sway.page.wind_source import WindSource
-from tree_sway.stream.controls import ControlPanel
-from tree_sway.twin.observed_scene import observed_scene
-from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.files.motion import refuse_no_history, TreeHistory
+from tree_sway.files.scenes import read_critical_winds
+from tree_sway.files.trees import open_scene, scene_of_files, TreeFile
+from tree_sway.growth import grow, stem_of_age
+from tree_sway.live import MotionFeed
+from tree_sway.page import Choices, PageServer, PageSettings, RATE, Session, WindSource
+from tree_sway.stream import ControlPanel
+from tree_sway.twin import observed_scene, ObservedTree
 from tree_sway.worker import submit_beside
 
 _SPACING = 1.2

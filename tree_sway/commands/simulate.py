@@ -40,12 +40,11 @@ from tree_sway.commands.wind_arguments import (
     refuse_unused_wind,
     simulated_speed,
 )
-from tree_sway.core.wind.exposure import Exposure
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
-from tree_sway.files.export.table_writing import refuse_no_table, write_columns
-from tree_sway.files.trees.learned_file import LearnedFile
-from tree_sway.simulation.simulate import refuse_too_many_steps, simulate, WindSamples
+from tree_sway.files.export import refuse_no_table, write_columns
+from tree_sway.files.trees import LearnedFile
+from tree_sway.simulation import Exposure, refuse_too_many_steps, simulate, WindSamples
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

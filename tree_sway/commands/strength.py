@@ -6,10 +6,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.simulation.simulate import Rig
+from tree_sway.core.scene import PlacedTree, Scene
+from tree_sway.core.settings import Settings
+from tree_sway.simulation import Rig
 
 
 def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:

@@ -7,12 +7,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tree_sway.commands.progress import bar
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
-from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.page.wind_source import blow, WindSource
+from tree_sway.core.scene import Run, Simulator
+from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
+from tree_sway.page import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
 

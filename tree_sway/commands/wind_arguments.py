@@ -15,13 +15,12 @@ from tree_sway.commands.arguments import (
     add_tree_arguments,
     refuse_unused,
 )
-from tree_sway.core.wind.limits import shorter_than
+from tree_sway.core.wind import shorter_than
 from tree_sway.errors import ParameterError
-from tree_sway.files.reader_options import reader_options
-from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind
-from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.files import reader_options
+from tree_sway.files.wind import read_wind, WindRecord
+from tree_sway.page import RecordedWind, SimulatedWind
+from tree_sway.parameters import SWAY
 
 USUAL_SPEED = 6.0
 """Mean speed of the simulated wind where none is given [m/s]."""

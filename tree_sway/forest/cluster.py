@@ -23,7 +23,7 @@ import time
 from types import FrameType
 from typing import Any
 
-from tree_sway.cache.source import ROOT, source_digest
+from tree_sway.cache import ROOT, source_digest
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError, TransportError, TreeSwayError
 from tree_sway.extras import PACKAGE

@@ -8,10 +8,10 @@ import argparse
 import sys
 import time
 
-from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands import refuse_overwriting
 from tree_sway.core.checks import within
-from tree_sway.files.export.table_writing import refuse_no_table
-from tree_sway.files.paths import path_of
+from tree_sway.files import path_of
+from tree_sway.files.export import refuse_no_table
 from tree_sway.forest.cluster import DEADLINE, refuse_wrong_address
 from tree_sway.forest.plan import read_study
 from tree_sway.forest.runner import cores, estimated_time, missing_cases, run_study

@@ -12,17 +12,15 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.files.models.disk_cache import use_disk_cache
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.source import open_tree
-from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.core.species import species_named
+from tree_sway.core.wind import FASTEST_WIND
+from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.files.models import use_disk_cache
+from tree_sway.files.trees import open_tree, TreeFile
+from tree_sway.files.wind import read_wind, WindRecord
 from tree_sway.forest.plan import Case, Plain
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import Rig
+from tree_sway.growth import grow
+from tree_sway.simulation import Rig
 
 _UNITS = {'height': ' [m]', 'speed': ' [m/s]', 'intensity': ' [-]', 'scale': ' [-]'}
 

@@ -20,16 +20,14 @@ import math
 from pathlib import Path
 from typing import Any
 
-from tree_sway.cache.source import ROOT, source_digest
-from tree_sway.core.model.settings import Settings
+from tree_sway.cache import ROOT, source_digest
+from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, inside, nearest, ParameterError
-from tree_sway.files.paths import is_file, path_of
-from tree_sway.files.text_file import read_bytes, read_text
-from tree_sway.files.wind.wind_file import EXAMPLES
-from tree_sway.files.yaml_document import read_yaml
+from tree_sway.files import is_file, path_of, read_bytes, read_text, read_yaml
+from tree_sway.files.wind import EXAMPLES
 from tree_sway.forest.cluster import ROOMS
 from tree_sway.forest.refuse_impossible import listed, named_tree, refuse_impossible
-from tree_sway.simulation.simulate import refuse_too_many_steps
+from tree_sway.simulation import refuse_too_many_steps
 
 Plain = dict[str, Any]
 

@@ -10,14 +10,12 @@ import itertools
 from pathlib import Path
 from typing import Any
 
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.species import species_named
+from tree_sway.core.wind.simulated import Turbulence
 from tree_sway.errors import FormatError, TreeSwayError
-from tree_sway.files.paths import is_file, path_of
-from tree_sway.files.trees.source import unknown_tree
-from tree_sway.files.yaml_document import YamlDocument
-from tree_sway.growth.builtin import BUILTIN_TREES
-from tree_sway.growth.grow import refuse_height
+from tree_sway.files import is_file, path_of, YamlDocument
+from tree_sway.files.trees import unknown_tree
+from tree_sway.growth import BUILTIN_TREES, refuse_height
 
 
 def refuse_impossible(document: YamlDocument, folder: Path) -> None:

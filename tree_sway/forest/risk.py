@@ -19,9 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.wind.exposure import Exposure
-from tree_sway.files.scenes.inventory.read_inventory import Inventory
-from tree_sway.files.scenes.kind_classes import kind_classes
+from tree_sway.files.scenes import Inventory, kind_classes
 from tree_sway.forest.cluster import cluster, DEADLINE, run_all
 from tree_sway.forest.risk_kind import (
     compute_kind,
@@ -29,7 +27,7 @@ from tree_sway.forest.risk_kind import (
     RiskKind,
     SeasonCurves,
 )
-from tree_sway.simulation.strength_band import root_band, wood_band
+from tree_sway.simulation import Exposure, root_band, wood_band
 
 Row = dict[str, Any]
 

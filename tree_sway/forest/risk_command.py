@@ -12,17 +12,17 @@ from pathlib import Path
 import sys
 import time
 
-from tree_sway.commands.arguments import refuse_overwriting
-from tree_sway.commands.exposure import add_exposure_arguments, refuse_spacing_in_the_open
-from tree_sway.commands.progress import bar
-from tree_sway.commands.row_file import RowFile
+from tree_sway.commands import (
+    add_exposure_arguments,
+    bar,
+    refuse_overwriting,
+    refuse_spacing_in_the_open,
+    RowFile,
+)
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
-from tree_sway.files.paths import path_of
-from tree_sway.files.scenes.inventory.inventory_file import inventory_table
-from tree_sway.files.scenes.inventory.read_inventory import inventory_of
-from tree_sway.files.text_file import read_head
-from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
+from tree_sway.files import path_of, read_head, refuse_unwritable, write_text_whole
+from tree_sway.files.scenes import inventory_of, inventory_table
 from tree_sway.forest.command import add_cluster_arguments, refuse_wrong_cluster
 from tree_sway.forest.risk import risk_rows, risk_work, RiskWork, Row
 from tree_sway.forest.runner import cores

@@ -15,17 +15,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway.core.setup.standing import standing_tree
-from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.exposure import Exposure, exposure_of, STATION_HEIGHT
+from tree_sway.core.setup import standing_tree
+from tree_sway.core.species import species_named
+from tree_sway.core.tree import rooted, Tree
 from tree_sway.errors import TreeSwayError
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.growth.grow import grow, stem_range
-from tree_sway.growth.thickness import BREAST_HEIGHT
-from tree_sway.simulation.critical_wind import ShareCurve
-from tree_sway.simulation.simulate import Rig
+from tree_sway.files.trees import TreeFile
+from tree_sway.growth import BREAST_HEIGHT, grow, stem_range
+from tree_sway.simulation import Exposure, exposure_of, Rig, ShareCurve, STATION_HEIGHT
 
 _MODEL = 20
 _RATE = 20.0

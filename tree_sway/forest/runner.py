@@ -16,11 +16,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.errors import TreeSwayError
-from tree_sway.files.trees.source import open_tree
-from tree_sway.files.whole_file import write_text_whole
-from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.files import write_text_whole
+from tree_sway.files.trees import open_tree
+from tree_sway.files.wind import read_wind
 from tree_sway.forest.cluster import cluster, DEADLINE, run_all
 from tree_sway.forest.plan import Case, Plain
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.files.export.table_writing import write_columns
+from tree_sway.files.export import write_columns
 from tree_sway.forest.plan import Plain
 
 

@@ -6,3 +6,23 @@ Trees grown from a species, a height and a seed.
 Habits, thickness, twigs; the built-in trees by name.
 Nothing here knows of wind or files.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.growth.beyond_scan import grown_beyond as grown_beyond
+    from tree_sway.growth.beyond_scan import is_cut as is_cut
+    from tree_sway.growth.builtin import builtin_tree as builtin_tree
+    from tree_sway.growth.builtin import BUILTIN_TREES as BUILTIN_TREES
+    from tree_sway.growth.growing import grow as grow
+    from tree_sway.growth.growing import height_of_stem as height_of_stem
+    from tree_sway.growth.growing import refuse_height as refuse_height
+    from tree_sway.growth.growing import stem_range as stem_range
+    from tree_sway.growth.stem_by_age import OLDEST as OLDEST
+    from tree_sway.growth.stem_by_age import stem_growth as stem_growth
+    from tree_sway.growth.stem_by_age import stem_of_age as stem_of_age
+    from tree_sway.growth.thickness import BREAST_HEIGHT as BREAST_HEIGHT
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

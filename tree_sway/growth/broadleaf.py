@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.growth.axis import aim, direction_of, GOLDEN_ANGLE, grow_axis, heading_of
 from tree_sway.growth.forms import broadleaf_form, BroadleafForm
 from tree_sway.growth.skeleton import Skeleton

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.growth.benjamina import grow_benjamina
 from tree_sway.growth.broadleaf import grow_broadleaf
 from tree_sway.growth.goldcrest import grow_goldcrest

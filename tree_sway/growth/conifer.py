@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.growth.axis import direction_of, grow_axis
 from tree_sway.growth.forms import conifer_form, ConiferForm
 from tree_sway.growth.skeleton import Skeleton

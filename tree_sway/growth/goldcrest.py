@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.growth.axis import GOLDEN_ANGLE, grow_axis
 from tree_sway.growth.skeleton import Skeleton
 from tree_sway.growth.thickness import finished_tree

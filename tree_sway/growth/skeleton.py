@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 
 
 @dataclass

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species import species_named
 from tree_sway.errors import ParameterError
 from tree_sway.tables import table_beside
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.growth.skeleton import Shoot, Skeleton
 

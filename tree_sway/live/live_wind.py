@@ -19,10 +19,9 @@ import time
 
 import numpy as np
 
-from tree_sway.core.wind.limits import is_wind
-from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
-from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
-from tree_sway.files.wind.units import Velocity
+from tree_sway.core.wind import is_wind
+from tree_sway.core.wind.simulated import GustsAboutMean, LEAST_INTERVAL, RATE
+from tree_sway.files.wind import Velocity
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.reading import Reading, Refusal, WindReading

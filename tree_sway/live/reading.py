@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import math
 
-from tree_sway.core.wind.convention import velocity_of_bearing
-from tree_sway.files.wind.units import Velocity
+from tree_sway.core.wind import velocity_of_bearing
+from tree_sway.files.wind import Velocity
 from tree_sway.live.transports.transport import Message
 
 

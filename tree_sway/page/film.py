@@ -21,10 +21,10 @@ from threading import Thread
 import time
 from urllib.parse import urlencode
 
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene import Simulator
 from tree_sway.errors import TransportError
 from tree_sway.page.one_file import page_of_state
-from tree_sway.stream.scene_state import SceneState
+from tree_sway.stream import SceneState
 
 _NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
 _FLAGS = (

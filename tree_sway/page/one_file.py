@@ -22,9 +22,8 @@ import struct
 
 import numpy as np
 
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.stream.scene_state import SceneState
-from tree_sway.stream.tables import why_no_tables
+from tree_sway.core.scene import Simulator
+from tree_sway.stream import SceneState, why_no_tables
 
 _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)

@@ -20,7 +20,7 @@ from typing import Any
 from aiohttp import web
 
 from tree_sway.page.published import Published
-from tree_sway.stream.protocol import FRAME_SIZE, part_of_frame
+from tree_sway.stream import FRAME_SIZE, part_of_frame
 
 MOST_CREDIT = 64
 """Largest number of frames in transit to one client."""

@@ -29,7 +29,7 @@ from tree_sway.page.page_client import PageClient
 from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.published import Gusts, nothing, Published, Tables
 from tree_sway.page.refusals import Refusals
-from tree_sway.stream.controls import ControlPanel, Value
+from tree_sway.stream import ControlPanel, Value
 
 LARGEST_MESSAGE = 4096
 """Longest message of a client in [bytes]."""

@@ -15,29 +15,21 @@ import logging
 import threading
 import time
 
-from tree_sway.core.leaves.calendar import SUMMER
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.demand import set_demand
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.tree.species import species_keys
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
-from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.leaves import SUMMER
+from tree_sway.core.scene import Run, SceneSimulator, set_demand, Simulator
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import species_keys
+from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.files.export.gltf_tree import morphing_tree
-from tree_sway.growth.builtin import BUILTIN_TREES
-from tree_sway.growth.stem_by_age import stem_growth
-from tree_sway.live.live_wind import LiveWind
-from tree_sway.live.motion.motion_feed import MotionFeed
+from tree_sway.files.export import morphing_tree
+from tree_sway.growth import BUILTIN_TREES, stem_growth
+from tree_sway.live import LiveWind, MotionFeed
 from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
-from tree_sway.stream.controls import Refused, Value
-from tree_sway.stream.scene_state import SceneState
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.sensor_report import sensor_reports
+from tree_sway.stream import Refused, SceneState, Value
+from tree_sway.twin import ObservedTree, sensor_reports
 
 _LOGGER = logging.getLogger('tree_sway.page')
 RATE = 60.0

@@ -9,9 +9,9 @@ import math
 from typing import Protocol
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.scene.run import Run
-from tree_sway.core.wind.interpolated import interpolated_means
-from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.core.scene import Run
+from tree_sway.core.wind import interpolated_means
+from tree_sway.core.wind.simulated import AnemometerModel
 from tree_sway.page.newest import Newest
 
 _RATE = 20.0

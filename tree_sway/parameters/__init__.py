@@ -5,3 +5,19 @@ Parameters with default, unit, range and source.
 
 One table each, which nodes, commands and the documentation read.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.parameters.parameter import Parameter as Parameter
+    from tree_sway.parameters.parameter import QOS_PREFIX as QOS_PREFIX
+    from tree_sway.parameters.parameter import read_tables as read_tables
+    from tree_sway.parameters.parameter import Table as Table
+    from tree_sway.parameters.parameter import unknown_names as unknown_names
+    from tree_sway.parameters.parameter import unknown_parameter as unknown_parameter
+    from tree_sway.parameters.parameter import Value as Value
+    from tree_sway.parameters.sway_parameters import SWAY as SWAY
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

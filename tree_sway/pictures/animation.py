@@ -14,12 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.flutter import flutter_angle
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import flutter_angle, LeafClusters
+from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.whole_file import whole_file
+from tree_sway.files import whole_file
 from tree_sway.pictures.plotting import new_figure
 from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 

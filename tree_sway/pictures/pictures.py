@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.pictures.plotting import new_figure, save_figure
 from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 

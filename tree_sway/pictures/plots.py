@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.errors import ParameterError
 from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.simulation.strength_use import StrengthUse
+from tree_sway.simulation import StrengthUse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tree_sway.errors import FormatError
-from tree_sway.files.whole_file import whole_file
+from tree_sway.files import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,11 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.flutter import leaf_poses
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import leaf_traits, look_of
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import leaf_poses, LeafClusters
+from tree_sway.core.species import leaf_traits, look_of
+from tree_sway.core.tree import ends_of_poses, Tree
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

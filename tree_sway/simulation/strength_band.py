@@ -26,7 +26,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.load_spreads import DRAG, LEAVES, WIND
+from tree_sway.core.drag import DRAG, LEAVES, WIND
 
 WOOD, KNOTS = 0.16, 0.15
 """Log-deviation of clear wood, and the largest part of its strength that knots take [-]."""

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import ROOT_MOMENT
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.species import ROOT_MOMENT
 from tree_sway.simulation.strength_band import load_band, root_band, wood_band
 from tree_sway.simulation.wood_strain import WoodStrain
 

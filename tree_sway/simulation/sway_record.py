@@ -12,7 +12,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.simulation.strength_use import StrengthUse
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin import LearnedTree
 
 _SIDES = ('east', 'north')
 

@@ -9,8 +9,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.setup.beams.beam import BranchBeam, N_POINTS, round_section
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup import BranchBeam, N_POINTS, round_section, TreeReductions
 
 _TO_BASE = np.linalg.pinv(np.vander((leggauss(N_POINTS)[0] + 1.0) / 2.0, 3))[-1]
 """Weights of the points of a panel for the value at its begin of the nearest parabola."""

@@ -14,7 +14,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.stream.protocol import Description, Frame, PAUSED, RESTARTED
 
 if TYPE_CHECKING:
-    from tree_sway.core.scene.received_scene import ReceivedScene
+    from tree_sway.core.scene import ReceivedScene
 
 STEP = 1.0 / 60.0
 """Time step of a scene that is solved by its wind in [s]."""

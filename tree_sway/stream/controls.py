@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import STIFFEST
+from tree_sway.core.settings import STIFFEST
 from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.parameters.parameter import Parameter
+from tree_sway.parameters import Parameter
 
 _GREATEST = 1e15
 _FARTHEST = 1e5

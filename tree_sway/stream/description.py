@@ -17,9 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.leaves import FLUTTER_GAIN, LARGEST_ANGLE, LeafClusters
+from tree_sway.core.run import SwaySimulator
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description
 from tree_sway.stream.scene_kind import SceneKind

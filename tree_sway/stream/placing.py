@@ -7,9 +7,8 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.records import room_for_fields
-from tree_sway.core.native.model import bytes_of, NativeModel
-from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.model import room_for_fields
+from tree_sway.core.native import bytes_of, NativeModel, NativeStand
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description

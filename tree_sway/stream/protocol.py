@@ -23,13 +23,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.state_basis import FULL_SCALE, MARGIN
+from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array, check_description
 from tree_sway.stream.check_tables import check_tables
 
 if TYPE_CHECKING:
-    from tree_sway.core.scene.received_scene import ReceivedScene
+    from tree_sway.core.scene import ReceivedScene
 
 VERSION = 2
 FRAME_VERSION = 1
@@ -185,7 +185,7 @@ class Tables:
         Raises a `FormatError` for tables of another description, and the errors of `check_tables`.
         """
         # Here, as it loads the compiler, which drawing does not need.
-        from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
+        from tree_sway.core.scene import ReceivedKind, ReceivedScene
 
         header = self.header
         with _reading('tables'):

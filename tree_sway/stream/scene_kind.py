@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.run.simulator import Motion, SwaySimulator
-from tree_sway.core.run.simulator_basis import basis_of
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.model import StateBasis
+from tree_sway.core.run import basis_of, Motion, SwaySimulator
+from tree_sway.core.scene import Simulator
 
 Place = tuple[float, float, float, float, float]
 """Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.setup.season import is_in_leaf
+from tree_sway.core.leaves import leaf_clusters, LeafClusters
+from tree_sway.core.scene import Simulator
+from tree_sway.core.setup import is_in_leaf
 from tree_sway.stream.description import describe_scene
 from tree_sway.stream.protocol import (
     decode_description,

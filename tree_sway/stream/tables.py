@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.model.exported_table import exported_table, rounded
-from tree_sway.core.model.settings import USUAL
-from tree_sway.core.run.table_model import TableOscillators
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.run import TableOscillators
+from tree_sway.core.scene import exported_table, rounded, Simulator
+from tree_sway.core.settings import USUAL
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description, TABLES

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.drag_law import drag_density
-from tree_sway.core.setup.tree_motion import base_motion, own_motion
-from tree_sway.core.wind.crown_wind import DECAY
+from tree_sway.core.drag import drag_density
+from tree_sway.core.setup import base_motion, own_motion
+from tree_sway.core.wind import DECAY
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.simulator import SwaySimulator
+    from tree_sway.core.run import SwaySimulator
 
 TIME_CONSTANT = 0.6
 """Time in [s] after which an unknown force has decayed to 1/e."""

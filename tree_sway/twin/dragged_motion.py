@@ -20,9 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import LastAddress, LIBRARY
-from tree_sway.core.native.structures import NativeDragged
-from tree_sway.core.oscillators.propagator import held_propagator
+from tree_sway.core.native import LastAddress, LIBRARY, NativeDragged
+from tree_sway.core.oscillators import held_propagator
 
 if TYPE_CHECKING:
     from tree_sway.twin.disturbance import Disturbance

@@ -13,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.native.structures import NativeFilter, NativeReadings
+from tree_sway.core.native import address, LIBRARY, NativeFilter, NativeReadings
 from tree_sway.twin.steady_filter import SteadyFilter
 
 

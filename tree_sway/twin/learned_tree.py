@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 import math
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species import Species
 
 _RANGES = {'stiffness': (0.4, 2.5), 'damping': (0.2, 5.0), 'drag': (0.2, 3.0)}
 """Factors that several runs can add up to: some four deviations of each within a species."""

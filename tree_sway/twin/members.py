@@ -39,9 +39,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
-from tree_sway.core.oscillators.propagator import held_propagator
-from tree_sway.core.wind.crown_wind import N_DELAYS, USUAL_COHERENCE
+from tree_sway.core.drag import DRAG, LEAVES, SHARE_WITHIN
+from tree_sway.core.oscillators import held_propagator
+from tree_sway.core.wind import N_DELAYS, USUAL_COHERENCE
 from tree_sway.twin.disturbance import GUST, TIME_CONSTANT
 
 if TYPE_CHECKING:

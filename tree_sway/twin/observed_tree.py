@@ -30,16 +30,13 @@ from tree_sway.core.checks import (
     three_numbers,
     within,
 )
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings, settings_with
-from tree_sway.core.run.simulator import RESTARTED, SwaySimulator, WIND_REFUSED
-from tree_sway.core.setup.prepare import prepared
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import CrownWind, delays_of, N_DELAYS, USUAL_COHERENCE
-from tree_sway.core.wind.limits import is_wind
+from tree_sway.core.model import ModelCache, PREPARED
+from tree_sway.core.run import RESTARTED, SwaySimulator, WIND_REFUSED
+from tree_sway.core.settings import Settings, settings_with
+from tree_sway.core.setup import prepared, TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import GrownTree, Tree, tree_and_species
+from tree_sway.core.wind import CrownWind, delays_of, is_wind, N_DELAYS, USUAL_COHERENCE
 from tree_sway.errors import ParameterError
 from tree_sway.twin.disturbance import crown_slope
 from tree_sway.twin.dragged_motion import DraggedMotion
@@ -56,8 +53,8 @@ from tree_sway.twin.sway_watch import SwayChange
 from tree_sway.twin.tree_fit import TreeFit
 
 if TYPE_CHECKING:
-    from tree_sway.core.model.tree_state import TreeState
-    from tree_sway.core.run.tuning import Tuning
+    from tree_sway.core.run import Tuning
+    from tree_sway.core.tree_state import TreeState
 
 _STORM = 36.0
 """Wind in [m/s] whose static deflection bounds the energy of the corrected motion."""

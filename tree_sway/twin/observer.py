@@ -21,9 +21,8 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.native.structures import NativeCorrection
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.native import address, LIBRARY, NativeCorrection
+from tree_sway.core.setup import one_thread
 from tree_sway.twin.disturbance import Disturbance
 from tree_sway.twin.estimate import Estimate
 from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
@@ -40,7 +39,7 @@ from tree_sway.twin.tree_fit import TreeFit
 from tree_sway.twin.unknown_motion import UnknownMotion
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.simulator import SwaySimulator
+    from tree_sway.core.run import SwaySimulator
 
 MOST_COORDINATES = 32
 """Largest number of coordinates that sensors correct."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native import address, LIBRARY
 
 KEPT, NOT_FINITE, TOO_LARGE, SATURATED, OUT_OF_ORDER, RESTARTED = range(6)
 """Results of `SampleRing.keep`; the sample was kept with the first and the last."""

@@ -16,8 +16,8 @@ from typing import NamedTuple, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.setup.one_thread import one_thread
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.setup import one_thread
+from tree_sway.core.tree import Tree
 from tree_sway.twin.alignment import LEAST_NOISE
 from tree_sway.twin.gain_design import NOISE
 from tree_sway.twin.sensor_place import place_motion, place_on, tip_slopes
@@ -26,7 +26,7 @@ from tree_sway.twin.steady_filter import stationary_covariance, steady_filter
 from tree_sway.twin.unknown_motion import UnknownMotion
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.simulator import SwaySimulator
+    from tree_sway.core.run import SwaySimulator
 
 _MOST_COORDINATES = 32
 _MOST_LIMBS = 16

@@ -15,12 +15,11 @@ from typing import NamedTuple, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import tips_of_poses, Tree
+from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
 from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.simulator import SwaySimulator
+    from tree_sway.core.run import SwaySimulator
 
 _TURN = 1e-4
 """Largest key rotation in [rad] of the difference quotients."""

@@ -15,8 +15,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import LIBRARY
-from tree_sway.core.native.structures import NativeReadings
+from tree_sway.core.native import LIBRARY, NativeReadings
 from tree_sway.twin.late_wind import LateWind, LONGEST_WAY
 from tree_sway.twin.later_work import LaterWork, Submit
 from tree_sway.twin.sensor_place import PlaceMotion

@@ -17,8 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import LIBRARY
-from tree_sway.core.native.structures import NativeSensor
+from tree_sway.core.native import LIBRARY, NativeSensor
 from tree_sway.twin.alignment import (
     align,
     Alignment,

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.setup import one_thread
 
 WATCHED_BAND = (0.5, 8.0)
 """Frequencies over the first one of the tree."""

@@ -26,8 +26,8 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.oscillators.propagator import held_propagator
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.oscillators import held_propagator
+from tree_sway.core.setup import one_thread
 
 _MOST_DOUBLINGS, _ENOUGH = 60, 1e-10
 

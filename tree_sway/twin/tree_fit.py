@@ -28,8 +28,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.load_spreads import DRAG
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.drag import DRAG
+from tree_sway.core.setup import one_thread
 from tree_sway.twin.sensor_spectrum import Waves
 
 STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5

@@ -13,7 +13,7 @@ from tree_sway.twin.disturbance import Disturbance, disturbance, TIME_CONSTANT
 from tree_sway.twin.steady_filter import stationary_covariance, sway_law, SwayLaw
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.simulator import SwaySimulator
+    from tree_sway.core.run import SwaySimulator
 
 _RECENT = 30.0
 """Time constant of the mean wind in [s]."""

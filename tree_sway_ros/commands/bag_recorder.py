@@ -14,9 +14,9 @@ import sys
 import time
 from typing import Any
 
-from tree_sway.commands.ending import Ending
-from tree_sway.core.wind.limits import shorter_than
-from tree_sway.files.recording.bag_writer import BagWriter
+from tree_sway.commands import Ending
+from tree_sway.core.wind import shorter_than
+from tree_sway.files.recording import BagWriter
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import (
     DIAGNOSTICS,

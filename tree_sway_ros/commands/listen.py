@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands.ending import Ending, LONGEST
+from tree_sway.commands import Ending, LONGEST
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.errors import TransportError
 from tree_sway_ros.commands.totals import StreamTotals
 from tree_sway_ros.process.listener import Listener

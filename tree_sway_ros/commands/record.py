@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands.live_motion_arguments import add_live_motion_arguments
-from tree_sway.commands.record_tree import record_tree
-from tree_sway.commands.record_wind import record_wind
-from tree_sway.commands.sensor_arguments import add_sensor_argument
+from tree_sway.commands import (
+    add_live_motion_arguments,
+    add_sensor_argument,
+    record_tree,
+    record_wind,
+)
 from tree_sway.extras import refuse_missing
-from tree_sway.files.recording.bag_writer import FORMATS
+from tree_sway.files.recording import FORMATS
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 
 

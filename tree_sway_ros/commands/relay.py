@@ -17,13 +17,10 @@ import time
 from urllib.parse import parse_qsl, urlencode, urlsplit
 import webbrowser
 
-from tree_sway.commands.ending import Ending
-from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.commands import add_page_arguments, Ending, page_settings, print_address
 from tree_sway.errors import ParameterError, TransportError
-from tree_sway.page.access import read_token
-from tree_sway.page.server import PageServer
-from tree_sway.stream.client import StreamClient
-from tree_sway.stream.protocol import MAGIC
+from tree_sway.page import PageServer, read_token
+from tree_sway.stream import MAGIC, StreamClient
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 
 _LOOK = 0.2

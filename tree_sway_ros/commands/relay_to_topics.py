@@ -7,8 +7,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from tree_sway.stream.client import StreamClient
-from tree_sway.stream.protocol import Frame, PAUSED, WIND_LOST
+from tree_sway.stream import Frame, PAUSED, StreamClient, WIND_LOST
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, WIND
 from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
 from tree_sway_ros.wire.wind_messages import WindWriter

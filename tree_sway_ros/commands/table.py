@@ -4,6 +4,6 @@
 
 from __future__ import annotations
 
-from tree_sway.commands.command import commands_beside
+from tree_sway.commands import commands_beside
 
 COMMANDS = commands_beside(__file__)

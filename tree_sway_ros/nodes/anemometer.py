@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
+from tree_sway.core.wind.simulated import AnemometerModel, SensorFaults
 from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND

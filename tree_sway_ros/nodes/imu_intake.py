@@ -10,10 +10,9 @@ from functools import partial
 import time
 from typing import Any
 
-from tree_sway.core.scene.run import Run
+from tree_sway.core.scene import Run
 from tree_sway.errors import ParameterError
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.sensor_report import sensor_reports
+from tree_sway.twin import ObservedTree, sensor_reports
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN

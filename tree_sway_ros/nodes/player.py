@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
-from tree_sway.files.reader_options import reader_options
-from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.files import reader_options
+from tree_sway.files.wind import read_wind
 from tree_sway_ros.nodes.recorded_imu import RecordedImu
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CLOCK, IMU, WIND, WIND_FILTERED

@@ -12,7 +12,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError
-from tree_sway.files.motion.imu_bag import read_imu_bag
+from tree_sway.files.motion import read_imu_bag
 from tree_sway_ros.process.topics import refuse_topic_name
 from tree_sway_ros.wire.imu_messages import imu_message
 

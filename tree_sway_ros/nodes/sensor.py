@@ -8,10 +8,8 @@ from typing import Any
 
 from rclpy.clock import Clock, ClockType
 
-from tree_sway.files.wind.units import Velocity
-from tree_sway.live.live_wind import LiveWind
-from tree_sway.live.readers.instrument_lines import InstrumentLines
-from tree_sway.live.registry import open_source
+from tree_sway.files.wind import Velocity
+from tree_sway.live import InstrumentLines, LiveWind, open_source
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN

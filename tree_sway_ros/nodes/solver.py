@@ -15,26 +15,25 @@ from rclpy.clock import Clock, ClockType
 from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.tuning import LIVE
-from tree_sway.core.scene.demand import set_cost_scale, set_demand
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.scene.shard import shard_of
-from tree_sway.core.scene.wind_at import wind_at
-from tree_sway.core.setup.season import LEAVES
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.averaging import WindAverage
-from tree_sway.core.wind.height_profile import WindProfile
-from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.run import LIVE
+from tree_sway.core.scene import (
+    Run,
+    Scene,
+    set_cost_scale,
+    set_demand,
+    shard_of,
+    Simulator,
+    wind_at,
+)
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import LEAVES
+from tree_sway.core.species import species_named
+from tree_sway.core.wind import WindAverage, WindIntake, WindProfile
 from tree_sway.errors import FormatError, inside, LONGEST_NOTE, ParameterError, shown
-from tree_sway.files.motion.tree_history import TreeHistory
-from tree_sway.files.trees.learned_file import LearnedFile
-from tree_sway.files.trees.source import open_scene
-from tree_sway.stream.controls import ControlPanel, Refused
-from tree_sway.twin.observed_scene import observed_scene
-from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.files.motion import TreeHistory
+from tree_sway.files.trees import LearnedFile, open_scene
+from tree_sway.stream import ControlPanel, Refused
+from tree_sway.twin import observed_scene, ObservedTree
 from tree_sway.worker import submit_beside
 from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
 from tree_sway_ros.nodes.state_publisher import StatePublisher

@@ -7,11 +7,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene import Run, Simulator
 from tree_sway.errors import TreeSwayError
-from tree_sway.stream.protocol import PAUSED, WIND_LOST
-from tree_sway.stream.scene_state import SceneState
+from tree_sway.stream import PAUSED, SceneState, WIND_LOST
 from tree_sway_ros.process.topics import TREE_STATE
 from tree_sway_ros.timing.divider import Divider
 from tree_sway_ros.wire.tree_state import ModalState, state_entry, StateWriter

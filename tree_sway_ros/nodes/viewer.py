@@ -18,12 +18,17 @@ from sensor_msgs.msg import MultiDOFJointState
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.page.access import read_token, require_token
-from tree_sway.page.page_settings import PageSettings
-from tree_sway.page.server import PageServer
-from tree_sway.parameters.sway_parameters import SWAY
-from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
-from tree_sway.stream.protocol import decode_description, Description, encode_state
+from tree_sway.page import PageServer, PageSettings, read_token, require_token
+from tree_sway.parameters import SWAY
+from tree_sway.stream import (
+    Control,
+    ControlPanel,
+    decode_description,
+    Description,
+    encode_state,
+    PAUSE_AND_RESET,
+    Refused,
+)
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
     PULL,

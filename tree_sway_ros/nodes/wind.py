@@ -15,9 +15,7 @@ import numpy as np
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 
-from tree_sway.core.wind.convention import WindConvention
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind import WindConvention, WindGate, WindIntake
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN

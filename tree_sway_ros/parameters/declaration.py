@@ -23,7 +23,7 @@ from rcl_interfaces.msg import (
 )
 
 from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.parameters.parameter import (
+from tree_sway.parameters import (
     Parameter,
     QOS_PREFIX,
     Table,

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.parameters.parameter import read_tables, Table
-from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.parameters import read_tables, SWAY, Table
 
 NODE_PARAMETERS: dict[str, Table] = read_tables(
     Path(__file__).with_name('nodes.yaml'), tuple(SWAY.values())

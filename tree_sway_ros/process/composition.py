@@ -15,7 +15,7 @@ import importlib
 import threading
 from typing import Any
 
-from tree_sway.parameters.parameter import Value
+from tree_sway.parameters import Value
 from tree_sway_ros.process.spin import create, init, require_rclpy
 
 _CHECK_PERIOD = 0.2

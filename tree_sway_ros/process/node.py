@@ -15,7 +15,7 @@ from rclpy.node import Node
 from rclpy.qos import ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from tree_sway.core.wind.gate import LONGEST_TRANSPORT
+from tree_sway.core.wind import LONGEST_TRANSPORT
 from tree_sway.errors import TreeSwayError
 from tree_sway.worker import Worker
 from tree_sway_ros.parameters.declaration import ParameterValues

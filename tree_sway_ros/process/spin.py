@@ -18,9 +18,9 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from tree_sway.commands.ending import Ending
+from tree_sway.commands import Ending
 from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
-from tree_sway.files.models.disk_cache import use_disk_cache
+from tree_sway.files.models import use_disk_cache
 
 _REFUSALS = ('InvalidNamespaceException', 'InvalidNodeNameException', 'RCLError')
 _CHECK_PERIOD = 0.2

@@ -8,10 +8,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 import time
 
-from tree_sway.core.scene.demand import adaptive_among
-from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.wind.gate import GateCounts
+from tree_sway.core.scene import adaptive_among, Run, Simulator
+from tree_sway.core.wind import GateCounts
 from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 from tree_sway_ros.timing.pacer import Pacer, Timing

@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 import math
 import time
 
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.sensor_timing import SensorTiming
+from tree_sway.core.wind import SensorTiming, WindGate
 from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
 from tree_sway_ros.reports.one_publisher import OnePublisher
 from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts

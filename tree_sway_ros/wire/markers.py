@@ -12,8 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway_ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
 _BARK = (0.36, 0.25, 0.17, 1.0)

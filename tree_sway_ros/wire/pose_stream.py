@@ -10,8 +10,8 @@ from typing import Any
 
 from std_msgs.msg import String
 
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.tree import Tree
 from tree_sway_ros.process.topics import MARKERS, SEGMENT_POSES, TREE_DESCRIPTION
 from tree_sway_ros.timing.divider import Divider
 from tree_sway_ros.wire.cdr import pose_array_template

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import json
 
-from tree_sway.core.leaves.flutter import leaf_list
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.model.tree_state import digest_of
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import leaf_list, LeafClusters
+from tree_sway.core.tree import Tree
+from tree_sway.core.tree_state import digest_of
 
 VERSION = 1
 

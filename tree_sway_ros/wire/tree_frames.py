@@ -16,7 +16,7 @@ from typing import Any
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import nearest, ParameterError
 from tree_sway_ros.process.topics import TF, TF_STATIC
 from tree_sway_ros.timing.divider import Divider

@@ -19,7 +19,7 @@ from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.stream.protocol import PAUSED, WIND_LOST
+from tree_sway.stream import PAUSED, WIND_LOST
 from tree_sway_ros.wire.cdr import block_mark, CdrTemplate
 
 HEAD = ('stamp/sec', 'stamp/nanosec', 'wind/x', 'wind/y', 'wind/z', 'flags')

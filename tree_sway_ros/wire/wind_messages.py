@@ -22,7 +22,7 @@ from geometry_msgs.msg import (
 )
 from rosgraph_msgs.msg import Clock
 
-from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind import WindConvention
 
 _SECOND = 1_000_000_000
 

@@ -13,10 +13,10 @@ from tree_sway_lab.bench.sizes import time_sizes
 from tree_sway_lab.bench.stand import time_stand
 
 from tree_sway.commands import cli
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError
 
 ROWS = [Measured('solve', 2.0, 'ms'), Measured('place', 3.0, 'ms'), Measured('lost', 0.0, '-')]

@@ -10,7 +10,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.compare.with_mujoco import mujoco_tips, without_twist
 from tree_sway_lab.tip_error import tip_error
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 
 
 def test_two_engines_agree_at_short_steps():

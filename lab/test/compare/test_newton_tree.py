@@ -10,7 +10,7 @@ from tree_sway_lab.compare.engines import run_engines
 from tree_sway_lab.compare.mujoco_tree import MujocoTree
 from tree_sway_lab.example_trees import tapered_stem
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species.species import Species
 
 WOOD = Species('example', 'example', 8.0e9, 900.0)
 

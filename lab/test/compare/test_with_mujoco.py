@@ -12,7 +12,7 @@ from tree_sway_lab.compare.with_mujoco import compare_with_mujoco
 from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.frame.frame import frame_model
 
-from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.species.species import Species, species_named
 from tree_sway.errors import MissingDependencyError
 from tree_sway.growth.builtin import builtin_tree
 

@@ -9,12 +9,12 @@ import pytest
 from scipy.sparse.linalg import spsolve
 from tree_sway_lab.full.bank import Air
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.assembly import bank_of
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.matrices import reduce_tree
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient

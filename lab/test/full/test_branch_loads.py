@@ -12,11 +12,11 @@ from tree_sway_lab.full.rotation import turned
 from tree_sway_lab.kernel import fused
 
 from tree_sway.core.model.branch_loads import BranchLoads
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.rotation import cross_matrix
 from tree_sway.core.run.assembly import bank_of
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
 
 # Parts of kernels, each compiled for itself.
 bent_loads, outward_pass, set_air, wind_forces = (

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import pytest
 from tree_sway_lab.methods.branch_bank import single_precision
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagation import propagator
 
 
 @settings(max_examples=200, deadline=None)

@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.methods.branch_bank import guards, step_bank
 from tree_sway_lab.methods.branch_blocks import BranchBlocks, WIDTH
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagation import propagator
 
 
 def bank(n, seed=0, dt=1 / 60):

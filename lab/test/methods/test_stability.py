@@ -10,7 +10,7 @@ from tree_sway_lab.methods.chain import single_segment
 from tree_sway_lab.methods.registry import method_named
 from tree_sway_lab.methods.stability import free_step, growth, stability_limit
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagation import propagator
 
 
 def test_the_step_of_the_default_is_the_exact_propagator():

@@ -11,7 +11,7 @@ import pytest
 from tree_sway_lab.methods import two_axis
 from tree_sway_lab.methods.branch_bank import guards, step_bank
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators.propagation import propagator
 
 angle = st.floats(-1.6, 1.6)
 rate = st.floats(-5, 5)

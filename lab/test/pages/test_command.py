@@ -20,7 +20,7 @@ from tree_sway_lab.pages.command import (  # noqa: E402
 )
 
 from tree_sway.commands import cli  # noqa: E402
-from tree_sway.core.tree.species import species_keys  # noqa: E402
+from tree_sway.core.species.species import species_keys  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS  # noqa: E402
 from tree_sway_ros.process.topics import TOPICS  # noqa: E402

@@ -12,7 +12,7 @@ from tree_sway_lab.paper.followers import followed
 from tree_sway_lab.paper.pictures import tip_path
 
 from tree_sway.commands import cli
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError
 
 SHOWN = []

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.paper.key_segments import key_segments
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError
 
 WEST = (-1.0, 0.0, 0.0)

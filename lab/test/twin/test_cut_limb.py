@@ -20,8 +20,8 @@ from tree_sway_lab.twin.true_tree import (
 )
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.setup.one_thread import one_thread
-from tree_sway.core.tree.species import Species
+from tree_sway.core.setup.threads import one_thread
+from tree_sway.core.species.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.twin.observed_tree import ObservedTree

@@ -19,7 +19,7 @@ from tree_sway_lab.twin.true_tree import (
     winds,
 )
 
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.setup.threads import one_thread
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 

@@ -8,7 +8,7 @@ import pytest
 from tree_sway_lab.twin.trial import twin_score
 from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
 
-from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.setup.threads import one_thread
 
 MOST = 1.03
 """Largest error with sensors over that without [-]."""

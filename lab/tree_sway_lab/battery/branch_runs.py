@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.ball_joint import swing
 from tree_sway_lab.methods.branch_bank import guards, single_precision

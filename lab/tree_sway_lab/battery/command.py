@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands import refuse_overwriting
 from tree_sway_lab.battery.report import CASES, run_battery
 
 

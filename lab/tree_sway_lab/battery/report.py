@@ -13,7 +13,7 @@ import time
 from types import ModuleType
 
 from tree_sway.errors import ParameterError
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files import write_text_whole
 from tree_sway_lab.battery.row import Row
 
 CASES = {

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway_lab.battery import sundials_ida
 from tree_sway_lab.methods.chain import PlanarChain, uniform_chain
 from tree_sway_lab.methods.method import Method

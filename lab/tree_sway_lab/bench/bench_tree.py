@@ -14,8 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 
 SEGMENTS_A_BRANCH = 6
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))

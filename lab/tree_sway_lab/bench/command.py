@@ -13,10 +13,10 @@ from pathlib import Path
 import platform
 from typing import Any
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.scene import SceneSimulator
+from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
-from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.files.trees import open_scene, open_tree
 from tree_sway_lab.bench.bench_tree import bench_tree, SEGMENTS_A_BRANCH
 from tree_sway_lab.bench.cut import cut_table
 from tree_sway_lab.bench.engines import race_engines

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene import make_simulator
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.step import gusts
 from tree_sway_lab.resegment import resegment

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import species_named
+from tree_sway.core.tree import Tree
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.frame_time import frame_times
 from tree_sway_lab.bench.measured import Measured

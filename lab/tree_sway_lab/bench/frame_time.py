@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway_lab.tip_error import Swaying
 
 _QUIET = 0.1

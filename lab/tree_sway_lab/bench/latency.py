@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-from tree_sway.commands.progress import waiting
+from tree_sway.commands import waiting
 from tree_sway.errors import TransportError
 from tree_sway_lab.bench.listener import stamp_of
 from tree_sway_lab.bench.measured import Measured

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway.errors import FormatError
-from tree_sway.files.text_file import read_text
-from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.files import read_text
+from tree_sway.pictures import new_figure, save_figure
 
 
 @dataclass(frozen=True)

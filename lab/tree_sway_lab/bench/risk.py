@@ -20,7 +20,7 @@ import time
 import numpy as np
 
 from tree_sway.errors import ParameterError
-from tree_sway.forest.runner import cores
+from tree_sway.forest import cores
 from tree_sway_lab.bench.measured import Measured
 
 N_TREES = 1_000, 20_000

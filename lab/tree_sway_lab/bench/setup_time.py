@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 import time
 
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.tree import Tree
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 #: On the stem and on branches of the next orders: 1,021 branches of 6 segments.

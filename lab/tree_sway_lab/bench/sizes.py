@@ -13,13 +13,12 @@ import time
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.run.table_model import TableOscillators
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.run import SwaySimulator, TableOscillators
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.tree import Tree
+from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.measured import Measured

@@ -10,11 +10,9 @@ import time
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.commands import bar
+from tree_sway.core.scene import PlacedTree, Scene, SceneSimulator
+from tree_sway.core.settings import Settings
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.measured import Measured
 from tree_sway_lab.bench.step import gusts

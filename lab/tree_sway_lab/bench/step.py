@@ -11,8 +11,8 @@ import time
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.tree import Tree
 
 _DT = 1.0 / 60.0
 _STEPS_A_ROUND = 200

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.commands.progress import waiting
+from tree_sway.commands import waiting
 from tree_sway.errors import TransportError
 from tree_sway_lab.bench.measured import Measured
 

@@ -30,11 +30,10 @@ from typing import IO
 
 import numpy as np
 
-from tree_sway.commands.progress import waiting
+from tree_sway.commands import waiting
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import TransportError
-from tree_sway.stream.client import StreamClient
-from tree_sway.stream.protocol import Frame
+from tree_sway.stream import Frame, StreamClient
 from tree_sway_lab.bench.long_line import carry, HERE, join_line, THERE
 from tree_sway_lab.bench.measured import Measured
 from tree_sway_lab.bench.stream import isolated

@@ -8,7 +8,7 @@ import argparse
 import importlib
 from pathlib import Path
 
-from tree_sway.commands.progress import waiting
+from tree_sway.commands import waiting
 
 _CHARTS = ('methods', 'fidelity', 'cost', 'portraits', 'habits', 'twin')
 _OF_BROWSER = ('sprays',)

@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
-from tree_sway.files.whole_file import whole_file
-from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.core.tree import Tree
+from tree_sway.files import whole_file
+from tree_sway.pictures import new_figure, save_figure
 from tree_sway_lab import compare
 from tree_sway_lab.bench.frame_time import frame_times
 from tree_sway_lab.compare.engines import EngineRun, MODULES, run_engines

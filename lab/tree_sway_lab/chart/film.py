@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.scene.scene import Scene
-from tree_sway.files.trees.source import open_scene
-from tree_sway.pictures.animation import animate_poses
+from tree_sway.core.scene import Scene
+from tree_sway.files.trees import open_scene
+from tree_sway.pictures import animate_poses
 
 TREE = 'benjamina'
 PERIOD, RATE, EVERY = 4.0, 60, 6

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
-from tree_sway.core.leaves.foliage import leaf_clusters
-from tree_sway.core.tree.species import species_named
-from tree_sway.growth.grow import grow
-from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.tree_drawing import draw_trees
+from tree_sway.commands import bar
+from tree_sway.core.leaves import leaf_clusters
+from tree_sway.core.species import species_named
+from tree_sway.growth import grow
+from tree_sway.pictures import draw_trees, new_figure, save_figure
 
 SPECIES = (
     'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.files.whole_file import whole_file
-from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.files import whole_file
+from tree_sway.pictures import new_figure, save_figure
 from tree_sway_lab.battery.work_precision import measure, Point, REFERENCE_RATE
 
 SYSTEMS, WINDS = ('1 segment', '6 segments'), ('smooth', 'gusty', 'turning')

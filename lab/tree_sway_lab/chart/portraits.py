@@ -20,15 +20,13 @@ from typing import Any
 import numpy as np
 
 from tree_sway import pictures
-from tree_sway.commands.progress import bar
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.tree.species import species_named
-from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.source import open_scene, scene_of_files
-from tree_sway.files.whole_file import whole_file
-from tree_sway.growth.grow import grow
-from tree_sway.pictures.pictures import picture_in_wind
+from tree_sway.commands import bar
+from tree_sway.core.scene import Scene, Simulator
+from tree_sway.core.species import species_named
+from tree_sway.files import whole_file
+from tree_sway.files.trees import open_scene, scene_of_files, TreeFile
+from tree_sway.growth import grow
+from tree_sway.pictures import picture_in_wind
 from tree_sway_lab.chart.film import chart_film, film_figures
 
 SPEED = 10.0

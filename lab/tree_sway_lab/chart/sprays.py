@@ -13,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.leaves.foliage import leaf_clusters
-from tree_sway.core.tree.species import SPECIES
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import leaf_clusters
+from tree_sway.core.species import SPECIES
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.growth.grow import grow
-from tree_sway.page.page_settings import PageSettings
-from tree_sway.page.server import PageServer
+from tree_sway.growth import builtin_tree, BUILTIN_TREES, grow
+from tree_sway.page import PageServer, PageSettings
 from tree_sway_lab.browser import Browser, chromium
 
 _PIXELS = 256

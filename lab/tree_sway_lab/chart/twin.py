@@ -15,17 +15,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.foliage import leaf_clusters
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.tree import Tree
-from tree_sway.pictures.animation import write_pictures
-from tree_sway.pictures.plotting import new_figure
-from tree_sway.pictures.tree_drawing import draw_trees, limits_around
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.sensor_place import place_on
-from tree_sway.twin.smoothed_motion import LATE_STEPS
+from tree_sway.core.leaves import leaf_clusters
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.tree import Tree
+from tree_sway.pictures import draw_trees, limits_around, new_figure, write_pictures
+from tree_sway.twin import LATE_STEPS, ObservedTree, place_on
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import (
     Circumstances,

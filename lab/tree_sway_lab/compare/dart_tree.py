@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
 from tree_sway_lab.compare.mujoco_tree import FRAME, hinge_axes, MujocoTree
 

@@ -10,8 +10,8 @@ import sys
 from typing import NamedTuple
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway_lab.compare.mujoco_tree import MujocoTree
 
 MODULES = {'MuJoCo': 'mujoco', 'DART': 'dartpy', 'Newton': 'newton'}

@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.files.export.hinged_tree import plain_names
-from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
+from tree_sway.files.export import mjcf_of_tree, plain_names
 from tree_sway_lab.compare.mujoco_tree import FRAME, mujoco_module
 
 SETTLES = 5.0

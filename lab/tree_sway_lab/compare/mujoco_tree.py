@@ -22,11 +22,11 @@ import numpy as np
 from scipy import linalg
 from scipy.sparse.linalg import eigsh, LinearOperator
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.frame.frame import frame_model
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies, Bodies

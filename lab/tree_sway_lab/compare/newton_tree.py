@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.arrays import Floats
 from tree_sway_lab.compare.mujoco_tree import FRAME, MujocoTree, wind_wrenches
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies

@@ -17,11 +17,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway.commands.progress import bar, waiting
+from tree_sway.commands import bar, waiting
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway_lab.bench.frame_time import frame_times
 from tree_sway_lab.compare.engines import run_engines
 from tree_sway_lab.compare.mujoco_tree import FRAME, MujocoTree, NO_TWIST

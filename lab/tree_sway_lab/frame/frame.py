@@ -19,7 +19,7 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import TreeError
 from tree_sway_lab.frame import element
 from tree_sway_lab.frame.self_weight import self_weight

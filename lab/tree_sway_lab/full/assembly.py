@@ -5,10 +5,9 @@
 from __future__ import annotations
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.native.model import AT_POSE
-from tree_sway.core.run.assembly import native_stand
-from tree_sway.core.run.bank import Oscillators
+from tree_sway.core.model import SwayModel
+from tree_sway.core.native import AT_POSE
+from tree_sway.core.run import native_stand, Oscillators
 from tree_sway_lab.full.bank import FullBank
 from tree_sway_lab.full.limp_bank import LimpFullBank
 

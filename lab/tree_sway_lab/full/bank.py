@@ -28,12 +28,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import drag_density
-from tree_sway.core.model.records import Branches, WIDTH
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.guards import LOAD_MAX
-from tree_sway.core.run.modal_coordinates import FARTHEST, middle_of_step, ModalCoordinates
-from tree_sway.core.setup.bent_inertia import MOST_CHANGE
+from tree_sway.core.drag import drag_density
+from tree_sway.core.model import Branches, SwayModel, WIDTH
+from tree_sway.core.oscillators import LOAD_MAX
+from tree_sway.core.run import FARTHEST, middle_of_step, ModalCoordinates
+from tree_sway.core.setup import MOST_CHANGE
 from tree_sway_lab.full.branch_loads import wind_moments
 from tree_sway_lab.full.load_layouts import Loads, WORK, Works
 from tree_sway_lab.full.load_records import load_records

@@ -12,10 +12,9 @@ from __future__ import annotations
 import math
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.native.stand import NativeStand
-from tree_sway.core.run.modal_coordinates import ModalCoordinates
-from tree_sway.core.run.table_model import TableOscillators
+from tree_sway.core.model import SwayModel
+from tree_sway.core.native import NativeStand
+from tree_sway.core.run import ModalCoordinates, TableOscillators
 
 LONGEST_PART = 1.0 / 240.0
 """Longest part of a step [s]."""

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf
-from tree_sway.core.model.records import WIDTH
+from tree_sway.core.model import WIDTH
 
 
 class Work:

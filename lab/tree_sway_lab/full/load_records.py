@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.records import WIDTH
+from tree_sway.core.model import WIDTH
 from tree_sway.core.rotation import cross
 from tree_sway_lab.full.load_layouts import load_layout, zeros_in_lines
 

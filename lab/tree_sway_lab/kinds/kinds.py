@@ -16,7 +16,7 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import nearest, ParameterError
 from tree_sway_lab.example_trees import forked_tree, RATIOS
 from tree_sway_lab.kinds.shoots import Drawing, Shoot, towards

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 
 
 class Shoot(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.oscillators.guards import LOAD_MAX
+from tree_sway.core.oscillators import LOAD_MAX
 from tree_sway_lab.kernel import fused
 from tree_sway_lab.methods.two_axis import fill_guards, step_branch
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway.errors import ParameterError
 
 MASS, INERTIA, LEVER, LENGTH, STIFFNESS, DAMPING = range(6)

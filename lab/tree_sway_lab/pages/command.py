@@ -19,14 +19,13 @@ from functools import partial
 from pathlib import Path
 import re
 
-from tree_sway.commands import cli
-from tree_sway.core.model.sway_model import MEANINGS, TYPES
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.commands import COMMANDS
+from tree_sway.core.model import MEANINGS, TYPES
+from tree_sway.core.species import species_keys, species_named
 from tree_sway.errors import FormatError
-from tree_sway.files.trees.tree_file import TREE_FORMATS
-from tree_sway.files.trees.tree_options import FITTED
-from tree_sway.files.whole_file import write_text_whole
-from tree_sway.parameters.parameter import Table, Value
+from tree_sway.files import write_text_whole
+from tree_sway.files.trees import FITTED, TREE_FORMATS
+from tree_sway.parameters import Table, Value
 from tree_sway_lab.chart.fidelity import MODELS
 from tree_sway_lab.commands import COMMANDS as LAB_COMMANDS
 from tree_sway_lab.pages.notebooks import notebook, with_outputs
@@ -159,7 +158,7 @@ def model_table() -> str:
 def commands_table() -> str:
     """Say what each command does, with its example; those of the laboratory come last."""
     lines = ['| command | what it does | example |', '|---|---|---|']
-    tables = ('', cli.COMMANDS), ('', ROS_COMMANDS), ('lab ', LAB_COMMANDS)
+    tables = ('', COMMANDS), ('', ROS_COMMANDS), ('lab ', LAB_COMMANDS)
     lines += [
         f'| `{group}{name}` | {c.summary} | `tree-sway {group}{c.example}` |'
         for group, table in tables

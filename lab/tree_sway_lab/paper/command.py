@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.commands.progress import waiting
-from tree_sway.core.tree.species import species_named
+from tree_sway.commands import waiting
+from tree_sway.core.species import species_named
 from tree_sway.errors import ParameterError
-from tree_sway.growth.builtin import builtin_tree
+from tree_sway.growth import builtin_tree
 from tree_sway_lab.paper.experiment import (
     CONSTANTS,
     Experiment,

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway_lab.paper.key_segments import KeySegments
 
 

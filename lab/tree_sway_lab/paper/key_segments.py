@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway_lab.paper.similar_twigs import twig_sources
 

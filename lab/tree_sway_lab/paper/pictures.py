@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.tree_drawing import draw_trees, limits_around
+from tree_sway.pictures import draw_trees, limits_around, new_figure, save_figure
 from tree_sway_lab.paper.experiment import Experiment, RATE
 from tree_sway_lab.paper.followers import followed
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Ints
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def twig_sources(tree: Tree, tolerance: float) -> Ints:

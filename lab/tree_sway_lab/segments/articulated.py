@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_fill, one_of_each, refuse_time_step
-from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway.core.tree import Tree
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies
 from tree_sway_lab.segments.articulated_kernel import articulation_of, motion_of
 from tree_sway_lab.segments.articulated_modes import (

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 class Bodies(NamedTuple):

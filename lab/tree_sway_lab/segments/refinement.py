@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def refined(tree: Tree, pieces: int) -> Tree:

@@ -22,10 +22,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tree_sway.commands.ending import Ending, LONGEST
+from tree_sway.commands import Ending, LONGEST
 from tree_sway.errors import ParameterError, TransportError
-from tree_sway.files.trees.source import open_scene
-from tree_sway.stream.client import StreamClient
+from tree_sway.files.trees import open_scene
+from tree_sway.stream import StreamClient
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile

@@ -24,9 +24,9 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tree_sway.commands.ending import Ending
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.twin.sensor_advice import advised_places
+from tree_sway.commands import Ending
+from tree_sway.core.scene import make_simulator
+from tree_sway.twin import advised_places
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sway_comparison import BANDS

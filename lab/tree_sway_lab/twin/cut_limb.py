@@ -6,8 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree, tree_from_segments
 
 
 def without_limb(tree: Tree, name: str) -> Tree:

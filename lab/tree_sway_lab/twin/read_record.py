@@ -7,10 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway.errors import FormatError
-from tree_sway.files.motion.tree_record import RecordedSensor, SHEET, TreeRecord
-from tree_sway.files.paths import path_of
-from tree_sway.files.text_file import read_lines
-from tree_sway.files.yaml_document import packaged_schema, read_yaml
+from tree_sway.files import packaged_schema, path_of, read_lines, read_yaml
+from tree_sway.files.motion import RecordedSensor, SHEET, TreeRecord
 
 
 def is_tree_record(path: str | Path) -> bool:

@@ -20,20 +20,16 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.season import LEAVES
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.wind.interpolated import interpolated_means
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.setup import LEAVES
+from tree_sway.core.tree import ends_of_poses
+from tree_sway.core.wind import interpolated_means
 from tree_sway.errors import ParameterError
-from tree_sway.files.motion.motion_file import read_motion
-from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.files.motion.tree_record import TreeRecord
-from tree_sway.files.trees.source import open_tree
-from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.twin.alignment import align, Alignment, GRAVITY
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.sensor_place import place_on, SensorPlace
+from tree_sway.files.motion import MotionRecord, read_motion, TreeRecord
+from tree_sway.files.trees import open_tree
+from tree_sway.files.wind import read_wind
+from tree_sway.twin import align, Alignment, GRAVITY, ObservedTree, place_on, SensorPlace
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway, low_passed, SwayComparison
 

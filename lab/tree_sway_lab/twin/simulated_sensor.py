@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.alignment import GRAVITY
+from tree_sway.twin import GRAVITY
 
 
 class SensedMotion(NamedTuple):

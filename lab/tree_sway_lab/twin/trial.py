@@ -13,12 +13,11 @@ from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import tips_of_poses, Tree
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.smoothed_motion import LATE_STEPS
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.setup import prepare
+from tree_sway.core.species import Species
+from tree_sway.core.tree import tips_of_poses, Tree
+from tree_sway.twin import LATE_STEPS, ObservedTree
 from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.true_tree import Circumstances, DT, TrueMotion

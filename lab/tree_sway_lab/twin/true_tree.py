@@ -16,17 +16,15 @@ import numpy as np
 from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import Species, species_keys, species_named
-from tree_sway.core.tree.tree import tips_of_poses, Tree
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.growth.grow import grow
-from tree_sway.twin.members import uncertainty_of, uncorrelated_draws
-from tree_sway.twin.sensor_place import place_on, SensorPlace
+from tree_sway.core.drag import DragLaw
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.setup import prepare
+from tree_sway.core.species import Species, species_keys, species_named
+from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
+from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.growth import grow
+from tree_sway.twin import place_on, SensorPlace, uncertainty_of, uncorrelated_draws
 from tree_sway_lab.kinds.kinds import kind_called
 
 DT = 1.0 / 60.0

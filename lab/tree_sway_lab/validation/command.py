@@ -8,7 +8,7 @@ import argparse
 from itertools import product
 from pathlib import Path
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.errors import ParameterError
 from tree_sway_lab.validation.report import SECTIONS, write_validation
 from tree_sway_lab.validation.sections.kinds import JUDGED, MODELS, trial_table, WINDS

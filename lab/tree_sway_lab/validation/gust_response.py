@@ -16,16 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import welch
 
-from tree_sway.commands.exposure import turbulence_of
+from tree_sway.commands import turbulence_of
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.exposure import exposure_of
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import Rig
+from tree_sway.core.scene import PlacedTree
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import species_named
+from tree_sway.core.tree import rooted
+from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.growth import grow
+from tree_sway.simulation import exposure_of, Rig
 from tree_sway_lab.validation.response_slopes import HEIGHTS, slope_above
 
 SPECIES = ('spruce', 'sitka', 'pine', 'douglas_fir', 'birch', 'oak', 'beech', 'ash')

@@ -22,9 +22,9 @@ import re
 import subprocess
 from typing import Any
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.errors import ParameterError
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files import write_text_whole
 from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (

@@ -22,11 +22,11 @@ import numpy as np
 from scipy.signal import welch
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import Rig
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import species_named
+from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.growth import grow
+from tree_sway.simulation import Rig
 
 SPECIES = (
     'spruce', 'sitka', 'pine', 'douglas_fir', 'birch', 'oak', 'beech', 'ash', 'sycamore', 'walnut',

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.tree import Tree
 from tree_sway_lab.bench.frame_time import frame_times
 from tree_sway_lab.compare.engines import MODULES, run_engines
 from tree_sway_lab.kinds.kinds import kind_called

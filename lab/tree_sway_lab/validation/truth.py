@@ -19,11 +19,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.drag_law import AIR_DENSITY
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.files.whole_file import whole_file
+from tree_sway.core.drag import AIR_DENSITY
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
+from tree_sway.files import whole_file
 from tree_sway_lab.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS
 from tree_sway_lab.segments import articulated
 from tree_sway_lab.segments.articulated import ArticulatedTree

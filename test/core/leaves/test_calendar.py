@@ -7,9 +7,9 @@ import pytest
 
 from tree_sway.core.leaves.calendar import is_bare, leaf_share, species_in_month
 from tree_sway.core.leaves.foliage import foliage_of
-from tree_sway.core.tree.species import SPECIES
+from tree_sway.core.species.species import SPECIES
 from tree_sway.errors import ParameterError
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 OAK = SPECIES['oak']
 

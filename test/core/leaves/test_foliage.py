@@ -19,14 +19,14 @@ from tree_sway.core.leaves.foliage import (
     leafy_length,
     MAX_LEAF_AREA_INDEX,
 )
+from tree_sway.core.species.foliage_traits import LeafTraits
+from tree_sway.core.species.look import Look
+from tree_sway.core.species.species import leaf_traits, look_of, species_keys
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.look import Look
-from tree_sway.core.tree.species import leaf_traits, look_of, species_keys
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.growth import builtin
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 every_tree = pytest.mark.parametrize('name', builtin.BUILTIN_TREES)
 builtin_tree = cache(builtin.builtin_tree)

@@ -15,7 +15,7 @@ from tree_sway_lab.validation.truth import SETTINGS, WOOD
 
 from tree_sway.core.model.sway_model import MEANINGS
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.models.model_file import read_model
 from tree_sway.files.models.model_writer import write_model

@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import MEANINGS, SwayModel, TABLE
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare, prepared
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare, prepared
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import FormatError
 
 MODELS = (12, 0, 'branch')

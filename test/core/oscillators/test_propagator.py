@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from tree_sway.core.oscillators.propagator import fill_propagator, propagator
+from tree_sway.core.oscillators.propagation import fill_propagator, propagator
 from tree_sway.errors import ParameterError
 
 mpmath = pytest.importorskip('mpmath', reason='needs mpmath, an oracle of many digits')

@@ -9,14 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.field_counts import ROOMS
-from tree_sway.core.model.records import branch_layout, room_for_fields
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.model.records import branch_layout, room_for_fields, ROOMS
 from tree_sway.core.run import assembly
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import TreeError
 
 OAK = species_named('oak')

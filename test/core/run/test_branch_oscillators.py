@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.oscillators.guards import LOAD_MAX
+from tree_sway.core.oscillators.step_guards import LOAD_MAX
 from tree_sway.core.run.assembly import bank_of
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient

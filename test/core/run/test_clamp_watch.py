@@ -16,8 +16,8 @@ from tree_sway.core.scene import shared_tables
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.simulation.simulate import simulate
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.simulation.rig import simulate
 
 DT = 1.0 / 60.0
 WIND = (9.0, 1.0, 0.0)

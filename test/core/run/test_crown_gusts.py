@@ -12,10 +12,10 @@ from tree_sway_lab.validation.crooked_trees import crooked_tree
 from tree_sway_lab.validation.truth import WOOD
 from tree_sway_lab.validation.winds import turbulent
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
 
 FRAME = 1.0 / 60.0
 

@@ -10,8 +10,8 @@ from tree_sway_lab.example_trees import leafy_sapling
 
 from tree_sway.core.run.modal_coordinates import middle_of_step
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.species.wood import Species
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.tree.wood import Species
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 DT = 1.0 / 60.0

@@ -15,20 +15,20 @@ from tree_sway_lab.validation.truth import FINE, QUICK, SETTINGS, true_model, tr
 from tree_sway_lab.validation.winds import FRAME, turbulent, wind_called
 
 from tree_sway.core.checks import LONGEST_STEP
-from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.drag.drag_law import DragLaw
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.native.model import bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup import reduced_tree
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.reductions import FASTEST_LIMP, TreeReductions
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import species_named
 from tree_sway.growth.builtin import builtin_tree
-from tree_sway.simulation.simulate import Rig, simulate
+from tree_sway.simulation.rig import Rig, simulate
 
 UP = np.array([0.0, 0.0, 1.0])
 

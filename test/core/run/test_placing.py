@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.assembly import bank_of
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.shape_fields import across
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import species_named
 
 seeds = st.integers(0, 10**6)
 

@@ -13,10 +13,10 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.truth import WOOD
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring, Touch
 from tree_sway.core.run.simulator import LOAD_CLAMPED
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene

@@ -11,7 +11,7 @@ import threading
 
 import pytest
 
-from tree_sway.core.setup.one_thread import _switches, one_thread
+from tree_sway.core.setup.threads import _switches, one_thread
 
 #: Prints a digest of the poses of each model; the tree has enough branches for threads to matter.
 PROGRAM = """

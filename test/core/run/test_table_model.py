@@ -11,7 +11,7 @@ import pytest
 from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway_lab.example_trees import branch_order
 
-from tree_sway.core.model.drag_law import drag_density
+from tree_sway.core.drag.drag_law import drag_density
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.simulator import WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator

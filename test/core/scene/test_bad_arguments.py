@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from tree_sway.core.checks import LONGEST_STEP
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import RESTARTED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError, StateError, TreeError
 from tree_sway.files.models.model_writer import write_model
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import simulate
+from tree_sway.growth.growing import grow
+from tree_sway.simulation.rig import simulate
 from tree_sway.stream.client import StreamClient
 from tree_sway.twin.identification.calibration import calibrate
 from tree_sway.twin.observed_tree import ObservedTree

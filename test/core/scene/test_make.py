@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
-from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.settings import MODELS, Settings
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import Species, species_named
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
 from tree_sway.files.models.model_writer import write_model

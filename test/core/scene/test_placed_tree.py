@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import branch_order
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
+from tree_sway.core.settings import Settings
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError, TreeError
 

@@ -9,11 +9,11 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.validation.truth import WOOD
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
 
 DT, YAW = 1.0 / 60.0, 0.7

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import OK, WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError, TreeError
 

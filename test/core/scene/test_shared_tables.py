@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import (
     LOAD_CLAMPED,
     RESTARTED,
@@ -19,6 +18,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0

@@ -9,12 +9,12 @@ import pytest
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.model.branch_loads import BranchLoads
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.rotation import cross_matrix, quaternion_rotated
 from tree_sway.core.run.assembly import branch_records
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 
 CALM = np.zeros(3)
 

@@ -13,9 +13,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import Rig
+from tree_sway.core.settings import Settings
+from tree_sway.growth.growing import grow
+from tree_sway.simulation.rig import Rig
 
 RATE = 60.0
 BENT, CYCLES = 20.0, 6.0

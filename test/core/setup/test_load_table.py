@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.kinds.kinds import kind_called, KINDS
 from tree_sway_lab.validation.trial import judged_simulator
 
-from tree_sway.core.model.exported_table import arrays_of_table, exported_table
+from tree_sway.core.scene.table_export import arrays_of_table, exported_table
 from tree_sway.core.setup.load_table import _without_gain
 
 NEW_SEEDS = 'whips 4', 'palm 7', 'broad 3', 'limbs16 5', 'shrub 2'

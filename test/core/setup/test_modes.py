@@ -12,16 +12,16 @@ import pytest
 from scipy.sparse import csc_matrix
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup import modes as modes_module
 from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.setup.matrices import Factors, reduce_tree
 from tree_sway.core.setup.modes import buckling_factor, natural_modes, refuse_buckling
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.species.species import Species, species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError, TreeError
 
 TREE_121 = Path(__file__).parents[2] / 'files' / 'data' / 'tree121.csv'

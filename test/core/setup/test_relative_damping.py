@@ -15,8 +15,8 @@ from tree_sway_lab.validation.truth import (
     WOOD,
 )
 
+from tree_sway.core.setup.damping import EVENLY_DAMPED, relative_damping
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.relative_damping import EVENLY_DAMPED, relative_damping
 
 
 def modal_damping_of_segments(tree, count):

@@ -13,11 +13,11 @@ from scipy.optimize import brentq
 from tree_sway_lab.frame.frame import frame_model
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named, typical_root_stiffness
+from tree_sway.core.species.species import species_named, typical_root_stiffness
 from tree_sway.errors import ParameterError
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 OAK = species_named('oak')
 LENGTH, WIDTH = 5.0, 0.1

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 from tree_sway.core.leaves.foliage import foliage_of
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.season import in_season
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.growth.builtin import builtin_tree
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 OAK = species_named('oak')
 SPEEDS = np.geomspace(2.0, 20.0, 10)

@@ -9,15 +9,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup import standing
 from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.setup.modes import buckling_factor, buckling_modes
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.standing import MARGIN, standing_tree
+from tree_sway.core.species.foliage_traits import LeafTraits
+from tree_sway.core.species.species import Species
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.species import Species
 
 WOOD = Species('w', 'wood', modulus=9e9, density=900.0, leaves=LeafTraits(area_per_section=0.0))
 THICK = 0.02

@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run import assembly
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.tree_motion import branch_rotations, tip_motion
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 
 OAK = species_named('oak')
 DAMPED = Settings(gravity=0.0, damping_ratio=0.2)

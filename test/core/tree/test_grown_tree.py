@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tree_sway as sway
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.tree.grown_tree import tree_and_species
 from tree_sway.errors import ParameterError, SpeciesError
 

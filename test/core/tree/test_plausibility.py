@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
+from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible, sway_oddity
-from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.growth.grow import grow
+from tree_sway.growth.growing import grow
 
 OAK = species_named('oak')
 

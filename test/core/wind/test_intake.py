@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import SECOND, WindGate
 from tree_sway.core.wind.intake import WindIntake

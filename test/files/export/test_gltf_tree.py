@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import look_of, species_keys, species_named
+from tree_sway.core.species.species import look_of, species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.export import breeze, gltf_tree
 from tree_sway.files.export.gltf_tree import morphing_tree, skinned_tree

@@ -12,9 +12,9 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse.linalg import eigsh, LinearOperator
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.model.drag_law import AIR_DENSITY
+from tree_sway.core.drag.drag_law import AIR_DENSITY
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.export.hinged_tree import hinged_tree, plain_names, poses_on_parents
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree

@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.species.look import Spray
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.look import Spray
-from tree_sway.core.tree.species import species_named
 from tree_sway.files.export.tree_mesh import BARK_HEIGHT, leaf_mesh, SIDES, wood_mesh
 from tree_sway.files.trees.tree_file import read_tree
 from tree_sway.growth.builtin import builtin_tree

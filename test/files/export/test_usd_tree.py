@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze
 from tree_sway.files.export.tree_mesh import wood_mesh

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import SpeciesError
 from tree_sway.files.export.tree_export import write_tree

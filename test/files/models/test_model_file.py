@@ -15,11 +15,11 @@ import pytest
 
 from tree_sway.commands.cli import main
 from tree_sway.core.model.model_cache import PREPARED, PreparedModels
-from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup import make_model
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
+from tree_sway.core.tree_state import digest_of
 from tree_sway.errors import FormatError
 from tree_sway.files.models import model_file
 from tree_sway.files.models.model_file import read_model, VERSION

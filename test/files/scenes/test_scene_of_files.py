@@ -10,7 +10,7 @@ from tree_sway.core.leaves.foliage import foliage_of
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene, open_tree, scene_of_files
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway.core.tree.species import species_like
+from tree_sway.core.species.species import species_like
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
 from tree_sway.files.scenes.inventory.species_codes import FIA, ICP, name_of, names_of

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import yaml
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.foliage_traits import LeafTraits
+from tree_sway.core.species.species import Species
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.species import Species
 from tree_sway.errors import TreeError
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.models.model_writer import write_model

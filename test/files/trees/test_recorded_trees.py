@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.tree_file import read_tree

@@ -16,7 +16,7 @@ from tree_sway.files.wind.nmea import parse_nmea
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.simulation.simulate import simulate
+from tree_sway.simulation.rig import simulate
 
 N = 10
 SPEEDS = 4.0 + np.sin(np.arange(N))

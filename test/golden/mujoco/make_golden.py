@@ -23,7 +23,7 @@ from tree_sway_lab.compare.mujoco_tree import MujocoTree
 from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.tip_error import tip_error
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species.species import Species
 
 FRAME, STEPS = 1.0 / 60.0, 32
 SPECIES = Species('forked', 'no twist', 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)

@@ -10,9 +10,9 @@ from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.tip_error import record_tips, tip_error
 
-from tree_sway.core.model.drag_law import AIR_DENSITY
+from tree_sway.core.drag.drag_law import AIR_DENSITY
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species.species import Species
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
 SPECIES = Species('forked', 'no twist', 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)

@@ -25,7 +25,7 @@ from tree_sway.commands.learn_argument import Learning  # noqa: E402
 from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
-from tree_sway.core.tree.species import species_named  # noqa: E402
+from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402

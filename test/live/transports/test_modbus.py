@@ -8,8 +8,8 @@ import struct
 import threading
 
 import pytest
-from test.live.conftest import modbus  # noqa: F401
 
+from test.live.conftest import modbus  # noqa: F401
 from tree_sway.live.transports.modbus import checksum, Modbus
 
 

@@ -24,11 +24,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.leaves.foliage import leaf_clusters
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import Settings
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.stream.description import describe_scene
 from tree_sway.stream.protocol import (

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import pytest
 import yaml
 
-from tree_sway.core.model.settings import MOST, Settings  # noqa: I100
+from tree_sway.core.settings import MOST, Settings  # noqa: I100
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.limits import FASTEST_WIND

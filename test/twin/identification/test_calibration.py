@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.twin.identification.calibration import calibrate
 

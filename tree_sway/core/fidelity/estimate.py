@@ -21,12 +21,11 @@ from typing import cast, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import drag_density, DragLaw
-from tree_sway.core.run.bank import Bank, Oscillators
-from tree_sway.core.setup.static_responses import WindMoments
-from tree_sway.core.setup.tree_motion import branch_rotations, tip_motion
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.climate import WindClimate
+from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.run import Bank, Oscillators
+from tree_sway.core.setup import branch_rotations, tip_motion, WindMoments
+from tree_sway.core.tree import Tree
+from tree_sway.core.wind import WindClimate
 
 DIAL = (0, 3, 6, 12, 20, 40, 60)
 """Numbers of coordinates to choose from, beside the number of all."""

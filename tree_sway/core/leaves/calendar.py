@@ -16,9 +16,8 @@ import numpy as np
 
 from tree_sway.core.checks import within
 from tree_sway.core.leaves.foliage import foliage_of, stem_section
-from tree_sway.core.tree.look import Color, Look
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Color, Look, Species
+from tree_sway.core.tree import Tree
 
 FIRST_MONTH, LAST_MONTH, SUMMER = 1.0, 13.0, 7.5
 """Begin and end of the year, and a time when trees are in full leaf, in months from 1."""

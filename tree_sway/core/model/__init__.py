@@ -5,3 +5,33 @@ The model as data, between set-up and run.
 
 Settings, layouts of arrays, the laws that both use, states.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.core.model.branch_blocks import BranchBlocks as BranchBlocks
+    from tree_sway.core.model.branch_loads import BranchLoads as BranchLoads
+    from tree_sway.core.model.model_cache import ModelCache as ModelCache
+    from tree_sway.core.model.model_cache import PREPARED as PREPARED
+    from tree_sway.core.model.places import fill_places as fill_places
+    from tree_sway.core.model.places import Places as Places
+    from tree_sway.core.model.records import Branch as Branch
+    from tree_sway.core.model.records import branch_layout as branch_layout
+    from tree_sway.core.model.records import Branches as Branches
+    from tree_sway.core.model.records import MAX_COORDINATES as MAX_COORDINATES
+    from tree_sway.core.model.records import MOST_IN_ALL as MOST_IN_ALL
+    from tree_sway.core.model.records import N_AZIMUTHS as N_AZIMUTHS
+    from tree_sway.core.model.records import N_LEVELS as N_LEVELS
+    from tree_sway.core.model.records import room_for_fields as room_for_fields
+    from tree_sway.core.model.records import WIDTH as WIDTH
+    from tree_sway.core.model.state_basis import FULL_SCALE as FULL_SCALE
+    from tree_sway.core.model.state_basis import MARGIN as MARGIN
+    from tree_sway.core.model.state_basis import rounded as rounded
+    from tree_sway.core.model.state_basis import StateBasis as StateBasis
+    from tree_sway.core.model.sway_model import MEANINGS as MEANINGS
+    from tree_sway.core.model.sway_model import SwayModel as SwayModel
+    from tree_sway.core.model.sway_model import TYPES as TYPES
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Records
-from tree_sway.core.native.library import address, LIBRARY
+from tree_sway.core.native import address, LIBRARY
 from tree_sway.core.rotation import cross_matrix
 
 

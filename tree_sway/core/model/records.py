@@ -15,9 +15,17 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, RecordsOf
-from tree_sway.core.model.field_counts import ROOMS
 
 WIDTH = 16
+
+MOST_IN_ALL = 12
+"""Fields of a branch in all, up to which it may have more of subtrees against each other."""
+
+MAX_COORDINATES = 20
+"""Largest number of fields of a branch."""
+
+ROOMS = 2, MOST_IN_ALL, MAX_COORDINATES
+"""Numbers of fields that records have room for: of plain branches, of others, of small trees."""
 
 N_AZIMUTHS, N_LEVELS = 24, 7
 """Azimuths of the wind and levels of the lean in the table."""

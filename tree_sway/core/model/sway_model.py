@@ -27,13 +27,11 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.checks import GREATEST
-from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.field_counts import ROOMS
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.spherical_harmonics import N_HARMONICS
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.tree.wood import Species
+from tree_sway.core.drag import DragLaw, N_HARMONICS
+from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, ROOMS
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
 
 if TYPE_CHECKING:

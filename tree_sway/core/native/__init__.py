@@ -1,3 +1,24 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """The native core, ``native/`` of the source, as Python calls it: by ctypes, arrays checked."""
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.core.native.library import address as address
+    from tree_sway.core.native.library import LastAddress as LastAddress
+    from tree_sway.core.native.library import LIBRARY as LIBRARY
+    from tree_sway.core.native.model import AT_POSE as AT_POSE
+    from tree_sway.core.native.model import bytes_of as bytes_of
+    from tree_sway.core.native.model import NativeModel as NativeModel
+    from tree_sway.core.native.stand import NativeStand as NativeStand
+    from tree_sway.core.native.stand import States as States
+    from tree_sway.core.native.structures import NativeCorrection as NativeCorrection
+    from tree_sway.core.native.structures import NativeDragged as NativeDragged
+    from tree_sway.core.native.structures import NativeFilter as NativeFilter
+    from tree_sway.core.native.structures import NativeReadings as NativeReadings
+    from tree_sway.core.native.structures import NativeSensor as NativeSensor
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

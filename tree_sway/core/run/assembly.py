@@ -13,10 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model.records import branch_layout
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
-from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.model import branch_layout, SwayModel
+from tree_sway.core.native import AT_POSE, bytes_of, NativeModel, NativeStand
 from tree_sway.core.run.bank import Bank, Oscillators
 
 LOADED = (

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.native.stand import NativeStand
+from tree_sway.core.native import NativeStand
 
 
 class Tunable(NamedTuple):

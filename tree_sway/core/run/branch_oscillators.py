@@ -17,10 +17,9 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.branch_blocks import BranchBlocks
-from tree_sway.core.model.drag_law import drag_density, DragLaw
-from tree_sway.core.oscillators.guards import guards
-from tree_sway.core.oscillators.propagator import fill_propagator
+from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.model import BranchBlocks
+from tree_sway.core.oscillators import fill_propagator, guards
 from tree_sway.core.run.bank import Tunable
 
 

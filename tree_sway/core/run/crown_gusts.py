@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.model.records import WIDTH
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.wind.crown_wind import CrownWind
+from tree_sway.core.model import SwayModel, WIDTH
+from tree_sway.core.wind import CrownWind
 
 
 class CrownGusts:

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.propagator import fill_propagator
+from tree_sway.core.model import SwayModel
+from tree_sway.core.oscillators import fill_propagator
 from tree_sway.core.run.bank import Tunable
 
 FARTHEST = 2.0

@@ -21,11 +21,10 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, within
-from tree_sway.core.model.settings import STIFFEST
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.modal_coordinates import FARTHEST
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import STIFFEST
+from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.errors import ParameterError
 
 LONGEST_PUSH = 3600.0

@@ -7,8 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.records import WIDTH
-from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.model import SwayModel, WIDTH
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
 

@@ -20,21 +20,21 @@ from tree_sway.core.checks import (
     three_numbers,
     whole,
 )
-from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.model import SwayModel
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.wind.limits import is_wind
+from tree_sway.core.tree import ends_of_poses
+from tree_sway.core.wind import is_wind
 from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.model.state_basis import StateBasis
-    from tree_sway.core.model.tree_state import TreeState
+    from tree_sway.core.model import StateBasis
     from tree_sway.core.run.clamp_watch import ClampWatch
     from tree_sway.core.run.crown_gusts import CrownGusts
     from tree_sway.core.run.pushes import Spring, Touch
     from tree_sway.core.run.tuning import LiveTuning, Tuning
-    from tree_sway.core.wind.gust_travel import GustHistory
+    from tree_sway.core.tree_state import TreeState
+    from tree_sway.core.wind import GustHistory
 
 Motion: TypeAlias = Callable[[], Floats]
 """Function that returns the present coordinates of trees in a basis, (t, m)."""
@@ -197,7 +197,7 @@ class SwaySimulator:
 
     def digest(self) -> str:
         """Digest of tree, species, settings and tuning."""
-        from tree_sway.core.model.tree_state import digest_of
+        from tree_sway.core.tree_state import digest_of
 
         tuned = self._tuning_of_state
         return digest_of(self.tree, self.models[0].species, self.settings, *tuned)
@@ -214,7 +214,7 @@ class SwaySimulator:
 
     def state(self) -> TreeState:
         """Return a copy of the state."""
-        from tree_sway.core.model.tree_state import TreeState, values_of
+        from tree_sway.core.tree_state import TreeState, values_of
 
         return TreeState(self.tree.name, self.digest(), self.model, values_of(self._memory()))
 
@@ -225,7 +225,7 @@ class SwaySimulator:
         Raises a `StateError` for a different tree or model, or a state that is not finite, and
         keeps the present state.
         """
-        from tree_sway.core.model.tree_state import fill_memory, refuse_other_state
+        from tree_sway.core.tree_state import fill_memory, refuse_other_state
 
         refuse_other_state(state, self.state())
         fill_memory(self._memory(), state.values)

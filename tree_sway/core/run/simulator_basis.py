@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from tree_sway.core.model.state_basis import StateBasis
+from tree_sway.core.model import StateBasis
 from tree_sway.core.run.simulator import SwaySimulator
 
 
@@ -13,6 +13,6 @@ def basis_of(simulator: SwaySimulator) -> StateBasis:
     (model,), (bank,) = simulator.models, simulator.banks
     if not model.is_isolated:
         return model.basis
-    from tree_sway.core.setup.uncoupled_responses import basis_of_isolated
+    from tree_sway.core.setup import basis_of_isolated
 
     return basis_of_isolated(model, bank.branches)

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.native.stand import NativeStand, States
+from tree_sway.core.native import NativeStand, States
 from tree_sway.core.run.modal_coordinates import middle_of_step, ModalCoordinates
 
 if TYPE_CHECKING:
-    from tree_sway.core.setup.static_responses import WindMoments
+    from tree_sway.core.setup import WindMoments
 
 STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'drag_density', 'is_clamped', 'left_out')
 """Fields of a tree that are its state."""
@@ -161,7 +161,7 @@ class TableOscillators:
 
     @cached_property
     def _wind_moments(self) -> WindMoments:
-        from tree_sway.core.setup.static_responses import WindMoments
+        from tree_sway.core.setup import WindMoments
 
         return WindMoments(self.branches)
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.bank import Tunable
+from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
 
 GLIDE = 0.5

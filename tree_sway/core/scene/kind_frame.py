@@ -21,7 +21,7 @@ from tree_sway.core.checks import array_to_read
 from tree_sway.core.scene.placed_tree import PlacedTree
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.pushes import Spring
+    from tree_sway.core.run import Spring
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class KindFrame:
 
     def to_kind(self, force: ArrayLike | Spring) -> ArrayLike | Spring:
         """Return a force [N], (3,), or a spring on the tree as it is on its kind."""
-        from tree_sway.core.run.pushes import Spring
+        from tree_sway.core.run import Spring
 
         rotation = self.rotation_kind_world
         scale = self.tree.scale

@@ -7,17 +7,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, TYPE_CHECKING
 
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings, settings_with, USUAL
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.tree.wood import Species
+from tree_sway.core.model import ModelCache, PREPARED, SwayModel
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.settings import Settings, settings_with, USUAL
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.setup.reductions import TreeReductions
-    from tree_sway.core.tree.grown_tree import GrownTree
+    from tree_sway.core.setup import TreeReductions
+    from tree_sway.core.tree import GrownTree
 
 
 def make_simulator(
@@ -65,8 +64,8 @@ def make_simulator(
             raise ParameterError(what, where=tree.tree.name, cure='prepare the tree again')
         return SwaySimulator(tree)
     # The set-up is most of the program: a prepared model is stepped without loading it.
-    from tree_sway.core.setup.reductions import TreeReductions
-    from tree_sway.core.tree.grown_tree import tree_and_species
+    from tree_sway.core.setup import TreeReductions
+    from tree_sway.core.tree import tree_and_species
 
     bare, wood = tree_and_species(tree, species)
     chosen = settings_with(settings, changes)
@@ -88,11 +87,11 @@ def simulator_of(
 
     With the tolerance and the budget of ``auto``, it chooses its coordinates.
     """
-    from tree_sway.core.setup.prepare import prepared
+    from tree_sway.core.setup import prepared
 
     model = prepared(reductions, cache=cache)
     if not auto:
         return SwaySimulator(model)
-    from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+    from tree_sway.core.fidelity import AdaptiveSimulator
 
     return AdaptiveSimulator(model, **auto)

@@ -13,11 +13,10 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import number_of, one_of, refuse_other_kind, within
-from tree_sway.core.model.settings import model_of, Settings
-from tree_sway.core.setup.season import is_in_leaf
-from tree_sway.core.tree.grown_tree import tree_and_species
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import model_of, Settings
+from tree_sway.core.setup import is_in_leaf
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree, tree_and_species
 from tree_sway.errors import inside, ParameterError, TreeError
 
 SMALLEST, LARGEST = 0.2, 5.0

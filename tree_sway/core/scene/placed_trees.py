@@ -13,7 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Ints
 from tree_sway.core.scene.placed_tree import joined, Kind, MOST_SEGMENTS, PlacedTree
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
 

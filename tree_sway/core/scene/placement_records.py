@@ -11,7 +11,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.placed_trees import PlacedTrees
-from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind import WindProfile
 
 _CROWN = 0.7
 """Height over that of the tree at which its wind is taken."""

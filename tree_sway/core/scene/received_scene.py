@@ -17,14 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.exported_table import arrays_of_table
-from tree_sway.core.native.model import bytes_of, NativeModel
-from tree_sway.core.native.stand import NativeStand
-from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.run.clamp_watch import ClampWatch, fewer
-from tree_sway.core.run.table_model import bent_too_far, come_to_rest
+from tree_sway.core.native import bytes_of, NativeModel, NativeStand
+from tree_sway.core.oscillators import propagator
+from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
 from tree_sway.core.scene.placement_records import own_step
-from tree_sway.core.wind.gust_travel import GustHistory
+from tree_sway.core.scene.table_export import arrays_of_table
+from tree_sway.core.wind import GustHistory
 from tree_sway.errors import ParameterError
 
 _SLOWEST = 0.3

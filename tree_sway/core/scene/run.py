@@ -28,9 +28,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.wind.averaging import WindAverage
-from tree_sway.core.wind.gate import GateCounts
-from tree_sway.core.wind.intake import GoodWind, WindIntake
+from tree_sway.core.wind import GateCounts, GoodWind, WindAverage, WindIntake
 from tree_sway.errors import TreeSwayError
 
 LONGEST_JUMP = round(1e9 * LONGEST_STEP)
@@ -220,7 +218,7 @@ class Run:
             Function called with the reason of a refusal, from the thread of the steps.
 
         """
-        from tree_sway.core.run.pushes import Spring
+        from tree_sway.core.run import Spring
 
         def push() -> None:
             force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)

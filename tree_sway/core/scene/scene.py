@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.checks import number_of
-from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.leaves import foliage_of, joined_clusters, leaf_clusters, LeafClusters
+from tree_sway.core.model import ModelCache, PREPARED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.tree.plausibility import oddities, refuse_implausible
-from tree_sway.core.tree.species import Species
+from tree_sway.core.settings import Settings, settings_with
+from tree_sway.core.species import Species
+from tree_sway.core.tree import oddities, refuse_implausible
 from tree_sway.errors import inside
 
 

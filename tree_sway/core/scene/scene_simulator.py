@@ -21,18 +21,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.model.tree_state import (
-    digest_of,
-    fill_memory,
-    refuse_other_state,
-    TreeState,
-    values_of,
-)
-from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.simulator import (
+from tree_sway.core.model import ModelCache, PREPARED, SwayModel
+from tree_sway.core.run import (
+    Bank,
     Counts,
     LOAD_CLAMPED,
     OK,
@@ -40,22 +31,28 @@ from tree_sway.core.run.simulator import (
     rows_of_tree,
     SwaySimulator,
     TreeGroup,
+    Tuning,
     WIND_REFUSED,
 )
-from tree_sway.core.run.tuning import Tuning
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.placement_records import kind_heights
 from tree_sway.core.scene.shared_tables import SharedTables
 from tree_sway.core.scene.sharing import sharing_of
-from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.gust_travel import GustHistory
-from tree_sway.core.wind.limits import is_wind
+from tree_sway.core.settings import Settings
+from tree_sway.core.tree import ends_of_poses, Tree
+from tree_sway.core.tree_state import (
+    digest_of,
+    fill_memory,
+    refuse_other_state,
+    TreeState,
+    values_of,
+)
+from tree_sway.core.wind import GustHistory, is_wind
 from tree_sway.errors import inside, ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.pushes import Spring, Touch
+    from tree_sway.core.run import Spring, Touch
 
 
 class SceneSimulator:
@@ -287,7 +284,7 @@ class SceneSimulator:
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
     ) -> None:
         """Push or pull at a segment by its row in the pose block, as `SwaySimulator.push`."""
-        from tree_sway.core.run.pushes import MOST_PUSHES, row_of
+        from tree_sway.core.run import MOST_PUSHES, row_of
 
         try:
             row = row_of(segment, int(self._ends[-1]))

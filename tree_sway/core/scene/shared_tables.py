@@ -14,31 +14,35 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.model_cache import ModelCache
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.model.tree_state import digest_of
-from tree_sway.core.native.stand import NativeStand
-from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.clamp_watch import ClampWatch, fewer
-from tree_sway.core.run.simulator import Counts, Motion, SwaySimulator, TreeGroup
-from tree_sway.core.run.table_model import (
+from tree_sway.core.model import ModelCache, StateBasis
+from tree_sway.core.native import NativeStand
+from tree_sway.core.run import (
+    Bank,
     bent_too_far,
+    ClampWatch,
     come_to_rest,
+    Counts,
+    fewer,
+    LiveTuning,
+    Motion,
     STATE_FIELDS,
+    SwaySimulator,
     TableOscillators,
+    TreeGroup,
+    Tuning,
 )
-from tree_sway.core.run.tuning import LiveTuning, Tuning
 from tree_sway.core.scene.kind_frame import KindFrame
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.placement_records import own_step, placements_of
 from tree_sway.core.scene.sharing import Sharing
 from tree_sway.core.scene.tree_on_table import TreeOnTable
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import prepare
+from tree_sway.core.tree_state import digest_of
 from tree_sway.errors import inside
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.pushes import Spring, Touch
+    from tree_sway.core.run import Spring, Touch
 
 
 class SharedTables:

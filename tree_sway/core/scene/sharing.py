@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Ints
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_trees import PlacedTrees
+from tree_sway.core.settings import Settings
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.table_model import TableOscillators
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.run import Bank, TableOscillators
+from tree_sway.core.tree import Tree
 
 if TYPE_CHECKING:
-    from tree_sway.core.run.pushes import Touch
+    from tree_sway.core.run import Touch
 
 
 class TreeOnTable:
@@ -40,7 +39,7 @@ class TreeOnTable:
     @property
     def touch(self) -> Touch:
         """Return the pushes on the tree; none at first."""
-        from tree_sway.core.run.pushes import Touch
+        from tree_sway.core.run import Touch
 
         if self._touch is None:
             self._touch = Touch(self._tree, self.bank)

@@ -7,3 +7,34 @@ Beams become matrices (`matrices`), matrices become modes (`modes`), modes and s
 become the coordinates (`gust_responses`, `static_responses`), and the wind load on these becomes a
 table (`load_table`). Nothing here runs in a step.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.core.setup.beams.beam import BranchBeam as BranchBeam
+    from tree_sway.core.setup.beams.beam import N_POINTS as N_POINTS
+    from tree_sway.core.setup.beams.beam import round_section as round_section
+    from tree_sway.core.setup.beams.greenhill import greenhill_length as greenhill_length
+    from tree_sway.core.setup.bent_inertia import MOST_CHANGE as MOST_CHANGE
+    from tree_sway.core.setup.damping import relative_damping as relative_damping
+    from tree_sway.core.setup.modes import buckling_factor as buckling_factor
+    from tree_sway.core.setup.modes import natural_modes as natural_modes
+    from tree_sway.core.setup.preparation import digest_of_source as digest_of_source
+    from tree_sway.core.setup.preparation import prepare as prepare
+    from tree_sway.core.setup.preparation import prepared as prepared
+    from tree_sway.core.setup.reductions import TreeReductions as TreeReductions
+    from tree_sway.core.setup.season import in_season as in_season
+    from tree_sway.core.setup.season import is_in_leaf as is_in_leaf
+    from tree_sway.core.setup.season import LEAVES as LEAVES
+    from tree_sway.core.setup.standing import standing_tree as standing_tree
+    from tree_sway.core.setup.static_responses import WindMoments as WindMoments
+    from tree_sway.core.setup.threads import one_thread as one_thread
+    from tree_sway.core.setup.tree_motion import base_motion as base_motion
+    from tree_sway.core.setup.tree_motion import branch_rotations as branch_rotations
+    from tree_sway.core.setup.tree_motion import own_motion as own_motion
+    from tree_sway.core.setup.tree_motion import tip_motion as tip_motion
+    from tree_sway.core.setup.uncoupled_responses import basis_of_isolated as basis_of_isolated
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

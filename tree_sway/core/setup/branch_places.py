@@ -13,13 +13,12 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.places import Places
-from tree_sway.core.model.records import room_for_fields
+from tree_sway.core.model import Places, room_for_fields
 from tree_sway.core.rotation import quaternion_rotated
 from tree_sway.core.setup.beams.branch_model import BranchModel
 from tree_sway.core.setup.beams.shape_fields import across
 from tree_sway.core.setup.matrices import Reduction
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:

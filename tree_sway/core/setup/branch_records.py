@@ -7,12 +7,11 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.places import fill_places, Places
-from tree_sway.core.model.records import branch_layout
+from tree_sway.core.model import branch_layout, fill_places, Places
 from tree_sway.core.setup.beams.branch_model import BranchModel
 from tree_sway.core.setup.fitted_load import fill_loads
 from tree_sway.core.setup.matrices import Reduction
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def branch_records(

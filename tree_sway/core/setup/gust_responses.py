@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.drag import drag_density, DragLaw
 from tree_sway.core.setup.modes import Modes
 from tree_sway.core.setup.static_responses import direction
 from tree_sway.core.setup.tree_motion import base_motion, own_motion, projectors

@@ -25,8 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import drag_density, DragLaw
-from tree_sway.core.model.records import N_AZIMUTHS
+from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.model import N_AZIMUTHS
 from tree_sway.core.setup.load_table import harmonics_at, SPEEDS
 from tree_sway.core.setup.static_responses import direction
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.branch_loads import BranchLoads
+from tree_sway.core.model import BranchLoads
 
 _LANES = 8
 """The native core takes as many shapes at once."""

@@ -27,10 +27,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
-from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
-from tree_sway.core.model.sway_model import TYPES
+from tree_sway.core.drag import DragLaw, fill_harmonics, N_HARMONICS
+from tree_sway.core.model import N_AZIMUTHS, N_LEVELS, TYPES
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
 from tree_sway.core.setup.modal_arrays import Coordinates

@@ -15,19 +15,17 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.guards import LOAD_MAX
+from tree_sway.core.model import StateBasis, SwayModel
+from tree_sway.core.oscillators import LOAD_MAX
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.bent_inertia import inertia_slopes
+from tree_sway.core.setup.damping import relative_damping
 from tree_sway.core.setup.leaning_responses import leaning_responses
 from tree_sway.core.setup.load_table import fit_harmonics, load_table
 from tree_sway.core.setup.modal_arrays import Coordinates, modal_arrays
 from tree_sway.core.setup.modes import refuse_buckling, solvable
-from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.relative_damping import relative_damping
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.setup.stream_basis import (
     arrays_of_stream,
@@ -36,7 +34,8 @@ from tree_sway.core.setup.stream_basis import (
     WEIGHTS,
 )
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
-from tree_sway.core.wind.crown_wind import delays_of, N_DELAYS
+from tree_sway.core.setup.threads import one_thread
+from tree_sway.core.wind import delays_of, N_DELAYS
 
 
 def make_model(reductions: TreeReductions, settings: Settings) -> SwayModel:

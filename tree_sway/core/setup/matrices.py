@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.field_counts import MAX_COORDINATES
+from tree_sway.core.model import MAX_COORDINATES
 from tree_sway.core.rotation import cross
 from tree_sway.core.setup.beams.beam import energies, many_of, products
 from tree_sway.core.setup.beams.branch_model import BranchModel
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 @dataclass(frozen=True)

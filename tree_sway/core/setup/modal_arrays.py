@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.setup.damping import stiffness_by_weight
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.setup.modes import Modes
-from tree_sway.core.setup.relative_damping import stiffness_by_weight
 from tree_sway.core.setup.tree_motion import centre_motion
 
 

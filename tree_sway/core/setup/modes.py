@@ -20,7 +20,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.matrices import Factors, Reduction
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
 MOST_ALL_MODES = 3000

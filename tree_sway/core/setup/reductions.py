@@ -16,11 +16,11 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each
-from tree_sway.core.model.drag_law import crown_drag, DragLaw
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.drag import crown_drag, DragLaw
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.season import in_season
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 
 if TYPE_CHECKING:
     from tree_sway.core.setup.modes import Modes
@@ -198,7 +198,7 @@ def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragL
     if not settings.in_leaf or settings.leaf_area is None:
         law = DragLaw(*species.drag_law(bool(settings.in_leaf)))
         return law, np.zeros(tree.n_branches)
-    from tree_sway.core.leaves.foliage import clad_wood
+    from tree_sway.core.leaves import clad_wood
 
     area = one_of_each('leaf_area', settings.leaf_area, tree.n_branches, 'branch')
     wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 
 LEAVES: dict[str, bool | None] = {'auto': None, 'on': True, 'off': False}
 """Choices of leaves; with ``auto`` it depends on the species: evergreens bear them."""
@@ -30,7 +30,7 @@ def in_season(tree: Tree, species: Species, settings: Settings) -> Settings:
     in_leaf = are_given or is_in_leaf(species, settings.in_leaf)
     if are_given or not in_leaf:
         return settings if settings.in_leaf == in_leaf else replace(settings, in_leaf=in_leaf)
-    from tree_sway.core.leaves.foliage import foliage_of
+    from tree_sway.core.leaves import foliage_of
 
     leaves = foliage_of(tree, traits=species.leaves)
     return replace(settings, in_leaf=True, leaf_mass=leaves.mass, leaf_area=leaves.drag_area)

@@ -21,15 +21,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.model import ModelCache, PREPARED
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.modes import buckling_modes, solvable
-from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.setup.threads import one_thread
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
+from tree_sway.core.tree_state import digest_of
 
 MARGIN = 1.5
 """

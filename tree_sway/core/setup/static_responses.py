@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.branch_loads import BranchLoads
-from tree_sway.core.model.drag_law import drag_density, DragLaw
+from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.model import BranchLoads
 from tree_sway.core.setup.load_derivatives import LoadSlopes
 
 _SPEEDS = (10.0, 20.0, 40.0)

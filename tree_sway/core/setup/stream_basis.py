@@ -21,7 +21,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.state_basis import MARGIN, rounded, StateBasis
+from tree_sway.core.model import MARGIN, rounded, StateBasis
 from tree_sway.core.setup.leaning_responses import Leaning
 from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.matrices import Reduction
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def subtree_inertia(tree: Tree, reduction: Reduction) -> Floats:

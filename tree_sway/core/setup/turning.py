@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.places import Places
+from tree_sway.core.model import Places
 from tree_sway.core.setup.tree_motion import sum_outward
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 class Turning(NamedTuple):

@@ -9,13 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.branch_blocks import BranchBlocks
-from tree_sway.core.model.drag_law import drag_density, DragLaw
-from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.model import BranchBlocks, StateBasis, SwayModel
 from tree_sway.core.setup.gust_responses import drag_slopes
-from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.stream_basis import basis_of_responses
+from tree_sway.core.setup.threads import one_thread
 
 _SPEEDS = (3.0, 9.0, 20.0, 36.0)
 _AZIMUTHS = np.arange(16) * np.pi / 8.0

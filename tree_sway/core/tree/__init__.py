@@ -5,3 +5,34 @@ The tree as arrays of segments in depth-first order, and its construction.
 
 Species are here too: wood, damping and drag by name. This room has no wind or motion.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.core.tree.building import check_numbers as check_numbers
+    from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
+    from tree_sway.core.tree.crown_allometry import AREA_SPREAD as AREA_SPREAD
+    from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT as BREAST_HEIGHT
+    from tree_sway.core.tree.crown_allometry import (
+        breast_height_diameter as breast_height_diameter,
+    )
+    from tree_sway.core.tree.crown_allometry import crown_change as crown_change
+    from tree_sway.core.tree.crown_allometry import crown_size as crown_size
+    from tree_sway.core.tree.crown_allometry import CrownChange as CrownChange
+    from tree_sway.core.tree.grown_tree import GrownTree as GrownTree
+    from tree_sway.core.tree.grown_tree import rooted as rooted
+    from tree_sway.core.tree.grown_tree import tree_and_species as tree_and_species
+    from tree_sway.core.tree.parents_first import chain_starts as chain_starts
+    from tree_sway.core.tree.parents_first import checked_order as checked_order
+    from tree_sway.core.tree.parents_first import first_of_each as first_of_each
+    from tree_sway.core.tree.plausibility import oddities as oddities
+    from tree_sway.core.tree.plausibility import refuse_implausible as refuse_implausible
+    from tree_sway.core.tree.plausibility import sway_oddity as sway_oddity
+    from tree_sway.core.tree.segment_frame import ends_of_poses as ends_of_poses
+    from tree_sway.core.tree.tree import tips_of_poses as tips_of_poses
+    from tree_sway.core.tree.tree import Tree as Tree
+    from tree_sway.core.tree.tree import tree_in_order as tree_in_order
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

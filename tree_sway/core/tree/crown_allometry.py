@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species import species_named
 from tree_sway.core.tree.tree import Tree
 
 BREAST_HEIGHT = 1.3

@@ -8,7 +8,7 @@ from dataclasses import replace
 import math
 from typing import Protocol, runtime_checkable
 
-from tree_sway.core.tree.species import Species, species_named, typical_root_stiffness
+from tree_sway.core.species import Species, species_named, typical_root_stiffness
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 

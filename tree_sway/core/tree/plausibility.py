@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 

@@ -23,8 +23,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.native.library import address, LIBRARY
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.native import address, LIBRARY
+from tree_sway.core.tree import Tree
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""

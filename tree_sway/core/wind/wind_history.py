@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native.library import address, LastAddress, LIBRARY
+from tree_sway.core.native import address, LastAddress, LIBRARY
 
 
 class WindHistory:

@@ -9,8 +9,8 @@ from collections.abc import Callable
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.wind.simulated import simulate_turbulence
 
 RATE = 15
 """Frames per second."""

@@ -19,12 +19,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.model.state_basis import MARGIN, StateBasis
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.run.simulator_basis import basis_of
-from tree_sway.core.tree.species import look_of
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.model import MARGIN, StateBasis
+from tree_sway.core.run import basis_of, SwaySimulator
+from tree_sway.core.species import look_of
+from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument

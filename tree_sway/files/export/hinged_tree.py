@@ -24,12 +24,11 @@ from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density, SHARED_AT
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.setup.beams.beam import round_section
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.drag import AIR_DENSITY, drag_density, SHARED_AT
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.setup import round_section, TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.errors import TreeError
 
 _MARGIN = 0.95

@@ -23,9 +23,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.drag_law import AIR_DENSITY
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.drag import AIR_DENSITY
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.tree import Tree
 from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
 
 _USUAL_STEP = 0.002

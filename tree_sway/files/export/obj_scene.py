@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.species import look_of
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.species import look_of
+from tree_sway.core.tree import Tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _DIGITS = 4

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.core.tree.species import look_of, species_keys
+from tree_sway.core.species import look_of, species_keys
 
 FOLDER = Path(__file__).with_name('pictures')
 

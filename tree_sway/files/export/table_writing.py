@@ -14,7 +14,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.extras import cure_of_missing
-from tree_sway.files.whole_file import whole_file, write_text_whole
+from tree_sway.files.atomic_file import whole_file, write_text_whole
 
 TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
 

@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.species import Species
+from tree_sway.core.tree import GrownTree, Tree, tree_and_species
 from tree_sway.errors import FormatError
+from tree_sway.files.atomic_file import whole_file, write_text_whole
 from tree_sway.files.export.gltf_document import GltfDocument
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.whole_file import whole_file, write_text_whole
 
 SUFFIXES = ('.yaml', '.yml', '.glb')
 """Suffixes of files that `write_tree` writes."""

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.look import Spray
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.species import Spray
+from tree_sway.core.tree import Tree
 
 SIDES = 6
 """Number of sides of a cone, even; its volume is 0.827 of the round one's."""

@@ -17,10 +17,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.species import look_of
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.species import look_of
+from tree_sway.core.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh

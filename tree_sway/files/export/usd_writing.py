@@ -14,12 +14,12 @@ from pathlib import Path
 import tempfile
 import zipfile
 
-from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.species import look_of
+from tree_sway.core.leaves import LeafClusters
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.species import look_of
+from tree_sway.files.atomic_file import whole_file
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.usd_tree import usd_of_tree
-from tree_sway.files.whole_file import whole_file
 
 _ALIGNED = 64
 _HEADER = 30

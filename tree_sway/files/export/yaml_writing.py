@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from tree_sway.core.tree.species import Species, species_named
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.yaml_document import tree_schema
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin import LearnedTree
 
 # The C emitter, where PyYAML was built with it, is ten times faster.
 _DUMPER: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)

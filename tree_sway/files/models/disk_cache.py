@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from tree_sway.cache.model_cache import MODELS
-from tree_sway.core.model.model_cache import PREPARED
+from tree_sway.cache import MODELS
+from tree_sway.core.model import PREPARED
 
 
 def use_disk_cache() -> None:

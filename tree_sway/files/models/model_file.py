@@ -20,10 +20,10 @@ import zipfile
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.tree.tree import Tree, tree_in_order
-from tree_sway.core.tree.wood import Species
+from tree_sway.core.model import SwayModel
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree, tree_in_order
 from tree_sway.errors import FormatError, inside, TreeSwayError
 from tree_sway.files.paths import path_of
 

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.checks import refuse_other_kind
-from tree_sway.core.model.settings import USUAL
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.native.model import bytes_of
+from tree_sway.core.model import SwayModel
+from tree_sway.core.native import bytes_of
+from tree_sway.core.settings import USUAL
 from tree_sway.errors import ParameterError
+from tree_sway.files.atomic_file import whole_file
 from tree_sway.files.models.model_file import FORMAT, LEAVES, TREE, VERSION
-from tree_sway.files.whole_file import whole_file
 
 
 def write_model(path: str | Path, model: SwayModel) -> None:

@@ -14,11 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.atomic_file import refuse_unwritable
 from tree_sway.files.paths import path_of
 from tree_sway.files.text_file import read_bytes
-from tree_sway.files.whole_file import refuse_unwritable
-from tree_sway.twin.observed_tree import ObservedTree
-from tree_sway.twin.sensor_report import sensor_reports
+from tree_sway.twin import ObservedTree, sensor_reports
 
 PERIOD = 600.0
 """Time of a row in [s]."""

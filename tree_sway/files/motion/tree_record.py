@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import yaml
 
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files.atomic_file import write_text_whole
 
 SHEET = 'record.yaml'
 

@@ -5,3 +5,13 @@ Recordings of a swaying tree: rosbag2 bags, MCAP or sqlite3, written and read wi
 
 `bag_writer` writes messages as bytes, `bag_reader` reads them.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.files.recording.bag_writer import BagWriter as BagWriter
+    from tree_sway.files.recording.bag_writer import FORMATS as FORMATS
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

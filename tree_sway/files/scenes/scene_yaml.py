@@ -25,9 +25,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.scene import PlacedTree, Scene
+from tree_sway.core.species import species_named
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.scenes.stand_table import read_stand_table

@@ -19,11 +19,11 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.scene.placed_tree import LARGEST, PlacedTree, SMALLEST
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.tree.grown_tree import GrownTree, rooted
-from tree_sway.core.tree.species import Species
+from tree_sway.core.scene import LARGEST, PlacedTree, Scene, SMALLEST
+from tree_sway.core.species import Species
+from tree_sway.core.tree import GrownTree, rooted
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.files.scenes.classes import kind_classes, own_kinds
 from tree_sway.files.scenes.inventory.inventory_file import (
     has_own_format,
     inventory_table,
@@ -33,10 +33,9 @@ from tree_sway.files.scenes.inventory.inventory_file import (
     why_missing,
 )
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
-from tree_sway.files.scenes.kind_classes import kind_classes, own_kinds
 from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.growth.grow import grow, height_of_stem, stem_range
+from tree_sway.growth import grow, height_of_stem, stem_range
 
 
 def is_stand_table(head: str, path: Path | None = None) -> bool:

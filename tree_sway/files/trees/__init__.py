@@ -5,3 +5,23 @@ Tree files: opened ones, their readers, segments to a `Tree`.
 
 Formats by kind in the rooms below. This room computes no frequencies.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.files.trees.imported_tree import TreeFile as TreeFile
+    from tree_sway.files.trees.learned_file import LearnedFile as LearnedFile
+    from tree_sway.files.trees.learned_file import refuse_no_learned_file as refuse_no_learned_file
+    from tree_sway.files.trees.source import open_scene as open_scene
+    from tree_sway.files.trees.source import open_tree as open_tree
+    from tree_sway.files.trees.source import scene_of_files as scene_of_files
+    from tree_sway.files.trees.source import unknown_tree as unknown_tree
+    from tree_sway.files.trees.tree_file import TREE_FORMATS as TREE_FORMATS
+    from tree_sway.files.trees.tree_options import FITTED as FITTED
+    from tree_sway.files.trees.tree_options import same as same
+    from tree_sway.files.trees.yaml.tree_yaml import is_species_file as is_species_file
+    from tree_sway.files.trees.yaml.tree_yaml import read_species as read_species
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

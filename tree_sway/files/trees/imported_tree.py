@@ -6,11 +6,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from tree_sway.core.tree.plausibility import oddities, refuse_implausible
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species
+from tree_sway.core.tree import oddities, refuse_implausible, Tree
 from tree_sway.errors import inside
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin import LearnedTree
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.setup.season import is_in_leaf
-from tree_sway.core.tree.grown_tree import GrownTree
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.setup import is_in_leaf
+from tree_sway.core.tree import GrownTree, Tree
 from tree_sway.errors import FormatError
+from tree_sway.files.atomic_file import refuse_unwritable, write_text_whole
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.paths import path_of
 from tree_sway.files.text_file import read_bytes
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.tree_yaml import read_yaml_tree
-from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin import LearnedTree
 
 if TYPE_CHECKING:
-    from tree_sway.twin.observed_tree import ObservedTree
-    from tree_sway.twin.tree_fit import TreeFit
+    from tree_sway.twin import ObservedTree, TreeFit
 
 _SUFFIXES = ('.yaml', '.yml')
 

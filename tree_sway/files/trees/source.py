@@ -12,9 +12,8 @@ import warnings
 
 import numpy as np
 
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.tree.species import Species, species_keys, species_named
+from tree_sway.core.scene import PlacedTree, Scene
+from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.paths import path_of
@@ -30,7 +29,7 @@ from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 from tree_sway.files.trees.tree_options import same
 from tree_sway.files.yaml_document import begins_with_key
-from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.growth import builtin_tree, BUILTIN_TREES
 
 
 def open_tree(

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
 from tree_sway.files.paths import path_of

@@ -13,16 +13,14 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.setup.season import is_in_leaf
-from tree_sway.core.setup.standing import standing_tree
-from tree_sway.core.tree.plausibility import refuse_implausible
-from tree_sway.core.tree.species import Species, species_named
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.setup import is_in_leaf, standing_tree
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import refuse_implausible, Tree
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.growth.beyond_scan import grown_beyond, is_cut
+from tree_sway.growth import grown_beyond, is_cut
 
 _ENDS = ('start', 'end')
 _DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')

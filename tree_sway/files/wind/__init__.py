@@ -6,3 +6,32 @@ Wind records: TOA5, NMEA 0183, tables, bags; records of sway for calibration.
 All result in times in [s] and velocities in [m/s], blowing TO, ENU. Gating and averaging are done
 in ``core/wind``.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway.files.wind.compass import degrees_of as degrees_of
+    from tree_sway.files.wind.layouts.cumulus import BEARING as BEARING
+    from tree_sway.files.wind.layouts.cumulus import fields_of_realtime as fields_of_realtime
+    from tree_sway.files.wind.layouts.cumulus import GUST as GUST
+    from tree_sway.files.wind.layouts.cumulus import SPEED as SPEED
+    from tree_sway.files.wind.layouts.cumulus import UNIT as UNIT
+    from tree_sway.files.wind.metar import METAR as METAR
+    from tree_sway.files.wind.nmea import parse_nmea as parse_nmea
+    from tree_sway.files.wind.nmea import SENTENCES as SENTENCES
+    from tree_sway.files.wind.phone import read_phone_sway as read_phone_sway
+    from tree_sway.files.wind.record import WindRecord as WindRecord
+    from tree_sway.files.wind.sensor_line import checksum_of as checksum_of
+    from tree_sway.files.wind.sensor_line import SensorLine as SensorLine
+    from tree_sway.files.wind.sonic_ascii import KINDS as KINDS
+    from tree_sway.files.wind.sonic_ascii import parse_sonic as parse_sonic
+    from tree_sway.files.wind.sway_table import read_csv_sway as read_csv_sway
+    from tree_sway.files.wind.sway_table import SwayRecord as SwayRecord
+    from tree_sway.files.wind.units import degrees_to_bearing as degrees_to_bearing
+    from tree_sway.files.wind.units import Velocity as Velocity
+    from tree_sway.files.wind.wind_file import EXAMPLES as EXAMPLES
+    from tree_sway.files.wind.wind_file import read_wind as read_wind
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

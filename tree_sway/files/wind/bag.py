@@ -14,7 +14,7 @@ from __future__ import annotations
 from pathlib import Path
 import struct
 
-from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind import WindConvention
 from tree_sway.files.recording.bag_reader import BODY, header_of, read_bag
 from tree_sway.files.wind.record import WindRecord, WindRows
 

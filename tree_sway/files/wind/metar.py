@@ -17,7 +17,7 @@ import re
 
 import numpy as np
 
-from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.column_names import unit_factor
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.wind.record import WindRecord, WindRows

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.convention import WindConvention
-from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.wind import FASTEST_WIND, WindConvention
 from tree_sway.errors import FormatError
 
 

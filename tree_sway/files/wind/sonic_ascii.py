@@ -18,7 +18,7 @@ from math import pi
 from pathlib import Path
 import re
 
-from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.text_file import finite
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.core.wind.simulated.about_means import (
+from tree_sway.core.wind import FASTEST_WIND
+from tree_sway.core.wind.simulated import (
     can_be_filled,
     LEAST_INTERVAL,
     turbulence_about_means,

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
 from tree_sway.files.column_names import folded, unit_factor
 from tree_sway.files.table_file import Column, TextTable

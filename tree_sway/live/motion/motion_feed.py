@@ -15,7 +15,7 @@ import time
 from typing import NamedTuple
 
 from tree_sway.live.motion.live_motion import LiveMotion
-from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin import ObservedTree
 
 _NEWEST = 0.02
 """Weight of the newest difference of the clocks in their mean."""

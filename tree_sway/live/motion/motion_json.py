@@ -19,8 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.files.column_names import motion_of, rank_of
-from tree_sway.files.time_stamps import dates
+from tree_sway.files import dates, motion_of, rank_of
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.values import number

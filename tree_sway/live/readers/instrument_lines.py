@@ -14,10 +14,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 import re
 
-from tree_sway.core.wind.limits import is_wind
-from tree_sway.files.wind.nmea import parse_nmea, SENTENCES
-from tree_sway.files.wind.sensor_line import SensorLine
-from tree_sway.files.wind.sonic_ascii import KINDS, parse_sonic
+from tree_sway.core.wind import is_wind
+from tree_sway.files.wind import KINDS, parse_nmea, parse_sonic, SensorLine, SENTENCES
 from tree_sway.live.readers.json_options import names_of, unit_factor
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames

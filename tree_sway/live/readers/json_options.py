@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from tree_sway.files.column_names import UNITS
+from tree_sway.files import UNITS
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.values import speed_factor

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from tree_sway.files.column_names import folded, rank_of, SENDERS, unit_in_name
+from tree_sway.files import folded, rank_of, SENDERS, unit_in_name
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.readers.values import bearing_of, is_calm, number, speed_factor
 from tree_sway.live.reading import Reading, Refusal, WindReading

@@ -16,7 +16,7 @@ import math
 import re
 
 from tree_sway.errors import ParameterError
-from tree_sway.files.text_file import finite
+from tree_sway.files import finite
 from tree_sway.live.readers.values import bearing_of, is_calm
 from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
 

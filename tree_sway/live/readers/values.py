@@ -7,10 +7,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tree_sway.files.column_names import unit_factor
-from tree_sway.files.text_file import finite
-from tree_sway.files.wind.compass import degrees_of
-from tree_sway.files.wind.units import degrees_to_bearing
+from tree_sway.files import finite, unit_factor
+from tree_sway.files.wind import degrees_of, degrees_to_bearing
 
 _CALM = 0.05
 """Speed [m/s] below which a direction may be missing."""

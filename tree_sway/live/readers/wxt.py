@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import re
 
-from tree_sway.files.text_file import finite
-from tree_sway.files.wind.units import degrees_to_bearing
+from tree_sway.files import finite
+from tree_sway.files.wind import degrees_to_bearing
 from tree_sway.live.reading import Reading, Refusal, WindReading
 
 KIND = 'Vaisala WXT'

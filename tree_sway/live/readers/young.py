@@ -15,9 +15,8 @@ from __future__ import annotations
 import math
 import re
 
-from tree_sway.files.text_file import finite
-from tree_sway.files.wind.sensor_line import checksum_of
-from tree_sway.files.wind.units import degrees_to_bearing
+from tree_sway.files import finite
+from tree_sway.files.wind import checksum_of, degrees_to_bearing
 from tree_sway.live.reading import Reading, Refusal, WindReading
 
 KIND_81000 = 'Young 81000'

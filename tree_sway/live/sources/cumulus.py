@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import radians
 
-from tree_sway.files.column_names import unit_factor
-from tree_sway.files.wind.layouts.cumulus import BEARING, fields_of_realtime, GUST, SPEED, UNIT
+from tree_sway.files import unit_factor
+from tree_sway.files.wind import BEARING, fields_of_realtime, GUST, SPEED, UNIT
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
-from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
+from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames

@@ -14,7 +14,7 @@ from math import radians
 import re
 from urllib.parse import urlencode
 
-from tree_sway.files.wind.metar import METAR
+from tree_sway.files.wind import METAR
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Reading, Refusal, WindReading

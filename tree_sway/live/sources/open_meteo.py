@@ -14,7 +14,7 @@ from dataclasses import replace
 import re
 from urllib.parse import urlencode
 
-from tree_sway.files.time_stamps import dates
+from tree_sway.files import dates
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.values import number, speed_factor

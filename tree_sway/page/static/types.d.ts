@@ -267,7 +267,7 @@ interface Daylight {
   dimmed: number;
 }
 
-/** Look of a species, see `Look` in tree_sway/core/tree/look.py. */
+/** Look of a species, see `Look` in tree_sway/core/species/look.py. */
 interface Look {
   /** Colour of a leaf, and of a young one: red, green, blue from 0 to 1. */
   green: number[];

@@ -18,13 +18,10 @@ import math
 import numpy as np
 
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.modes import buckling_factor, natural_modes
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.season import in_season
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import buckling_factor, in_season, natural_modes, TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import GrownTree, Tree, tree_and_species
 from tree_sway.errors import nearest, ParameterError, TreeError
 
 _MODELLINGS = 4

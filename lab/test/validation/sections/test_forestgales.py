@@ -10,9 +10,9 @@ from tree_sway_lab.validation.section import Effort
 from tree_sway_lab.validation.sections import forestgales
 from tree_sway_lab.validation.sections.forestgales import inventory_with, measure, TREES
 
-from tree_sway.core.wind.exposure import Exposure
 from tree_sway.forest.risk_kind import KindResult, RiskKind, SeasonCurves
 from tree_sway.simulation.critical_wind import ShareCurve
+from tree_sway.simulation.exposure import Exposure
 from tree_sway.simulation.strength_band import root_band, wood_band
 
 

@@ -9,7 +9,7 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway_lab.battery.branch_runs import Branch, chord
 from tree_sway_lab.battery.row import holds, Row
 from tree_sway_lab.battery.work_precision import flops_a_step, loads_for, winds

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway_lab.battery.branch_runs import run_branch
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.methods.branch_bank import single_precision

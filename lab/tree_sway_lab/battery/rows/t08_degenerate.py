@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway.errors import TreeSwayError
 from tree_sway_lab.battery.branch_runs import run_branch
 from tree_sway_lab.battery.row import holds, Row

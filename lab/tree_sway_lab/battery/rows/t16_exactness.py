@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.oscillators import propagator
 from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.kernel import kernel

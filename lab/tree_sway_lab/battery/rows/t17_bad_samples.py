@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.wind.gate import SECOND, WindGate
+from tree_sway.core.wind import SECOND, WindGate
 from tree_sway_lab.battery.branch_runs import Branch
 from tree_sway_lab.battery.row import holds, Row
 

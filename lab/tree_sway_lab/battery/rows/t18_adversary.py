@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.oscillators import propagator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.settings import Settings
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.kernel import kernel
 from tree_sway_lab.methods.branch_bank import guards, single_precision

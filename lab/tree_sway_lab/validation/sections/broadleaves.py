@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.growth.grow import grow
+from tree_sway.growth import grow
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.conifers import diameter_at_breast
 

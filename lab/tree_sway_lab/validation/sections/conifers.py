@@ -8,13 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import Species, species_named
-from tree_sway.core.tree.tree import Tree
-from tree_sway.growth.grow import grow
-from tree_sway.growth.thickness import BREAST_HEIGHT
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import rooted, Tree
+from tree_sway.growth import BREAST_HEIGHT, grow
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
 CONIFERS = ('spruce', 'sitka', 'pine', 'douglas_fir')

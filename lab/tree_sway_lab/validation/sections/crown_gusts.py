@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
+from tree_sway.core.settings import Settings
+from tree_sway.core.wind import USUAL_COHERENCE
 from tree_sway_lab.validation.gust_response import (
     CLEAR_PEAK,
     gust_response,

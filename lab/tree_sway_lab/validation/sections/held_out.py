@@ -20,9 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species import species_named
 from tree_sway.errors import ParameterError, SpeciesError
-from tree_sway.growth.grow import grow
+from tree_sway.growth import grow
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.conifers import first_frequency
 from tree_sway_lab.validation.sections.published import line_frequency

@@ -8,11 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.model.drag_law import drag_density
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_named
-from tree_sway.growth.grow import grow
+from tree_sway.core.drag import drag_density
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.species import species_named
+from tree_sway.growth import grow
 from tree_sway_lab.validation.response_slopes import SPECIES
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 

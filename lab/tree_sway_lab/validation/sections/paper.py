@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.tree.species import species_named
-from tree_sway.growth.builtin import builtin_tree
+from tree_sway.core.species import species_named
+from tree_sway.growth import builtin_tree
 from tree_sway_lab.paper.experiment import (
     CONSTANTS,
     measured_share,

@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.height_profile import WindProfile
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.settings import Settings
+from tree_sway.core.species import species_named
+from tree_sway.core.wind import WindProfile
+from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import ParameterError
-from tree_sway.growth.grow import grow
-from tree_sway.simulation.simulate import simulate
+from tree_sway.growth import grow
+from tree_sway.simulation import simulate
 from tree_sway.tables import table_beside
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.conifers import first_frequency

@@ -7,10 +7,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import TreeReductions
 from tree_sway.errors import TreeError
-from tree_sway.files.trees.source import open_tree
+from tree_sway.files.trees import open_tree
 from tree_sway_lab.frame.frame import frame_model
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.tip_error import record_tips, Swaying, tip_error
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section

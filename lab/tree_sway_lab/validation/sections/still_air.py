@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.model.drag_law import AIR_DENSITY
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.drag import AIR_DENSITY
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.species import species_named
 from tree_sway_lab.example_trees import tapered_stem
 from tree_sway_lab.validation.section import Check, Effort, Section
 

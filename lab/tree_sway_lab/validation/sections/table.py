@@ -9,18 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.model.settings import USUAL
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.climate import WindClimate
-from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
+from tree_sway.core.fidelity import AdaptiveSimulator
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.settings import USUAL
+from tree_sway.core.setup import prepare
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
+from tree_sway.core.wind import USUAL_COHERENCE, WindClimate
 from tree_sway.errors import ParameterError
-from tree_sway.files.trees.source import open_tree
-from tree_sway.growth.builtin import BUILTIN_TREES
+from tree_sway.files.trees import open_tree
+from tree_sway.growth import BUILTIN_TREES
 from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.tip_error import record_tips

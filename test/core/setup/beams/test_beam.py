@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.beams.beam import Attachments, BranchBeam, RotationField, SlopeShape
 from tree_sway.core.setup.beams.branch_model import TreeBeams
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 
 NONE = np.zeros(0)
 NO_CHILDREN = Attachments(np.zeros(0, dtype=np.int64), NONE)

@@ -11,7 +11,7 @@ from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.beams.cutting import CARRIED, cut_tree, pieces_by_turn
-from tree_sway.core.tree.species import Species
+from tree_sway.core.species.species import Species
 
 WOOD = Species('w', 'w', 8e9, 900.0, damping_bare=0.05)
 

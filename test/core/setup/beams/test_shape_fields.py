@@ -14,23 +14,22 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway.core.model.field_counts import (
+from tree_sway.core.model.records import MAX_COORDINATES, ROOMS
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.beams.beam import energies, RotationField
+from tree_sway.core.setup.beams.branch_model import TreeBeams
+from tree_sway.core.setup.beams.field_counts import (
     BRANCH_PAIRS_OF_SMALL,
     ENRICHED_PAIRS,
-    MAX_COORDINATES,
-    ROOMS,
     SMALL_TREE,
     STEM_PAIRS_OF_SMALL,
 )
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.beams.beam import energies, RotationField
-from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.beams.shape_fields import across
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.modes import natural_modes
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.species.species import Species
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import Species
 
 
 @given(st.integers(0, 10**6))

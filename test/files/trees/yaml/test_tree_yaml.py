@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species.species import species_named
 from tree_sway.errors import FormatError, SpeciesError, TreeError, TreeSwayError
 from tree_sway.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
 

@@ -20,7 +20,16 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.field_counts import (
+from tree_sway.core.rotation import cross
+from tree_sway.core.setup.beams.beam import (
+    Attachments,
+    BranchBeam,
+    one_of,
+    RotationField,
+    SlopeShape,
+)
+from tree_sway.core.setup.beams.bent_by_weight import bent_by_weight, weight_over_stiffness
+from tree_sway.core.setup.beams.field_counts import (
     BRANCH_PAIRS_OF_SMALL,
     BRANCH_TURNS,
     ENRICHED_PAIRS,
@@ -32,19 +41,10 @@ from tree_sway.core.model.field_counts import (
     STEM_PAIRS_OF_SMALL,
     STEM_TURNS,
 )
-from tree_sway.core.rotation import cross
-from tree_sway.core.setup.beams.beam import (
-    Attachments,
-    BranchBeam,
-    one_of,
-    RotationField,
-    SlopeShape,
-)
-from tree_sway.core.setup.beams.bent_by_weight import bent_by_weight, weight_over_stiffness
 from tree_sway.core.setup.beams.shape_fields import shaken_energies, shape_fields
 from tree_sway.core.setup.beams.subtree_sums import SubtreeSums
 from tree_sway.core.setup.beams.wind_on_branch import wind_loads
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 _LEFT = 1e-4
 """Largest share of the energy of all branches but the stem that static fields may miss."""

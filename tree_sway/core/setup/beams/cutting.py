@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 TURN = np.deg2rad(15.0)
 """Largest rotation of one key segment in [rad]."""
@@ -88,7 +88,7 @@ def cut_tree(tree: Tree, pieces: Ints) -> CutTree:
     """Cut each branch at nodes into a number of pieces, (b,), of about as many segments."""
     if (pieces == 1).all():
         return whole_tree(tree)
-    from tree_sway.core.tree.building import tree_from_segments
+    from tree_sway.core.tree import tree_from_segments
 
     # By segment: its place in its branch, and the size, pieces and first piece of that.
     own = tree.branch_of_segment

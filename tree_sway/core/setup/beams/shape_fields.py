@@ -19,15 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model.field_counts import (
-    MOST_IN_ALL,
+from tree_sway.core.model import MOST_IN_ALL
+from tree_sway.core.rotation import cross
+from tree_sway.core.setup.beams.beam import BranchBeam, RotationField, SlopeShape
+from tree_sway.core.setup.beams.energy_basis import energy_vector, EnergyBasis
+from tree_sway.core.setup.beams.field_counts import (
     MOST_OPPOSED,
     PLAIN_PAIRS,
     PLAIN_TURNS,
 )
-from tree_sway.core.rotation import cross
-from tree_sway.core.setup.beams.beam import BranchBeam, RotationField, SlopeShape
-from tree_sway.core.setup.beams.energy_basis import energy_vector, EnergyBasis
 from tree_sway.core.setup.beams.opposed_limbs import missed_curvatures
 from tree_sway.core.setup.beams.subtree_sums import SubtreeSums
 

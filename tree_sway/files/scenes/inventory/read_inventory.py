@@ -11,8 +11,7 @@ import re
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.species import Species
-from tree_sway.core.wind.exposure import EXPOSURES
+from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
@@ -20,6 +19,7 @@ from tree_sway.files.scenes.inventory.places import Places, places_of
 from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
 from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
+from tree_sway.simulation import EXPOSURES
 
 _DEAD = re.compile(
     r'\b(dead|stump|removed|felled|fallen|retired|vacant|tot|abgestorben|gefällt|stubben|mort|'

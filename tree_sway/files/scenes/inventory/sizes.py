@@ -17,7 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import unit_factor
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.growth.grow import height_of_stem
+from tree_sway.growth import height_of_stem
 
 TALLEST = 130.0
 """Height that no tree exceeds [m]; the tallest known is 116 m."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
-from tree_sway.core.tree.species import Species, species_like, species_named
+from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.species_codes import has_codes, list_of, name_of, TITLES

@@ -15,9 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.core.tree.building import check_numbers
-from tree_sway.core.tree.parents_first import checked_order
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species import species_named
+from tree_sway.core.tree import check_numbers, checked_order
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.cylinders.coarse_positions import coarse_positions

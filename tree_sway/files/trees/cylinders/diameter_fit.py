@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 
 def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -> Tree:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Ints
-from tree_sway.core.tree.parents_first import chain_starts, first_of_each
+from tree_sway.core.tree import chain_starts, first_of_each
 from tree_sway.errors import TreeError
 from tree_sway.files.trees.assembly import nearest_axis
 from tree_sway.files.trees.cylinders.cylinders import Cylinders

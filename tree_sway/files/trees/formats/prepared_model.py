@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tree_sway.core.model.model_cache import PREPARED
-from tree_sway.core.setup.prepare import digest_of_source
+from tree_sway.core.model import PREPARED
+from tree_sway.core.setup import digest_of_source
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.models.model_file import read_model, SUFFIX
 from tree_sway.files.trees.imported_tree import TreeFile

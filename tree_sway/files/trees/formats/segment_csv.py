@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.species import species_named
 from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.arrays import Ints
-from tree_sway.core.tree.parents_first import checked_order
+from tree_sway.core.tree import checked_order
 from tree_sway.errors import FormatError
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import filled_lines, parse_columns

@@ -24,7 +24,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.species import Species, species_named
 from tree_sway.errors import FormatError, SpeciesError
 from tree_sway.files.paths import is_file, path_of
 from tree_sway.files.text_file import read_text
@@ -32,7 +32,7 @@ from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments
 from tree_sway.files.yaml_document import read_yaml, tree_schema, YAML_SUFFIXES, YamlDocument
-from tree_sway.twin.learned_tree import LearnedTree
+from tree_sway.twin import LearnedTree
 
 
 def read_yaml_tree(path: Path) -> TreeFile:

@@ -13,14 +13,12 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings, settings_with
-from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.model import ModelCache, PREPARED, SwayModel
+from tree_sway.core.settings import Settings, settings_with
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.species import Species
+from tree_sway.core.tree import GrownTree, Tree, tree_and_species
+from tree_sway.core.tree_state import digest_of
 from tree_sway.errors import FormatError, ParameterError
 
 

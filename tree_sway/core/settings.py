@@ -13,8 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, refuse_other_kind, within
-from tree_sway.core.wind.height_profile import WindProfile
-from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.wind import FASTEST_WIND, WindProfile
 from tree_sway.errors import nearest, ParameterError
 
 USUAL = 60
@@ -146,7 +145,7 @@ class Settings:
         return hash(self._digest())
 
     def _digest(self) -> str:
-        from tree_sway.core.model.tree_state import digest_of
+        from tree_sway.core.tree_state import digest_of
 
         return digest_of(self)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from tree_sway.core.tree.leaf_traits import LeafTraits
+from tree_sway.core.species.foliage_traits import LeafTraits
 
 Color = tuple[float, float, float]
 """Red, green and blue, sRGB from 0 to 1."""

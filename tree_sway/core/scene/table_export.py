@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Singles
-from tree_sway.core.model.sway_model import MEANINGS, SwayModel
+from tree_sway.core.model import MEANINGS, SwayModel
 
 LEFT_OUT = 1e-2
 """

@@ -20,11 +20,10 @@ from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.commands.record_clock import RecordClock
 from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
-from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
+from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.errors import ParameterError, TransportError
-from tree_sway.files.whole_file import refuse_unwritable
-from tree_sway.live.live_wind import LiveWind
-from tree_sway.live.reading import WindReading
+from tree_sway.files import refuse_unwritable
+from tree_sway.live import LiveWind, WindReading
 
 _LOOK = 0.1
 INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')

@@ -39,9 +39,9 @@ import re
 from typing import Any
 import unicodedata
 
-from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.look import Look
-from tree_sway.core.tree.wood import Species
+from tree_sway.core.species.foliage_traits import LeafTraits
+from tree_sway.core.species.look import Look
+from tree_sway.core.species.wood import Species
 from tree_sway.errors import nearest, SpeciesError
 from tree_sway.tables import table_beside
 

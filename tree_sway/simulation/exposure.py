@@ -31,11 +31,10 @@ import math
 import numpy as np
 
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.tree.species import SPECIES
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.tree.wood import Species
-from tree_sway.core.wind.height_profile import WindProfile
-from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS, turbulence_scale
+from tree_sway.core.species import SPECIES, Species
+from tree_sway.core.tree import Tree
+from tree_sway.core.wind import WindProfile
+from tree_sway.core.wind.simulated import SCALE_RATIOS, turbulence_scale
 
 _INTEGRAL_SCALE = float(SCALE_RATIOS[0])
 """Integral scale of the wind along itself over the turbulence scale [-]."""

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from tree_sway.core.drag.drag_law import AIR_DENSITY, drag_density
 from tree_sway.core.model.branch_blocks import BranchBlocks
-from tree_sway.core.model.drag_law import AIR_DENSITY, drag_density
-from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
 
 DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2

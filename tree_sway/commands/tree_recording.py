@@ -20,17 +20,17 @@ from typing import TYPE_CHECKING
 from tree_sway.commands.arguments import say_warnings
 from tree_sway.commands.live_motion_arguments import sensing
 from tree_sway.commands.record_clock import RecordClock
-from tree_sway.commands.record_wind import WindTable
 from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
+from tree_sway.commands.wind_recording import WindTable
 from tree_sway.errors import inside, ParameterError, TransportError
-from tree_sway.files.export.tree_export import write_tree
-from tree_sway.files.motion.tree_record import RecordedSensor, TreeRecord, write_tree_record
-from tree_sway.files.trees.source import open_tree
-from tree_sway.twin.sensor_place import place_on
+from tree_sway.files.export import write_tree
+from tree_sway.files.motion import RecordedSensor, TreeRecord, write_tree_record
+from tree_sway.files.trees import open_tree
+from tree_sway.twin import place_on
 
 if TYPE_CHECKING:
-    from tree_sway.live.motion.live_motion import MotionSample
+    from tree_sway.live import MotionSample
 
 _LOOK = 0.1
 _COLUMNS = {

@@ -7,6 +7,8 @@ A plain branch has one pair. An enriched one has further pairs, fields by rotati
 (turns) and fields of subtrees that swing against each other.
 """
 
+from tree_sway.core.model import MAX_COORDINATES
+
 PLAIN_PAIRS, PLAIN_TURNS = 1, 0
 """Pairs and turns of a plain branch."""
 
@@ -28,17 +30,9 @@ Length over diameter of all branches of a small tree, least and most: short wave
 beams, and fling limp ones in a storm.
 """
 
-STEM_PAIRS_OF_SMALL, BRANCH_PAIRS_OF_SMALL = 8, 5
-"""Pairs of the stem and of each other branch of a small tree."""
-
 MOST_OPPOSED = 3
 """Fields of subtrees against each other that a branch may always have."""
 
-MOST_IN_ALL = 12
-"""Fields of a branch in all, up to which it may have more of subtrees against each other."""
-
-MAX_COORDINATES = 2 * STEM_PAIRS_OF_SMALL + BRANCH_TURNS + MOST_OPPOSED
-"""Largest number of fields of a branch."""
-
-ROOMS = 2, MOST_IN_ALL, MAX_COORDINATES
-"""Numbers of fields that records have room for: of plain branches, of others, of small trees."""
+STEM_PAIRS_OF_SMALL = (MAX_COORDINATES - BRANCH_TURNS - MOST_OPPOSED) // 2
+BRANCH_PAIRS_OF_SMALL = 5
+"""Pairs of the stem and of each other branch of a small tree."""

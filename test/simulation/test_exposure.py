@@ -10,10 +10,10 @@ import math
 import numpy as np
 import pytest
 
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.exposure import ATTENUATION, Exposure, exposure_of, EXPOSURES
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.exposure import ATTENUATION, Exposure, exposure_of, EXPOSURES
 from tree_sway.twin.learned_tree import LearnedTree
 
 SITKA = {'height': 20.0, 'spacing': 2.2, 'crown_width': 4.0, 'crown_depth': 9.8, 'drag': 0.726}

@@ -9,7 +9,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import MODELS, Settings, USUAL
+from tree_sway.core.settings import MODELS, Settings, USUAL
 from tree_sway.errors import ParameterError
 
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 import math
 
-from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.look import Look
+from tree_sway.core.species.foliage_traits import LeafTraits
+from tree_sway.core.species.look import Look
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.model.settings import MODELS, Settings
-from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.settings import MODELS, Settings
+from tree_sway.core.species.species import species_named
+from tree_sway.core.tree_state import digest_of
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import StateError
 from tree_sway.twin.observed_tree import ObservedTree

@@ -7,11 +7,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.model.drag_law import AIR_DENSITY, crown_drag, drag_density, SHARED_AT
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.drag.drag_law import AIR_DENSITY, crown_drag, drag_density, SHARED_AT
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.species import species_keys, species_named
-from tree_sway.growth.grow import grow
+from tree_sway.core.species.species import species_keys, species_named
+from tree_sway.growth.growing import grow
 
 SPEEDS = np.array([2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0])
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from tree_sway.core.model.spherical_harmonics import N_HARMONICS
+from tree_sway.core.drag.spherical_harmonics import N_HARMONICS
 from tree_sway.core.setup.load_table import harmonics_at
 
 

@@ -8,7 +8,7 @@ import dataclasses
 
 import pytest
 
-from tree_sway.core.tree.species import NAMES, species_keys, species_like, species_named
+from tree_sway.core.species.species import NAMES, species_keys, species_like, species_named
 from tree_sway.errors import SpeciesError
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene import Scene
+from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
 from tree_sway.twin.observed_tree import ObservedTree
 

@@ -16,26 +16,28 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import LONGEST_STEP, refuse_other_kind, within
-from tree_sway.core.model.model_cache import ModelCache, PREPARED
-from tree_sway.core.model.settings import Settings, settings_with
-from tree_sway.core.run.simulator import Counts, SwaySimulator
-from tree_sway.core.scene.make import simulator_of, solved
-from tree_sway.core.scene.run import Run
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.tree import tips_of_poses, Tree
-from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
-from tree_sway.core.wind.interpolated import interpolated_means
-from tree_sway.core.wind.limits import FASTEST_WIND, shorter_than
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.model import ModelCache, PREPARED
+from tree_sway.core.run import Counts, SwaySimulator
+from tree_sway.core.scene import Run, simulator_of, solved
+from tree_sway.core.settings import Settings, settings_with
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.tree import GrownTree, tips_of_poses, Tree, tree_and_species
+from tree_sway.core.wind import (
+    FASTEST_WIND,
+    interpolated_means,
+    LONGEST_HOLD,
+    shorter_than,
+    WindAverage,
+    WindGate,
+    WindIntake,
+)
+from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.simulation.strength_use import StrengthGauge, StrengthUse
 from tree_sway.simulation.sway_record import SwayRecord
 
 if TYPE_CHECKING:
-    from tree_sway.twin.observed_tree import ObservedTree
+    from tree_sway.twin import ObservedTree
 
 MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
@@ -152,7 +154,7 @@ class Rig:
         self.observed: ObservedTree | None = None
         """The same simulator, if it follows sensors or has a band."""
         if motion or band:
-            from tree_sway.twin.observed_tree import ObservedTree
+            from tree_sway.twin import ObservedTree
 
             places = {each.name: each.at for each in motion}
             self.simulator = self.observed = ObservedTree(
