@@ -215,7 +215,7 @@ def test_no_import_cycle() -> None:
             home if (home := homes.get((module, alias.name))) else module
             for _, module, node in imports_of(path)
             for alias in node.names
-            if module in MODULES and not (node.col_offset and path.name == "__init__.py")
+            if module in MODULES and not (node.col_offset and path.name == '__init__.py')
         }
         for path in FILES
     }

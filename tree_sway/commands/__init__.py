@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tree_sway.commands.arguments import opened_scene as opened_scene
     from tree_sway.commands.arguments import opened_tree as opened_tree
     from tree_sway.commands.arguments import refuse_overwriting as refuse_overwriting
+    from tree_sway.commands.cli import COMMANDS as COMMANDS
     from tree_sway.commands.command import Command as Command
     from tree_sway.commands.command import commands_beside as commands_beside
     from tree_sway.commands.ending import Ending as Ending
@@ -46,6 +47,5 @@ if TYPE_CHECKING:
     from tree_sway.commands.wind_arguments import refuse_unused_wind as refuse_unused_wind
     from tree_sway.commands.wind_arguments import simulated_speed as simulated_speed
     from tree_sway.commands.wind_recording import record_wind as record_wind
-    from tree_sway.commands.cli import COMMANDS as COMMANDS
 else:
     __getattr__, __dir__, __all__ = face(__name__)

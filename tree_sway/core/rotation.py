@@ -39,3 +39,11 @@ def quaternion_rotated(quaternions: Floats, vectors: Floats) -> Floats:
     axis = quaternions[:, 1:]
     twice = 2.0 * cross(axis, vectors)
     return np.asarray(vectors + real * twice + cross(axis, twice))
+
+
+def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
+    """Return unit quaternions w, x, y, z (..., 4) that rotate x and z to unit vectors (..., 3)."""
+    from scipy.spatial.transform import Rotation  # it takes long to load, and few need it
+
+    axes = np.stack([along, np.cross(normal, along), normal], axis=-1)
+    return np.asarray(Rotation.from_matrix(axes).as_quat()[..., [3, 0, 1, 2]])

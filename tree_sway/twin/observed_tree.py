@@ -31,7 +31,7 @@ from tree_sway.core.checks import (
     within,
 )
 from tree_sway.core.model import ModelCache, PREPARED
-from tree_sway.core.run import RESTARTED, SwaySimulator, WIND_REFUSED
+from tree_sway.core.run import Outcome, SwaySimulator
 from tree_sway.core.settings import Settings, settings_with
 from tree_sway.core.setup import prepared, TreeReductions
 from tree_sway.core.species import Species
@@ -312,8 +312,8 @@ class ObservedTree(SwaySimulator):
         whole += self._last_wind
         status = super().step(whole, dt)
         if refused:
-            status |= WIND_REFUSED
-        if status & RESTARTED:
+            status |= Outcome.WIND_REFUSED
+        if status & Outcome.RESTARTED:
             added[:] = 0.0
             self._dragged.reset()
             self.observer.reset()

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 import math
 import threading
 import time
@@ -15,7 +16,7 @@ from rclpy.clock import Clock, ClockType
 from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway.core.run import LIVE
+from tree_sway.core.run import Tuning
 from tree_sway.core.scene import (
     Run,
     Scene,
@@ -77,6 +78,8 @@ _KEPT_EVERY = 5.0
 
 _STOP_CHECK = 0.05
 """Interval [s] of checks whether the node is ended while it waits."""
+
+_LIVE = frozenset(each.name for each in fields(Tuning))
 
 
 class SolverNode(TreeSwayNode):
@@ -326,7 +329,11 @@ class SolverNode(TreeSwayNode):
         """Refuse a change that is impossible while the trees sway."""
         if not self.is_active:
             return
-        changes = {k: v for k, v in values.items() if k in LIVE and v != self.values[k]}
+        changes = {
+            k: v
+            for k, v in values.items()
+            if k in Tuning.__dataclass_fields__ and v != self.values[k]
+        }
         if changes.get('damping_ratio') == 0.0:
             raise ParameterError(
                 "the species' own damping while the tree sways",
@@ -339,7 +346,7 @@ class SolverNode(TreeSwayNode):
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Apply new values before the next step."""
-        changes = {name: values[name] for name in LIVE if name in values}
+        changes = {name: values[name] for name in _LIVE & {*values}}
         if changes and self.is_active:
             self._tuned |= changes
             self._run.request(

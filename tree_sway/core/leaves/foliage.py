@@ -20,9 +20,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
+from tree_sway.core.rotation import quaternions_of_axes
 from tree_sway.core.species import leaf_traits, LeafTraits, Look, look_of
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind import quaternions_of_axes
 
 MAX_LEAF_AREA_INDEX = 6.0
 """Largest leaf area over ground covered in [-]."""

@@ -19,25 +19,21 @@ if TYPE_CHECKING:
     from tree_sway.core.run.modal_coordinates import FARTHEST as FARTHEST
     from tree_sway.core.run.modal_coordinates import middle_of_step as middle_of_step
     from tree_sway.core.run.modal_coordinates import ModalCoordinates as ModalCoordinates
+    from tree_sway.core.run.outcome import Outcome as Outcome
     from tree_sway.core.run.pushes import MOST_PUSHES as MOST_PUSHES
     from tree_sway.core.run.pushes import row_of as row_of
     from tree_sway.core.run.pushes import Spring as Spring
     from tree_sway.core.run.pushes import Touch as Touch
     from tree_sway.core.run.simulator import Counts as Counts
-    from tree_sway.core.run.simulator import LOAD_CLAMPED as LOAD_CLAMPED
     from tree_sway.core.run.simulator import Motion as Motion
-    from tree_sway.core.run.simulator import OK as OK
-    from tree_sway.core.run.simulator import RESTARTED as RESTARTED
     from tree_sway.core.run.simulator import rows_of_tree as rows_of_tree
     from tree_sway.core.run.simulator import SwaySimulator as SwaySimulator
     from tree_sway.core.run.simulator import TreeGroup as TreeGroup
-    from tree_sway.core.run.simulator import WIND_REFUSED as WIND_REFUSED
     from tree_sway.core.run.simulator_basis import basis_of as basis_of
     from tree_sway.core.run.table_model import bent_too_far as bent_too_far
     from tree_sway.core.run.table_model import come_to_rest as come_to_rest
     from tree_sway.core.run.table_model import STATE_FIELDS as STATE_FIELDS
     from tree_sway.core.run.table_model import TableOscillators as TableOscillators
-    from tree_sway.core.run.tuning import LIVE as LIVE
     from tree_sway.core.run.tuning import LiveTuning as LiveTuning
     from tree_sway.core.run.tuning import Tuning as Tuning
 else:

@@ -23,6 +23,7 @@ from tree_sway.core.checks import (
 from tree_sway.core.model import SwayModel
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
+from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.tree import ends_of_poses
 from tree_sway.core.wind import is_wind
 from tree_sway.errors import nearest, ParameterError
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
 Motion: TypeAlias = Callable[[], Floats]
 """Function that returns the present coordinates of trees in a basis, (t, m)."""
 
-OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
-"""Bits of the result of `SwaySimulator.step`."""
 
 
 @dataclass
@@ -258,9 +257,7 @@ class SwaySimulator:
         Returns
         -------
         int
-            0, or the sum of `WIND_REFUSED` (not finite or too fast: the last wind was used),
-            `LOAD_CLAMPED` (a load beyond the limit of the model was clamped) and `RESTARTED` (the
-            motion was not finite: the tree continued from rest).
+            0, or the sum of bits of `Outcome`.
 
         Raises
         ------
@@ -279,14 +276,14 @@ class SwaySimulator:
         if is_changed:
             self._set_step(dt)
         counts.steps += 1
-        status = OK
+        status = Outcome.OK
         stored = self._wind
         if is_wind(x, y, z, self._max_wind):
             stored[0] = x
             stored[1] = y
             stored[2] = z
         else:
-            status = WIND_REFUSED
+            status = Outcome.WIND_REFUSED
             counts.refused += 1
             x, y, z = stored.tolist()
         if self._gusts is not None:
@@ -350,19 +347,19 @@ class SwaySimulator:
         """Add the effect of pushes over the last step [s]; returns bits as `step`."""
         if self._touch is None or self._touch.is_gone:
             self._touch = None
-            return OK
+            return Outcome.OK
         return self._count(self._touch.step(lambda: self.place(self._poses), dt))
 
     def _count(self, clamped: int) -> int:
         """Count the result of `advance`; returns bits as `step`."""
         if clamped > 0:
             self.counts.clamped += clamped
-            return LOAD_CLAMPED
+            return Outcome.LOAD_CLAMPED
         if clamped < 0:
             self._bank.oscillators.reset()
             self.counts.restarted += 1
-            return RESTARTED
-        return OK
+            return Outcome.RESTARTED
+        return Outcome.OK
 
     def _watch_clamped(self, dt: float) -> None:
         """Show fewer coordinates if the steps of the tree stay clamped, and no push bends it."""

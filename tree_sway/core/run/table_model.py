@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.native import NativeStand, States
 from tree_sway.core.run.modal_coordinates import middle_of_step, ModalCoordinates
+from tree_sway.core.run.outcome import Outcome
 
 if TYPE_CHECKING:
     from tree_sway.core.setup import WindMoments
@@ -124,7 +125,7 @@ class TableOscillators:
         if outcome == 0:
             return 0
         self.n_outside += 1
-        return -1 if outcome & RESTARTED else 1
+        return -1 if outcome & Outcome.RESTARTED else 1
 
     @cached_property
     def swing(self) -> tuple[Floats, ...]:
@@ -179,10 +180,6 @@ class TableOscillators:
         """Return to rest."""
         for array in self.memory():
             array[...] = 0.0
-
-
-RESTARTED = 4
-"""Bit of a step whose motion was not finite."""
 
 
 def bent_too_far(states: States, most_pressure: Floats) -> NDArray[np.bool_]:

@@ -30,9 +30,6 @@ _RANGES = {
     'gravity': (0.0, 30.0, 'm/s^2'),
 }
 
-LIVE = tuple(_RANGES)
-"""Values that may change while a tree sways."""
-
 
 @dataclass(frozen=True)
 class Tuning:

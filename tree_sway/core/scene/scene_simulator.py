@@ -25,14 +25,11 @@ from tree_sway.core.model import ModelCache, PREPARED, SwayModel
 from tree_sway.core.run import (
     Bank,
     Counts,
-    LOAD_CLAMPED,
-    OK,
-    RESTARTED,
+    Outcome,
     rows_of_tree,
     SwaySimulator,
     TreeGroup,
     Tuning,
-    WIND_REFUSED,
 )
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
@@ -263,19 +260,19 @@ class SceneSimulator:
 
         """
         refuse_time_step(dt)
-        status = OK
+        status = Outcome.OK
         # The history must not contain winds that the trees refuse.
         wind = three_numbers('wind', wind_mean)
         if is_wind(*wind, self.settings.max_wind):
             self.wind[:] = wind
         else:
-            status = WIND_REFUSED
+            status = Outcome.WIND_REFUSED
             self._counts.refused += 1
         self._counts.steps += 1
         winds = self.gusts.push(self.wind, dt)
         is_clamped, has_restarted = self._shared.step(winds, dt)
-        status |= LOAD_CLAMPED if is_clamped else OK
-        status |= RESTARTED if has_restarted else OK
+        status |= Outcome.LOAD_CLAMPED if is_clamped else Outcome.OK
+        status |= Outcome.RESTARTED if has_restarted else Outcome.OK
         for number, simulator in self._alone.items():
             status |= simulator.step(winds[number].tolist(), dt)
         return status

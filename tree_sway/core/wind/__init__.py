@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.averaging import WindAverage as WindAverage
     from tree_sway.core.wind.climate import ClimateTracker as ClimateTracker
     from tree_sway.core.wind.climate import WindClimate as WindClimate
-    from tree_sway.core.wind.convention import quaternions_of_axes as quaternions_of_axes
     from tree_sway.core.wind.convention import velocity_of_bearing as velocity_of_bearing
     from tree_sway.core.wind.convention import WindConvention as WindConvention
     from tree_sway.core.wind.crown_wind import CrownWind as CrownWind
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.crown_wind import USUAL_COHERENCE as USUAL_COHERENCE
     from tree_sway.core.wind.gate import GateCounts as GateCounts
     from tree_sway.core.wind.gate import LONGEST_TRANSPORT as LONGEST_TRANSPORT
-    from tree_sway.core.wind.gate import SECOND as SECOND
     from tree_sway.core.wind.gate import WindGate as WindGate
     from tree_sway.core.wind.gust_travel import GustHistory as GustHistory
     from tree_sway.core.wind.height_profile import WindProfile as WindProfile

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
+from tree_sway.core.rotation import quaternions_of_axes
 from tree_sway.errors import ParameterError
 
 CALM_SPEED = 0.05
@@ -173,11 +174,3 @@ class WindConvention:
         axes = np.stack([along, np.cross(self.normal, along)]) / np.linalg.norm(along)
         at_zero = quaternions_of_axes(axes[0], self.normal)
         return axes, at_zero, at_zero[::-1] * [-1.0, 1.0, -1.0, 1.0]
-
-
-def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
-    """Return unit quaternions w, x, y, z (..., 4) that rotate x and z to unit vectors (..., 3)."""
-    from scipy.spatial.transform import Rotation  # it takes long to load, and few need it
-
-    axes = np.stack([along, np.cross(normal, along), normal], axis=-1)
-    return np.asarray(Rotation.from_matrix(axes).as_quat()[..., [3, 0, 1, 2]])

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.wind import SECOND, WindGate
+from tree_sway.core.wind import WindGate
 from tree_sway_lab.battery.branch_runs import Branch
 from tree_sway_lab.battery.row import holds, Row
 
@@ -61,7 +61,7 @@ def _gated(bad: float | None, kind: type) -> NDArray[np.float64]:
         wind = np.array([5 + np.sin(1.5 * t), 2 * np.sin(1.1 * t), 0.3 * np.cos(2 * t)])
         if n == AT and bad is not None:
             wind[0] = bad
-        if gate.offer(round((t + 1.0) * SECOND), wind).accepted:
+        if gate.offer(round(1e9 * (t + 1.0)), wind).accepted:
             last = wind
         loads[n] = 0.004 * np.linalg.norm(last) * last[[2, 0, 1]]
     return branch.run(loads, dtype=kind)
