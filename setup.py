@@ -25,6 +25,10 @@ LIBRARY = 'tree_sway'
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
 NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
+#: Houses of the library that bring commands.
+HOUSES = (
+    'files', 'forest', 'growth', 'page', 'pictures', 'simulation', 'twin',
+)  # fmt: skip
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
@@ -337,7 +341,10 @@ setup(
             *(f'{node} = {PACKAGE}.nodes.executables:{node}' for node in NODES),
             f'tree-sway = {LIBRARY}.commands.cli:main',
         ],
-        'tree_sway.commands': [f'ros = {PACKAGE}.commands.table:COMMANDS'],
+        'tree_sway.commands': [
+            *(f'{house} = {LIBRARY}.{house}.commands:COMMANDS' for house in HOUSES),
+            f'ros = {PACKAGE}.commands:COMMANDS',
+        ],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],

@@ -6,14 +6,15 @@ from importlib.metadata import entry_points, EntryPoint
 
 import pytest
 
-from tree_sway.commands import cli
+from tree_sway.commands import entries
 
-LABORATORY = EntryPoint('lab', 'tree_sway_lab.commands:COMMANDS', cli.GROUP)
+LABORATORY = EntryPoint('lab', 'tree_sway_lab.commands:COMMANDS', entries.GROUP)
 
 
 @pytest.fixture(scope='session', autouse=True)
 def commands_of_this_checkout():
     """Find the commands of the laboratory of this checkout, whose folder is on the path."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cli, 'entry_points', lambda group: [LABORATORY, *entry_points(group=group)])
+        points = [LABORATORY, *entry_points(group=entries.GROUP)]
+        patch.setattr(entries, 'entry_points', lambda group: points)
         yield

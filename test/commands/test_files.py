@@ -44,7 +44,7 @@ def test_plot_tree_draws_the_tree(
     installed: Callable[..., None],
 ) -> None:  # fmt: skip
     installed('plot')
-    monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
+    monkeypatch.setattr('tree_sway.pictures.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'tree.png'
     assert cli.main(['plot', *arguments, '--leaves', 'on', '-o', str(picture)]) == 0
     assert picture.read_bytes().startswith(PNG)

@@ -12,9 +12,10 @@ from typing import Any
 
 import pytest
 
-from tree_sway.commands import cli, info
-from tree_sway.commands.mode_table import mode_table
+from tree_sway.commands import cli
 from tree_sway.files.trees.source import open_scene
+from tree_sway.simulation.commands import info
+from tree_sway.simulation.commands.mode_table import mode_table
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 SEGMENTS = SEEDLING.with_name('segments.csv')
@@ -83,7 +84,7 @@ def test_plot_draws_it(
     forest: str, tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip('matplotlib')
-    monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
+    monkeypatch.setattr('tree_sway.pictures.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'glade.png'
     glade = Path(forest)
     glade.write_text(glade.read_text().replace(str(SEEDLING), str(SEGMENTS)))

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.commands.moments import moments_of
 from tree_sway.errors import ParameterError
+from tree_sway.files.commands.moments import moments_of
 from tree_sway.files.trees.source import open_tree
 
 SEEDLING = str(Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml')

@@ -12,9 +12,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from tree_sway.commands.record_clock import RecordClock
-from tree_sway.commands.wind_recording import WindTable
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.live.commands.record_clock import RecordClock
+from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.live.reading import WindReading
 
 NOON = 1_800_000_000.0

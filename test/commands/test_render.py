@@ -13,10 +13,10 @@ import pytest
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
 from tree_sway import extras  # noqa: E402
-from tree_sway.commands import render  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.page import film  # noqa: E402
 from tree_sway.page.film import browser  # noqa: E402
+from tree_sway.pictures.commands import render  # noqa: E402
 
 FILES = Path(__file__).parents[1] / 'files' / 'data'
 SEEDLING = str(FILES / 'seedling.yaml')

@@ -23,10 +23,10 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.commands import sensor_arguments  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.commands.sensor_arguments import HELP  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
+from tree_sway.live.commands import sensor_arguments  # noqa: E402
+from tree_sway.live.commands.sensor_arguments import HELP  # noqa: E402
 from tree_sway.live.registry import source_kinds  # noqa: E402
 from tree_sway.stream.protocol import decode_frame  # noqa: E402
 

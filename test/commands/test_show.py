@@ -19,12 +19,12 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.commands.page_controls import page_controls, sensor_place  # noqa: E402
 from tree_sway.core.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.growth.growing import grow  # noqa: E402
+from tree_sway.page.commands import show  # noqa: E402
+from tree_sway.page.commands.page_controls import page_controls, sensor_place  # noqa: E402
 from tree_sway.page.session import Choices  # noqa: E402
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402

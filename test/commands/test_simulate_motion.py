@@ -14,13 +14,13 @@ from scipy.spatial.transform import Rotation
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 
 from tree_sway.commands.cli import main
-from tree_sway.commands.exposure import touched_species
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.growth.builtin import builtin_tree
+from tree_sway.simulation.commands.exposure import touched_species
 from tree_sway.simulation.exposure import CONTACT, exposure_of
 from tree_sway.twin.sensor_place import place_on
 

@@ -102,8 +102,8 @@ CHANGES = {
         'True',
     ),
     'command': (
-        'tree_sway/commands/commands.csv', 'info benjamina', 'info goldcrest',
-        "from tree_sway.commands.cli import COMMANDS; print(COMMANDS['info'].example)",
+        'tree_sway/simulation/commands/commands.csv', 'info benjamina', 'info goldcrest',
+        "from tree_sway.simulation.commands import COMMANDS; print(COMMANDS['info'].example)",
         'info goldcrest',
     ),
     'ending': (

@@ -16,7 +16,7 @@ import pytest
 from tree_sway.commands import cli
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
-from tree_sway.forest import risk_command
+from tree_sway.forest.commands import risk as risk_command
 from tree_sway.forest.risk import risk_work, Row, rows_of_kind
 from tree_sway.forest.risk_kind import compute_kind, KindResult, RiskKind, SeasonCurves
 from tree_sway.simulation.critical_wind import ShareCurve

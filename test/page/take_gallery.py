@@ -24,8 +24,9 @@ import tempfile
 from PIL import Image
 from tree_sway_lab.browser import Browser
 
-from tree_sway.commands import cli, show
-from tree_sway.commands.page_controls import page_controls
+from tree_sway.commands import cli
+from tree_sway.page.commands import show
+from tree_sway.page.commands.page_controls import page_controls
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session

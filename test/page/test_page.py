@@ -19,9 +19,9 @@ import pytest
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
-from tree_sway.commands import show  # noqa: E402
 from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402

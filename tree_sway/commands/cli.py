@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The command line ``tree-sway``: one module per command, imported when needed.
+The command line ``tree-sway``: one module per command, imported when it is called.
 
 A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Errors that the
 user can correct are one line on standard error and exit code 2.
@@ -13,7 +13,6 @@ import argparse
 from collections.abc import Sequence
 import contextlib
 import importlib
-from importlib.metadata import entry_points
 import io
 import os
 import re
@@ -22,19 +21,12 @@ import sys
 from typing import Any, NoReturn
 import warnings
 
-from tree_sway.commands.command import Command, commands_beside
+from tree_sway.commands.command import Command
+from tree_sway.commands.entries import commands_called, own_commands
 from tree_sway.commands.escaped_text import escaped_output
 from tree_sway.errors import nearest, shown, TreeSwayError
 from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 
-COMMANDS = commands_beside(__file__)
-
-#: Entry points of this group are further tables of commands: those of the nodes are merged with
-#: the table above, those of the laboratory are called by the name of their entry point.
-GROUP = 'tree_sway.commands'
-MERGED = 'ros'
-#: Commands of the nodes.
-_OF_ROS = ('demo', 'listen', 'record', 'relay')
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -73,8 +65,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _main(given: list[str]) -> int:
     table, group = _table(given[0] if given else '')
     command = given[bool(group)] if len(given) > bool(group) else ''
-    if not group and command not in table and command in (*_OF_ROS, 'lab'):
-        return _fail(command, _cure_elsewhere(command, shlex.join(given)))
+    if command == 'lab' and not group:
+        return _fail(command, _cure_of_laboratory(shlex.join(given)))
+    missing = [] if command in table else own_commands()[1]
+    if missing and (command[:1] not in ('', '-') or not table):
+        cure = cure_of_missing('tree_sway', shlex.join(given))
+        return _fail(command, f'the commands of {", ".join(missing)} are missing; {cure}')
     try:
         arguments = _parser(command, table, group).parse_args(given[bool(group) :])
         # This is without notes and progress: errors are printed afterwards.
@@ -82,7 +78,7 @@ def _main(given: list[str]) -> int:
         with quiet or contextlib.nullcontext():
             refuse_missing(table[arguments.command].needs.split(), shlex.join(given))
             # Imported here, as numpy takes long enough for a Ctrl-C, which is then no traceback.
-            importlib.import_module('tree_sway.files.models.disk_cache').use_disk_cache()
+            importlib.import_module('tree_sway.files.models').use_disk_cache()
             code = int(_module(table[arguments.command]).run(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends
@@ -115,24 +111,19 @@ def _fail(command: str, text: str) -> int:
     return _FAILURE
 
 
-def _cure_elsewhere(command: str, line: str) -> str:
-    """Return what to do for a command of another package that is not installed."""
-    if command != 'lab':
-        return cure_of_missing('rclpy', line)
+def _cure_of_laboratory(line: str) -> str:
     install = line_in_venv(line) or 'pip install ./lab in the checkout'
     return f'it belongs to the laboratory: {install}'
 
 
 def _table(first: str) -> tuple[dict[str, Command], str]:
     """Return the commands for the first word, and the name of their group."""
-    table = dict(COMMANDS)
-    if first in table:
-        return table, ''  # entry points are searched only when needed
-    for point in entry_points(group=GROUP):
-        if point.name == MERGED:
-            table.update(point.load())
-        elif point.name == first:
-            return point.load(), first
+    table, _ = own_commands()
+    # All installed packages are searched only when needed.
+    if first and not first.startswith('-') and first not in table:
+        called = commands_called(first)
+        if called is not None:
+            return called, first
     return table, ''
 
 

@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A command of ``tree-sway`` in the help."""
+"""A command of ``tree-sway`` in the help, and the table of commands of a package."""
 
 from __future__ import annotations
 
+import sys
 from typing import NamedTuple
 
 from tree_sway.tables import table_beside
@@ -21,6 +22,8 @@ class Command(NamedTuple):
         Module with its arguments and its function.
     needs
         Modules of other packages that it cannot run without, separated by spaces.
+    place
+        Commands of all tables are listed by it, rising.
 
     """
 
@@ -28,12 +31,17 @@ class Command(NamedTuple):
     example: str
     module: str
     needs: str = ''
+    place: int = 0
 
 
-def commands_beside(module: str) -> dict[str, Command]:
-    """Read the commands of a package by name, from ``commands.csv`` beside a module's file."""
+def commands_of(package: str) -> dict[str, Command]:
+    """
+    Read the commands of a package by name, from its ``commands.csv``.
+
+    The module of a command has its name and is in the package, which is given by its ``__name__``.
+    """
     found = {}
-    for row in table_beside(module, 'commands.csv'):
+    for row in table_beside(str(sys.modules[package].__file__), 'commands.csv'):
         name, needs = row.pop('name'), row.pop('needs') or ''  # an empty cell is read as None
-        found[name] = Command(**row, needs=needs)
+        found[name] = Command(**row, module=f'{package}.{name}', needs=needs)
     return found

@@ -15,21 +15,18 @@ import sys
 import tempfile
 import webbrowser
 
-from tree_sway.commands import (
-    add_page_arguments,
-    add_sensor_argument,
+from tree_sway.commands import Ending, LONGEST
+from tree_sway.core.scene import Scene
+from tree_sway.core.wind import shorter_than
+from tree_sway.files.commands import (
     add_sway_arguments,
-    Ending,
-    LONGEST,
     opened_scene,
-    page_settings,
-    print_address,
     refuse_unused_wind,
     simulated_speed,
 )
-from tree_sway.core.scene import Scene
-from tree_sway.core.wind import shorter_than
 from tree_sway.files.export import write_tree
+from tree_sway.live.commands import add_sensor_argument
+from tree_sway.page.commands import add_page_arguments, page_settings, print_address
 from tree_sway.parameters import Value
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor

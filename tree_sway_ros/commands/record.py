@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands import (
+from tree_sway.extras import refuse_missing
+from tree_sway.files.recording import FORMATS
+from tree_sway.live.commands import (
     add_live_motion_arguments,
     add_sensor_argument,
     record_tree,
     record_wind,
 )
-from tree_sway.extras import refuse_missing
-from tree_sway.files.recording import FORMATS
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 
 

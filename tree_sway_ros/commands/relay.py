@@ -17,9 +17,10 @@ import time
 from urllib.parse import parse_qsl, urlencode, urlsplit
 import webbrowser
 
-from tree_sway.commands import add_page_arguments, Ending, page_settings, print_address
+from tree_sway.commands import Ending
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.page import PageServer, read_token
+from tree_sway.page.commands import add_page_arguments, page_settings, print_address
 from tree_sway.stream import MAGIC, StreamClient
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 

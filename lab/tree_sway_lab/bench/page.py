@@ -7,18 +7,16 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
-from importlib import import_module
 import os
 from pathlib import Path
 import statistics
 
-from tree_sway.commands import COMMANDS
 from tree_sway.errors import ParameterError
 from tree_sway.page import Choices, PageServer, PageSettings, Session, SimulatedWind
+from tree_sway.page.commands import add_arguments, build_scene
 from tree_sway_lab.bench.measured import Measured
 from tree_sway_lab.browser import Browser, chromium
 
-_SHOW = import_module(COMMANDS['show'].module)
 _SETTLING = 20.0
 _WIND = 9.0
 _HOUR = 3600.0
@@ -65,10 +63,10 @@ def time_page(tree: str = 'benjamina', size: int = 1, seconds: float = 10.0) -> 
     if chromium() is None:
         raise ParameterError('there is no browser', where='bench page', cure='install chromium')
     parser = argparse.ArgumentParser()
-    _SHOW.add_arguments(parser)
+    add_arguments(parser)
     arguments = parser.parse_args([tree])
     session = Session(
-        lambda wanted: _SHOW.build_scene(wanted, arguments),
+        lambda wanted: build_scene(wanted, arguments),
         Choices(Path(tree).name, str(size)),
         SimulatedWind(_WIND),
     )

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands import add_tree_arguments, opened_tree
 from tree_sway.errors import ParameterError
+from tree_sway.files.commands import add_tree_arguments, opened_tree
 from tree_sway.files.wind import read_wind
 from tree_sway_lab.compare.exported_wind import compare_exported_wind, SETTLES
 from tree_sway_lab.compare.mujoco_tree import FRAME, take_warnings

@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 import re
 
-from tree_sway.commands import COMMANDS
+from tree_sway.commands import own_commands
 from tree_sway.core.model import MEANINGS, TYPES
 from tree_sway.core.species import species_keys, species_named
 from tree_sway.errors import FormatError
@@ -31,7 +31,6 @@ from tree_sway_lab.commands import COMMANDS as LAB_COMMANDS
 from tree_sway_lab.pages.notebooks import notebook, with_outputs
 from tree_sway_lab.pages.published_drawing import published_drawing
 from tree_sway_lab.pages.rooms import rooms_drawing
-from tree_sway_ros.commands.table import COMMANDS as ROS_COMMANDS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.topics import TOPICS
 
@@ -158,7 +157,7 @@ def model_table() -> str:
 def commands_table() -> str:
     """Say what each command does, with its example; those of the laboratory come last."""
     lines = ['| command | what it does | example |', '|---|---|---|']
-    tables = ('', COMMANDS), ('', ROS_COMMANDS), ('lab ', LAB_COMMANDS)
+    tables = ('', own_commands()[0]), ('lab ', LAB_COMMANDS)
     lines += [
         f'| `{group}{name}` | {c.summary} | `tree-sway {group}{c.example}` |'
         for group, table in tables

@@ -58,6 +58,8 @@ def _room(module: tuple[str, ...]) -> str:
         return ''
     if prefix == 'lab':
         return prefix
+    if parts[0] != 'core' and parts[1:2] == ('commands',):
+        return f'{prefix}{parts[0]}/commands'
     if parts[0] != 'core' or prefix:
         return prefix + parts[0]
     return f'core/{parts[1]}' if len(parts) > 1 and parts[1] != '__init__' else ''

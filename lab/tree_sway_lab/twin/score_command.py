@@ -18,22 +18,21 @@ import sys
 
 import numpy as np
 
-from tree_sway.commands import (
+from tree_sway.core.arrays import Floats
+from tree_sway.core.scene import make_simulator
+from tree_sway.errors import nearest, ParameterError
+from tree_sway.files.commands import (
     add_leaves_argument,
     add_model_argument,
-    add_motion_arguments,
     add_tree_arguments,
     add_wind_arguments,
     chosen_leaves,
     opened_record,
     opened_tree,
-    placed_motion,
 )
-from tree_sway.core.arrays import Floats
-from tree_sway.core.scene import make_simulator
-from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.wind import read_csv_sway
 from tree_sway.simulation import simulate
+from tree_sway.twin.commands import add_motion_arguments, placed_motion
 from tree_sway_lab.twin.sway_comparison import BANDS, compare_sway, low_passed, SwayComparison
 
 _RATE = 60.0

@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import welch
 
-from tree_sway.commands import turbulence_of
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene import PlacedTree
 from tree_sway.core.settings import Settings
@@ -25,6 +24,7 @@ from tree_sway.core.tree import rooted
 from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.growth import grow
 from tree_sway.simulation import exposure_of, Rig
+from tree_sway.simulation.commands import turbulence_of
 from tree_sway_lab.validation.response_slopes import HEIGHTS, slope_above
 
 SPECIES = ('spruce', 'sitka', 'pine', 'douglas_fir', 'birch', 'oak', 'beech', 'ash')

@@ -15,9 +15,10 @@ from urllib.parse import parse_qsl, urlsplit
 import numpy as np
 import pytest
 
-from tree_sway.commands import calibrate, cli
+from tree_sway.commands import cli
 from tree_sway.errors import FormatError, TransportError
 from tree_sway.files.wind.phone import read_phone_sway
+from tree_sway.twin.commands import calibrate
 from tree_sway.twin.identification.measured_sway import estimate_sway
 
 ROOT = Path(__file__).parents[3]

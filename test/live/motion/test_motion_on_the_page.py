@@ -19,10 +19,7 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor  # noqa: E402
 
-from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.commands.learn_argument import Learning  # noqa: E402
-from tree_sway.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.species.species import species_named  # noqa: E402
@@ -32,8 +29,11 @@ from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.live.motion import motion_feed  # noqa: E402
 from tree_sway.live.motion.live_motion import MotionSample  # noqa: E402
 from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: E402
+from tree_sway.page.commands import show  # noqa: E402
+from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import RecordedWind  # noqa: E402
+from tree_sway.twin.commands.learn_argument import Learning  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
 from tree_sway.twin.tree_fit import TreeFit  # noqa: E402

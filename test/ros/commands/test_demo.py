@@ -16,7 +16,7 @@ import threading
 
 import pytest
 
-from tree_sway.commands.arguments import opened_scene
+from tree_sway.files.commands.arguments import opened_scene
 from tree_sway.files.trees.source import open_tree
 
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')

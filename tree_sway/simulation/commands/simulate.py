@@ -11,40 +11,39 @@ import sys
 
 import numpy as np
 
-from tree_sway.commands.arguments import (
+from tree_sway.commands import waiting
+from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.errors import nearest, ParameterError
+from tree_sway.files.commands import (
     add_leaves_argument,
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
+    add_wind_arguments,
     chosen_leaves,
+    opened_record,
     opened_tree,
     output_path,
+    refuse_unused_wind,
+    simulated_speed,
 )
-from tree_sway.commands.exposure import (
+from tree_sway.files.export import refuse_no_table, write_columns
+from tree_sway.files.trees import LearnedFile
+from tree_sway.live.commands import add_sensor_argument, live_record
+from tree_sway.simulation import Exposure, refuse_too_many_steps, simulate, WindSamples
+from tree_sway.simulation.commands.exposure import (
     add_exposure_arguments,
     chosen_exposure,
     touched_species,
     turbulence_of,
 )
-from tree_sway.commands.learn_argument import (
+from tree_sway.twin.commands import (
     add_learn_argument,
+    add_motion_arguments,
     check_learn_argument,
+    placed_motion,
     write_learned,
 )
-from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
-from tree_sway.commands.progress import waiting
-from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
-from tree_sway.commands.wind_arguments import (
-    add_wind_arguments,
-    opened_record,
-    refuse_unused_wind,
-    simulated_speed,
-)
-from tree_sway.core.wind.simulated import simulate_turbulence
-from tree_sway.errors import nearest, ParameterError
-from tree_sway.files.export import refuse_no_table, write_columns
-from tree_sway.files.trees import LearnedFile
-from tree_sway.simulation import Exposure, refuse_too_many_steps, simulate, WindSamples
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 import sys
 
-from tree_sway.commands.arguments import (
+from tree_sway.commands import refuse_unused, waiting
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator, Scene, solved
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import prepare
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files import write_text_whole
+from tree_sway.files.commands.arguments import (
     add_exact_argument,
     add_leaves_argument,
     add_model_argument,
@@ -20,18 +27,14 @@ from tree_sway.commands.arguments import (
     opened_scene,
     OUTPUT_HELP,
     output_path,
-    refuse_unused,
     what_was_written,
 )
-from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
-from tree_sway.commands.progress import waiting
-from tree_sway.commands.wind_arguments import add_wind_arguments, opened_wind, refuse_unused_wind
-from tree_sway.core.run import SwaySimulator
-from tree_sway.core.scene import make_simulator, Scene, solved
-from tree_sway.core.settings import Settings
-from tree_sway.core.setup import prepare
-from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files import write_text_whole
+from tree_sway.files.commands.moments import at_moments, moments_of, numbered_paths
+from tree_sway.files.commands.wind_arguments import (
+    add_wind_arguments,
+    opened_wind,
+    refuse_unused_wind,
+)
 from tree_sway.files.export import (
     mjcf_of_tree,
     morphing_tree,

@@ -12,20 +12,15 @@ from pathlib import Path
 import sys
 import time
 
-from tree_sway.commands import (
-    add_exposure_arguments,
-    bar,
-    refuse_overwriting,
-    refuse_spacing_in_the_open,
-    RowFile,
-)
+from tree_sway.commands import bar, refuse_overwriting, RowFile
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
 from tree_sway.files import path_of, read_head, refuse_unwritable, write_text_whole
 from tree_sway.files.scenes import inventory_of, inventory_table
-from tree_sway.forest.command import add_cluster_arguments, refuse_wrong_cluster
+from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
 from tree_sway.forest.risk import risk_rows, risk_work, RiskWork, Row
 from tree_sway.forest.runner import cores
+from tree_sway.simulation.commands import add_exposure_arguments, refuse_spacing_in_the_open
 
 _LEFT_OUT = (
     'rot, wounds and forks, wet or shallow soil and pruning are not included; '

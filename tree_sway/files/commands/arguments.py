@@ -8,11 +8,10 @@ import argparse
 from collections.abc import Callable, Iterable
 import dataclasses
 import math
-from pathlib import Path
 import sys
 from typing import Any
 
-from tree_sway.commands.progress import waiting
+from tree_sway.commands import refuse_overwriting, waiting
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.scene import Scene
 from tree_sway.core.settings import model_of, Settings
@@ -196,10 +195,6 @@ def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | 
     return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
-def refuse_unused(option: str, needs: str) -> None:
-    """Raise the `ParameterError` of an option without the one that it belongs to."""
-    raise ParameterError('it would change nothing', where=option, cure=f'add {needs}')
-
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """Add the model of the sway."""
@@ -230,15 +225,6 @@ def output_path(arguments: argparse.Namespace) -> str:
     refuse_unwritable(arguments.output)
     return str(arguments.output)
 
-
-def refuse_overwriting(path: str | Path, option: str) -> None:
-    """Raise a `ParameterError` if a file of an option exists."""
-    if Path(path).is_file():
-        raise ParameterError(
-            f"'{path}' exists",
-            where=option,
-            cure='give a different file, or write over it with --force',
-        )
 
 
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:

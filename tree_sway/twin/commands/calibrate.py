@@ -11,7 +11,15 @@ import shlex
 import sys
 import time
 
-from tree_sway.commands.arguments import (
+from tree_sway.commands import waiting
+from tree_sway.core.checks import within
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import is_in_leaf
+from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import sway_oddity
+from tree_sway.errors import inside, ParameterError, TransportError
+from tree_sway.files import path_of
+from tree_sway.files.commands import (
     add_leaves_argument,
     add_output_arguments,
     add_tree_arguments,
@@ -21,14 +29,6 @@ from tree_sway.commands.arguments import (
     say_warnings,
     write_tree_file,
 )
-from tree_sway.commands.progress import waiting
-from tree_sway.core.checks import within
-from tree_sway.core.settings import Settings
-from tree_sway.core.setup import is_in_leaf
-from tree_sway.core.species import Species, species_named
-from tree_sway.core.tree import sway_oddity
-from tree_sway.errors import inside, ParameterError, TransportError
-from tree_sway.files import path_of
 from tree_sway.files.wind import read_csv_sway, read_phone_sway, SwayRecord
 from tree_sway.twin import calibrate, Calibration, estimate_sway, FreeDecay
 

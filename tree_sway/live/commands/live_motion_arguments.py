@@ -10,8 +10,8 @@ from contextlib import contextmanager, ExitStack
 import sys
 from typing import TYPE_CHECKING
 
-from tree_sway.commands.motion_arguments import add_place_argument, sensors_and_places
 from tree_sway.errors import ParameterError
+from tree_sway.live.commands.sensor_places import add_place_argument, sensors_and_places
 
 if TYPE_CHECKING:
     from tree_sway.live import MotionFeed, MotionSample

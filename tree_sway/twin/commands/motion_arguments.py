@@ -10,8 +10,9 @@ import sys
 
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
-from tree_sway.errors import inside, ParameterError
+from tree_sway.errors import inside
 from tree_sway.files.motion import MotionRecord, read_motion
+from tree_sway.live.commands import add_place_argument, sensors_and_places
 from tree_sway.simulation import PlacedMotion
 from tree_sway.twin import place_on
 
@@ -31,25 +32,6 @@ def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
         'their times (%(default)s)',
     )  # fmt: skip
 
-
-def add_place_argument(parser: argparse.ArgumentParser) -> None:
-    """Add ``--at``, the place of each sensor."""
-    parser.add_argument(
-        '--at', action='append', default=[], metavar='PLACE',
-        help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
-        'b12:0.5; once for each --motion',
-    )  # fmt: skip
-
-
-def sensors_and_places(arguments: argparse.Namespace) -> list[tuple[str, str]]:
-    """Pair each ``--motion`` with its ``--at``; a `ParameterError` if one has no other."""
-    n_sensors = len(arguments.motion)
-    n_places = len(arguments.at)
-    if n_sensors != n_places:
-        what = f'{n_sensors} --motion and {n_places} --at'
-        cure = 'give the place of each sensor: --motion SENSOR --at 3.2'
-        raise ParameterError(what, cure=cure)
-    return list(zip(arguments.motion, arguments.at, strict=True))
 
 
 def placed_motion(

@@ -9,8 +9,7 @@ import math
 from pathlib import Path
 import re
 
-from tree_sway.commands.arguments import refuse_overwriting
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar, refuse_overwriting
 from tree_sway.core.checks import within
 from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake

@@ -15,18 +15,7 @@ import webbrowser
 
 import numpy as np
 
-from tree_sway.commands.arguments import chosen_leaves, opened_scene
-from tree_sway.commands.ending import Ending
-from tree_sway.commands.learn_argument import (
-    add_learn_argument,
-    check_learn_argument,
-    Learning,
-)
-from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
-from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
-from tree_sway.commands.page_controls import page_controls, sensor_place
-from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
-from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
+from tree_sway.commands import Ending
 from tree_sway.core.checks import within
 from tree_sway.core.leaves import is_bare, species_in_month
 from tree_sway.core.scene import PlacedTree, Scene, Simulator
@@ -34,14 +23,30 @@ from tree_sway.core.settings import model_of, Settings, USUAL
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import rooted
 from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.commands import (
+    add_sway_arguments,
+    chosen_leaves,
+    opened_scene,
+    opened_wind,
+    refuse_unused_wind,
+)
 from tree_sway.files.motion import refuse_no_history, TreeHistory
 from tree_sway.files.scenes import read_critical_winds
 from tree_sway.files.trees import open_scene, scene_of_files, TreeFile
 from tree_sway.growth import grow, stem_of_age
 from tree_sway.live import MotionFeed
+from tree_sway.live.commands import (
+    add_live_motion_arguments,
+    add_sensor_argument,
+    listening,
+    sensing,
+)
 from tree_sway.page import Choices, PageServer, PageSettings, RATE, Session, WindSource
+from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.page.commands.page_controls import page_controls, sensor_place
 from tree_sway.stream import ControlPanel
 from tree_sway.twin import observed_scene, ObservedTree
+from tree_sway.twin.commands import add_learn_argument, check_learn_argument, Learning
 from tree_sway.worker import submit_beside
 
 _SPACING = 1.2

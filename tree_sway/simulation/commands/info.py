@@ -13,23 +13,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.cache import MODELS
-from tree_sway.commands.arguments import (
-    add_exact_argument,
-    add_leaves_argument,
-    add_tree_arguments,
-    chosen_leaves,
-    opened_scene,
-)
-from tree_sway.commands.exposure import (
-    add_exposure_arguments,
-    chosen_exposure,
-    refuse_unused_exposure,
-    touched_species,
-    turbulence_of,
-)
-from tree_sway.commands.mode_table import mode_table
-from tree_sway.commands.progress import bar
-from tree_sway.commands.strength import strength_rig, tallest_of_kinds
+from tree_sway.commands import bar
 from tree_sway.core.checks import within
 from tree_sway.core.scene import Kind, make_simulator, PlacedTree, Scene
 from tree_sway.core.settings import Settings
@@ -37,8 +21,24 @@ from tree_sway.core.setup import in_season, TreeReductions
 from tree_sway.core.species import Species
 from tree_sway.core.tree import BREAST_HEIGHT, breast_height_diameter, oddities, sway_oddity, Tree
 from tree_sway.errors import LONGEST_NOTE, shown, TreeError
+from tree_sway.files.commands import (
+    add_exact_argument,
+    add_leaves_argument,
+    add_tree_arguments,
+    chosen_leaves,
+    opened_scene,
+)
 from tree_sway.parameters import SWAY
 from tree_sway.simulation import StrengthUse
+from tree_sway.simulation.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    refuse_unused_exposure,
+    touched_species,
+    turbulence_of,
+)
+from tree_sway.simulation.commands.mode_table import mode_table
+from tree_sway.simulation.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.twin import advised_places
 
 _GRAVITY = 9.81

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tree_sway.commands.progress import bar
+from tree_sway.commands import bar
 from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.page import blow, WindSource

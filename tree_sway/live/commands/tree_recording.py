@@ -17,16 +17,16 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from tree_sway.commands.arguments import say_warnings
-from tree_sway.commands.live_motion_arguments import sensing
-from tree_sway.commands.record_clock import RecordClock
-from tree_sway.commands.row_file import RowFile
-from tree_sway.commands.sensor_arguments import listening
-from tree_sway.commands.wind_recording import WindTable
+from tree_sway.commands import RowFile
 from tree_sway.errors import inside, ParameterError, TransportError
+from tree_sway.files.commands import say_warnings
 from tree_sway.files.export import write_tree
 from tree_sway.files.motion import RecordedSensor, TreeRecord, write_tree_record
 from tree_sway.files.trees import open_tree
+from tree_sway.live.commands.live_motion_arguments import sensing
+from tree_sway.live.commands.record_clock import RecordClock
+from tree_sway.live.commands.sensor_arguments import listening
+from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.twin import place_on
 
 if TYPE_CHECKING:

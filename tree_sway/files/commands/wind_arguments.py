@@ -9,15 +9,15 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from tree_sway.commands.arguments import (
-    add_leaves_argument,
-    add_model_argument,
-    add_tree_arguments,
-    refuse_unused,
-)
+from tree_sway.commands import refuse_unused
 from tree_sway.core.wind import shorter_than
 from tree_sway.errors import ParameterError
 from tree_sway.files import reader_options
+from tree_sway.files.commands.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_tree_arguments,
+)
 from tree_sway.files.wind import read_wind, WindRecord
 from tree_sway.page import RecordedWind, SimulatedWind
 from tree_sway.parameters import SWAY

@@ -16,14 +16,13 @@ from pathlib import Path
 import threading
 import time
 
-from tree_sway.commands.arguments import refuse_overwriting
-from tree_sway.commands.record_clock import RecordClock
-from tree_sway.commands.row_file import RowFile
-from tree_sway.commands.sensor_arguments import listening
+from tree_sway.commands import refuse_overwriting, RowFile
 from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
 from tree_sway.live import LiveWind, WindReading
+from tree_sway.live.commands.record_clock import RecordClock
+from tree_sway.live.commands.sensor_arguments import listening
 
 _LOOK = 0.1
 INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')

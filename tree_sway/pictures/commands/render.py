@@ -9,17 +9,19 @@ from io import BytesIO
 import sys
 import time
 
-from tree_sway.commands.arguments import (
+from tree_sway.commands import waiting
+from tree_sway.core.checks import within
+from tree_sway.files.commands import (
     add_output_arguments,
+    add_sway_arguments,
     chosen_leaves,
     opened_scene,
+    opened_wind,
     output_path,
+    refuse_unused_wind,
 )
-from tree_sway.commands.progress import waiting
-from tree_sway.commands.swaying import swaying
-from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
-from tree_sway.core.checks import within
 from tree_sway.page import browser, page_pictures
+from tree_sway.pictures.commands.swaying import swaying
 
 _LEAVES = 2800
 """Share of the leaves, so that frames are drawn fast enough."""

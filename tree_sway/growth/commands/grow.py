@@ -9,18 +9,18 @@ import sys
 
 import numpy as np
 
-from tree_sway.commands.arguments import (
-    add_output_arguments,
-    OUTPUT_HELP,
-    output_path,
-    write_tree_file,
-)
 from tree_sway.core.checks import within
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import TreeReductions
 from tree_sway.core.species import species_keys, species_named
 from tree_sway.core.tree import rooted
 from tree_sway.errors import ParameterError, TreeError
+from tree_sway.files.commands import (
+    add_output_arguments,
+    OUTPUT_HELP,
+    output_path,
+    write_tree_file,
+)
 from tree_sway.files.trees import TreeFile
 from tree_sway.growth import grow, stem_growth, stem_of_age
 

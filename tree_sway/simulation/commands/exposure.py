@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from tree_sway.commands.arguments import refuse_unused
+from tree_sway.commands import refuse_unused
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError

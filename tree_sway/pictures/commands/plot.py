@@ -11,34 +11,23 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.commands.arguments import (
-    add_exact_argument,
-    add_output_arguments,
-    chosen_leaves,
-    opened_scene,
-    output_path,
-)
-from tree_sway.commands.exposure import (
-    add_exposure_arguments,
-    chosen_exposure,
-    refuse_unused_exposure,
-    touched_species,
-    turbulence_of,
-)
-from tree_sway.commands.progress import bar, waiting
-from tree_sway.commands.strength import strength_rig, tallest_of_kinds
-from tree_sway.commands.swaying import swaying
-from tree_sway.commands.wind_arguments import (
-    add_sway_arguments,
-    opened_wind,
-    refuse_unused_wind,
-    simulated_speed,
-)
+from tree_sway.commands import bar, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files import is_file, path_of
+from tree_sway.files.commands import (
+    add_exact_argument,
+    add_output_arguments,
+    add_sway_arguments,
+    chosen_leaves,
+    opened_scene,
+    opened_wind,
+    output_path,
+    refuse_unused_wind,
+    simulated_speed,
+)
 from tree_sway.page import RecordedWind
 from tree_sway.parameters import SWAY
 from tree_sway.pictures import (
@@ -47,6 +36,16 @@ from tree_sway.pictures import (
     plot_study,
     plot_wind_and_tip,
     STUDY_COLUMNS,
+)
+from tree_sway.pictures.commands.swaying import swaying
+from tree_sway.simulation.commands import (
+    add_exposure_arguments,
+    chosen_exposure,
+    refuse_unused_exposure,
+    strength_rig,
+    tallest_of_kinds,
+    touched_species,
+    turbulence_of,
 )
 
 _SETTLING = 60.0

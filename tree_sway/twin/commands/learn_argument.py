@@ -9,9 +9,9 @@ import sys
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from tree_sway.commands.arguments import what_was_written
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.commands import what_was_written
 from tree_sway.files.trees import LearnedFile, refuse_no_learned_file
 from tree_sway.twin import LearnedTree
 
