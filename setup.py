@@ -345,6 +345,10 @@ setup(
             *(f'{house} = {LIBRARY}.{house}.commands:COMMANDS' for house in HOUSES),
             f'ros = {PACKAGE}.commands:COMMANDS',
         ],
+        'tree_sway.show': [
+            f'forest = {LIBRARY}.forest.commands.on_the_page:RiskOnThePage',
+            f'twin = {LIBRARY}.twin.commands.on_the_page:SensorsOnThePage',
+        ],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],

@@ -36,7 +36,7 @@ STOREYS = {
     'core.native': 4, 'core.drag': 5, 'core.species': 5, 'core.tree': 6, 'core.wind': 7,
     'core.oscillators': 7, 'core.leaves': 8, 'core.settings': 8, 'core.tree_state': 7,
     'core.model': 9, 'core.setup': 10, 'core.run': 11, 'core.fidelity': 12, 'core.scene': 13,
-    'files.commands': 30, 'growth.commands': 31, 'live.commands': 31, 'page.commands': 34,
+    'files.commands': 30, 'growth.commands': 31, 'live.commands': 31, 'page.commands': 32,
     'twin.commands': 33, 'simulation.commands': 34, 'pictures.commands': 35, 'forest.commands': 35,
 }  # fmt: skip
 #: Rooms with a face of their own.

@@ -22,12 +22,14 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway.forest.commands.on_the_page import RiskOnThePage  # noqa: E402
 from tree_sway.growth.growing import grow  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
-from tree_sway.page.commands.page_controls import page_controls, sensor_place  # noqa: E402
+from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices  # noqa: E402
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
+from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
@@ -172,8 +174,9 @@ def test_a_table_of_risk_colours_the_trees_that_it_names(
 ) -> None:
     table = tmp_path / 'risk.csv'
     table.write_text('name,low_80 [m/s],high_80 [m/s]\nseedling,20,30\nother,,\n')
-    assert show._critical_winds(str(table), ('seedling', 'other')) == {'seedling': (20.0, 30.0)}
-    assert show._critical_winds(None, ('seedling',)) is None
+    risk = RiskOnThePage(argparse.Namespace(risk=str(table)))
+    assert risk.critical_winds(('seedling', 'other')) == {'seedling': (20.0, 30.0)}
+    assert RiskOnThePage(argparse.Namespace(risk=None)).critical_winds(('seedling',)) is None
     for text, message in (
         (
             'name,low_80 [m/s],high_80 [m/s]\na,1,2\n',
@@ -203,5 +206,9 @@ def test_each_control_of_the_page_has_its_hint_in_all_languages() -> None:
     wind = RecordedWind(np.arange(3.0), np.zeros((3, 3)))
     choices = Choices('oak')
     controls = [*page_controls(choices, SimulatedWind(5.0)), *page_controls(choices, wind)]
-    described = {each.name for each in [*controls, sensor_place(choices)] if each.description}
+    sensors = SensorsOnThePage(argparse.Namespace(learn=None, motion=['udp:5006'], stand=1))
+    sensors.places = {'phone': '3.2'}
+    controls += sensors.controls(choices)
+    described = {each.name for each in controls if each.description}
+    assert 'sensor_at' in described
     assert [name for name in sorted(described) if len(words.get(f'{name}_hint', [])) != 4] == []

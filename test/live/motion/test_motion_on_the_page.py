@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -33,7 +34,7 @@ from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import RecordedWind  # noqa: E402
-from tree_sway.twin.commands.learn_argument import Learning  # noqa: E402
+from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
 from tree_sway.twin.tree_fit import TreeFit  # noqa: E402
@@ -121,14 +122,22 @@ def show_arguments() -> argparse.Namespace:
     return parser.parse_args(['goldcrest'])
 
 
+def added_sensors(arguments: argparse.Namespace, places: Mapping[str, str]) -> SensorsOnThePage:
+    """Sensors of a page that are heard already."""
+    added = SensorsOnThePage(arguments)
+    added.places = places
+    return added
+
+
 def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
     """Step a session with the wind of the truth; its tip displacement at each step."""
     wind = truth().wind
     record = RecordedWind(DT * np.arange(len(wind)), wind)
     arguments = show_arguments()
     feed = MotionFeed(placed)
+    added = [added_sensors(arguments, feed.places)]
     session = Session(
-        lambda wanted: show.build_scene(wanted, arguments, feed.places),
+        lambda wanted: show.build_scene(wanted, arguments, added),
         Choices('goldcrest'),
         record,
         motion=feed,
@@ -181,25 +190,26 @@ def test_what_a_page_learns_is_kept_and_gone_on_with(
     path = str(tmp_path / 'own.twin.yaml')
     places = {'phone': f'segment:{SEGMENT}'}
     arguments = show_arguments()
+    arguments.learn, arguments.motion = path, ['udp:5006']
     for run in (1, 2):
-        learning = Learning(path)
-        twin = show.build_scene(Choices('goldcrest'), arguments, places, learning)
+        added = added_sensors(arguments, places)
+        twin = show.build_scene(Choices('goldcrest'), arguments, [added])
         assert isinstance(twin, ObservedTree)
         fit = TreeFit(0.9, 1.2, 0.02, 0.2, 0.9, 0.2, 1.0)
         monkeypatch.setattr(twin.observer._fit, 'found', fit)
-        learning.keep(twin)
+        added.note(twin)
         found = open_tree(path)
         assert found.learned is not None
         assert found.learned.hours == pytest.approx(run)
         # A tree that a viewer chooses learns nothing.
-        learning.keep(show.build_scene(Choices('goldcrest', count='2'), arguments, places))
-        learning.tell(twin)
+        added.note(show.build_scene(Choices('goldcrest', count='2'), arguments, [added]))
+        added.tell(twin)
         assert f'own.twin.yaml: learned from {run} h of motion' in capsys.readouterr().out
     # A file that becomes impossible to write is told, and the tree goes on.
     monkeypatch.setattr(twin.observer._fit, 'found', fit._replace(hours=2.0))
     Path(path).unlink()
     tmp_path.rmdir()
-    learning.keep(twin)
+    added.note(twin)
     assert 'own.twin.yaml: cannot be written' in capsys.readouterr().err
 
 

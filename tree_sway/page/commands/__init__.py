@@ -10,6 +10,7 @@ from tree_sway.faces import face
 COMMANDS = commands_of(__name__)
 
 if TYPE_CHECKING:
+    from tree_sway.page.commands.addition import PageAddition as PageAddition
     from tree_sway.page.commands.page_arguments import add_page_arguments as add_page_arguments
     from tree_sway.page.commands.page_arguments import page_settings as page_settings
     from tree_sway.page.commands.page_arguments import print_address as print_address

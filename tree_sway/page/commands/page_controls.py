@@ -55,12 +55,6 @@ def page_controls(
     return (*controls, *PAUSE_AND_RESET)
 
 
-def sensor_place(choices: Choices) -> Control:
-    """Make the control of where the motion sensor sits."""
-    what = "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
-    return Control('sensor_at', 'Sensor at', choices.sensor_at, what)
-
-
 def _of(name: str, value: Value = None) -> Control:
     """Make the control of a parameter of the nodes."""
     return Control.of(SWAY[name], _LABELS[name], value)

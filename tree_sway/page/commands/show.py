@@ -5,24 +5,24 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 import math
 from pathlib import Path
-import sys
 import time
 import webbrowser
 
 import numpy as np
 
-from tree_sway.commands import Ending
+from tree_sway.commands import additions, Ending
 from tree_sway.core.checks import within
 from tree_sway.core.leaves import is_bare, species_in_month
 from tree_sway.core.scene import PlacedTree, Scene, Simulator
-from tree_sway.core.settings import model_of, Settings, USUAL
+from tree_sway.core.settings import Settings, USUAL
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import rooted
-from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.errors import ParameterError
 from tree_sway.files.commands import (
     add_sway_arguments,
     chosen_leaves,
@@ -30,24 +30,17 @@ from tree_sway.files.commands import (
     opened_wind,
     refuse_unused_wind,
 )
-from tree_sway.files.motion import refuse_no_history, TreeHistory
-from tree_sway.files.scenes import read_critical_winds
 from tree_sway.files.trees import open_scene, scene_of_files, TreeFile
 from tree_sway.growth import grow, stem_of_age
-from tree_sway.live import MotionFeed
 from tree_sway.live.commands import (
-    add_live_motion_arguments,
     add_sensor_argument,
     listening,
-    sensing,
 )
-from tree_sway.page import Choices, PageServer, PageSettings, RATE, Session, WindSource
+from tree_sway.page import Choices, PageServer, PageSettings, Session, WindSource
+from tree_sway.page.commands.addition import PageAddition
 from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
-from tree_sway.page.commands.page_controls import page_controls, sensor_place
+from tree_sway.page.commands.page_controls import page_controls
 from tree_sway.stream import ControlPanel
-from tree_sway.twin import observed_scene, ObservedTree
-from tree_sway.twin.commands import add_learn_argument, check_learn_argument, Learning
-from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -64,22 +57,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='show this many trees as a stand (%(default)s)',
     )
     parser.add_argument(
-        '--risk',
-        metavar='FILE',
-        help='table of tree-sway risk of the inventory: a slider of the storm colours the trees',
-    )
-    parser.add_argument(
         '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
-    add_live_motion_arguments(parser)
-    add_learn_argument(parser)
-    parser.add_argument(
-        '--history', metavar='FILE',
-        help='table (.csv) to which a row is added every ten minutes: wind, residuals, the band, '
-        'and what the sensors have told',
-    )  # fmt: skip
+    for each in additions('show'):
+        each.add_arguments(parser)
     add_page_arguments(parser)
 
 
@@ -88,20 +71,15 @@ def run(arguments: argparse.Namespace) -> int:
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
     refuse_unused_wind(arguments)
-    check_learn_argument(arguments)
-    if arguments.risk is not None:
-        read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
-    if arguments.motion and arguments.stand > 1:
-        what = f'motion sensors on a stand of {arguments.stand} trees'
-        raise ParameterError(what, where='--motion', cure='leave --stand out')
-    with Ending(is_last=True) as ending, sensing(arguments) as motion:
-        if arguments.history is not None:
-            with inside('--history'):
-                refuse_no_history(arguments.history, list(motion.places))
+    added = [each(arguments) for each in additions('show')]
+    with Ending(is_last=True) as ending, ExitStack() as stack:
+        for each in added:
+            each.open(stack)
         if arguments.sensor is None:
-            return _serve(arguments, settings, opened_wind(arguments), motion, ending)
-        with listening(arguments) as wind:
-            return _serve(arguments, settings, wind, motion, ending)
+            wind: WindSource = opened_wind(arguments)
+        else:
+            wind = stack.enter_context(listening(arguments))
+        return _serve(arguments, settings, wind, added, ending)
     return 0  # interrupted while it started
 
 
@@ -109,31 +87,29 @@ def _serve(
     arguments: argparse.Namespace,
     settings: PageSettings,
     wind: WindSource,
-    motion: MotionFeed,
+    added: Sequence[PageAddition],
     ending: Ending,
 ) -> int:
-    """Serve the page of a wind and of the sensors on the tree."""
+    """Serve the page of a wind, with what is added to it."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
-    if len(motion.places) == 1:
-        choices = replace(choices, sensor_at=next(iter(motion.places.values())))
-    learning = Learning(arguments.learn)
-    history = TreeHistory(arguments.history, list(motion.places)) if arguments.history else None
+    for each in added:
+        choices = each.chosen(choices)
     told: dict[str, tuple[str, ...]] = {}
     session = Session(
-        lambda wanted: build_scene(wanted, arguments, motion.places, learning, told),
+        lambda wanted: build_scene(wanted, arguments, added, told),
         choices,
         wind,
-        motion=motion,
+        motion=next((each.motion for each in added if each.motion is not None), None),
         warnings=told,
     )
-    critical_winds = _critical_winds(arguments.risk, session.names)
+    found = (each.critical_winds(session.names) for each in added)
+    critical_winds = next((each for each in found if each is not None), None)
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
-        if len(motion.places) == 1:
-            controls = (sensor_place(choices), *controls)
+        controls = (*(own for each in added for own in each.controls(choices)), *controls)
         panel = ControlPanel(controls, session.apply, session.pull)
         panel.update(session.values())
     pages = PageServer(settings, panel, session.status, session.written, critical_winds)
@@ -148,54 +124,32 @@ def _serve(
             end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
             while not ending.is_asked and session.failure is None and time.monotonic() < end:
                 session.wait(min(0.1, end - time.monotonic()))
-                learning.keep(session.simulator)
-                _note_history(history, session.simulator)
+                _note(added, session.simulator)
         finally:
             session.stop()
-            learning.keep(session.simulator)
-        learning.tell(session.simulator)
+            _note(added, session.simulator)
+        for each in added:
+            each.tell(session.simulator)
         if session.failure is not None:
             raise session.failure
     return 0
 
 
-def _note_history(history: TreeHistory | None, simulator: Simulator) -> None:
-    """Note the state of an observed tree; say if its row cannot be written."""
-    if history is None or not isinstance(simulator, ObservedTree):
-        return
-    try:
-        history.note(simulator, time.monotonic())
-    except FormatError as error:
-        print(f'warning: {error}', file=sys.stderr)
-
-
-def _critical_winds(
-    risk: str | None, names: tuple[str, ...]
-) -> dict[str, tuple[float, float]] | None:
-    """Critical winds of the trees of a page, from a table; None without one."""
-    if risk is None:
-        return None
-    winds = read_critical_winds(risk)
-    found = {name: winds[name] for name in names if name in winds}
-    if not found:
-        what = f"no tree is called as one of the table, such as '{next(iter(winds), '')}'"
-        cure = 'name the inventory of which tree-sway risk wrote the table'
-        raise ParameterError(what, where='--risk', cure=cure)
-    return found
+def _note(added: Sequence[PageAddition], simulator: Simulator) -> None:
+    for each in added:
+        each.note(simulator)
 
 
 def build_scene(
     choices: Choices,
     arguments: argparse.Namespace,
-    places: Mapping[str, str] | None = None,
-    learning: Learning | None = None,
+    added: Sequence[PageAddition] = (),
     told: dict[str, tuple[str, ...]] | None = None,
 ) -> Simulator:
     """
     Make the simulator of some choices, with the warnings of its tree in ``told``.
 
-    The tree that the command names follows the sensors at the places, and learns; others have
-    none.
+    What is added may make that of the tree that the command names.
     """
     is_first = choices.tree == Path(arguments.tree).name
     if is_first:
@@ -214,19 +168,10 @@ def build_scene(
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
-    if places and is_first and count == 1:
-        if choices.sensor_at:
-            places = dict.fromkeys(places, choices.sensor_at)
-        settings = replace(settings, model=model_of(choices.model))
-        file = learning.file_of(scene, in_leaf) if learning else None
-        if file is not None:
-            scene = scene.of_species(file.opened.species)
-        twin = observed_scene(
-            scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
-        )
-        if learning and file is not None:
-            learning.follow(twin, file)
-        return twin
+    for each in added if is_first else ():
+        simulator = each.simulator(scene, settings, choices)
+        if simulator is not None:
+            return simulator
     return scene.simulator(settings, model=choices.model)
 
 

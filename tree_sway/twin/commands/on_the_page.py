@@ -1,0 +1,113 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Motion sensors of ``tree-sway show``: the tree that it names follows them, and learns."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import replace
+import sys
+import time
+
+from tree_sway.core.scene import Scene, Simulator
+from tree_sway.core.settings import model_of, Settings
+from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.motion import refuse_no_history, TreeHistory
+from tree_sway.live.commands import add_live_motion_arguments, sensing
+from tree_sway.page import Choices, RATE
+from tree_sway.page.commands import PageAddition
+from tree_sway.stream import Control
+from tree_sway.twin import observed_scene, ObservedTree
+from tree_sway.twin.commands.learn_argument import (
+    add_learn_argument,
+    check_learn_argument,
+    Learning,
+)
+from tree_sway.worker import submit_beside
+
+
+class SensorsOnThePage(PageAddition):
+    """What live sensors on the real tree tell the one on the page."""
+
+    places: Mapping[str, str] = {}
+    """Place of each sensor by its name."""
+
+    @staticmethod
+    def add_arguments(parser: argparse.ArgumentParser) -> None:
+        """Add the sensors, and files of what they tell."""
+        add_live_motion_arguments(parser)
+        add_learn_argument(parser)
+        parser.add_argument(
+            '--history', metavar='FILE',
+            help='table (.csv) to which a row is added every ten minutes: wind, residuals, the '
+            'band, and what the sensors have told',
+        )  # fmt: skip
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        super().__init__(arguments)
+        check_learn_argument(arguments)
+        if arguments.motion and arguments.stand > 1:
+            what = f'motion sensors on a stand of {arguments.stand} trees'
+            raise ParameterError(what, where='--motion', cure='leave --stand out')
+        self._learning = Learning(arguments.learn)
+        self._history: TreeHistory | None = None
+
+    def open(self, stack: ExitStack) -> None:  # noqa: A003
+        """Listen to the sensors."""
+        self.motion = stack.enter_context(sensing(self.arguments))
+        self.places = self.motion.places
+        if (path := self.arguments.history) is not None:
+            with inside('--history'):
+                refuse_no_history(path, list(self.places))
+            self._history = TreeHistory(path, list(self.places))
+
+    def chosen(self, choices: Choices) -> Choices:
+        """Return the choices with the place of a single sensor, which viewers may change."""
+        return replace(choices, sensor_at=next(iter(self._place()), ''))
+
+    def controls(self, choices: Choices) -> tuple[Control, ...]:
+        """Make the control of where a single sensor sits."""
+        if not self._place():
+            return ()
+        what = (
+            "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
+        )
+        return (Control('sensor_at', 'Sensor at', choices.sensor_at, what),)
+
+    def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
+        """Make an observed tree; None without sensors, and for a stand."""
+        if not self.places or int(choices.count) != 1:
+            return None
+        places = self.places
+        if choices.sensor_at:
+            places = dict.fromkeys(places, choices.sensor_at)
+        settings = replace(settings, model=model_of(choices.model))
+        file = self._learning.file_of(scene, settings.in_leaf)
+        if file is not None:
+            scene = scene.of_species(file.opened.species)
+        twin = observed_scene(
+            scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
+        )
+        if file is not None:
+            self._learning.follow(twin, file)
+        return twin
+
+    def note(self, simulator: Simulator) -> None:
+        """Write what was learned, and a row of the history if one is due."""
+        self._learning.keep(simulator)
+        if self._history is None or not isinstance(simulator, ObservedTree):
+            return
+        try:
+            self._history.note(simulator, time.monotonic())
+        except FormatError as error:
+            print(f'warning: {error}', file=sys.stderr)
+
+    def tell(self, simulator: Simulator) -> None:
+        """Say what was learned."""
+        self._learning.tell(simulator)
+
+    def _place(self) -> list[str]:
+        """Place of a single sensor; none of several."""
+        return list(self.places.values()) if len(self.places) == 1 else []
