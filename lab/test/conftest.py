@@ -15,6 +15,8 @@ LABORATORY = EntryPoint('lab', 'tree_sway_lab.commands:COMMANDS', entries.GROUP)
 def commands_of_this_checkout():
     """Find the commands of the laboratory of this checkout, whose folder is on the path."""
     with pytest.MonkeyPatch.context() as patch:
-        points = [LABORATORY, *entry_points(group=entries.GROUP)]
-        patch.setattr(entries, 'entry_points', lambda group: points)
+        own = {entries.GROUP: [LABORATORY]}
+        patch.setattr(
+            entries, 'entry_points', lambda group: [*own.get(group, ()), *entry_points(group=group)]
+        )
         yield

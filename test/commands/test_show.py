@@ -27,7 +27,7 @@ from tree_sway.growth.growing import grow  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices  # noqa: E402
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
+from tree_sway.simulation.wind_source import RecordedWind, SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 

@@ -27,7 +27,7 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.files.trees.source import open_scene
 from tree_sway.files.wind.sensor_line import checksum_of
-from tree_sway.page.wind_source import blow
+from tree_sway.simulation.wind_source import blow
 
 KNOT, MPH = 1852.0 / 3600.0, 0.44704
 

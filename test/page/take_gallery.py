@@ -30,7 +30,7 @@ from tree_sway.page.commands.page_controls import page_controls
 from tree_sway.page.page_settings import PageSettings
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
-from tree_sway.page.wind_source import SimulatedWind
+from tree_sway.simulation.wind_source import SimulatedWind
 from tree_sway.stream.controls import ControlPanel
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'

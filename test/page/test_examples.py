@@ -25,7 +25,7 @@ from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway.simulation.wind_source import SimulatedWind  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / 'examples' / 'web'

@@ -25,7 +25,7 @@ from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway.simulation.wind_source import SimulatedWind  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'

@@ -23,10 +23,10 @@ from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
-from tree_sway.page import wind_source  # noqa: E402
-from tree_sway.page.newest import Newest  # noqa: E402
+from tree_sway.newest import Newest  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import blow, RecordedWind, Sample, SimulatedWind  # noqa: E402
+from tree_sway.simulation import wind_source  # noqa: E402
+from tree_sway.simulation.wind_source import blow, RecordedWind, Sample, SimulatedWind  # noqa: E402
 from tree_sway.stream.controls import ControlPanel  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 

@@ -21,7 +21,7 @@ from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway.simulation.wind_source import SimulatedWind  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET  # noqa: E402
 
 # Whoever was there before may have paused it.

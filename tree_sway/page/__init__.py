@@ -26,9 +26,5 @@ if TYPE_CHECKING:
     from tree_sway.page.session import Choices as Choices
     from tree_sway.page.session import RATE as RATE
     from tree_sway.page.session import Session as Session
-    from tree_sway.page.wind_source import blow as blow
-    from tree_sway.page.wind_source import RecordedWind as RecordedWind
-    from tree_sway.page.wind_source import SimulatedWind as SimulatedWind
-    from tree_sway.page.wind_source import WindSource as WindSource
 else:
     __getattr__, __dir__, __all__ = face(__name__)

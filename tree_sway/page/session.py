@@ -24,10 +24,10 @@ from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.files.export import morphing_tree
 from tree_sway.growth import BUILTIN_TREES, stem_growth
 from tree_sway.live import LiveWind, MotionFeed
-from tree_sway.page.newest import Newest
+from tree_sway.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
+from tree_sway.simulation import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
 from tree_sway.stream import Refused, SceneState, Value
 from tree_sway.twin import ObservedTree, sensor_reports
 

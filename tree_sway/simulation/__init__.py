@@ -30,5 +30,10 @@ if TYPE_CHECKING:
     from tree_sway.simulation.strength_band import wood_band as wood_band
     from tree_sway.simulation.strength_use import StrengthUse as StrengthUse
     from tree_sway.simulation.sway_record import SwayRecord as SwayRecord
+    from tree_sway.simulation.wind_source import blow as blow
+    from tree_sway.simulation.wind_source import RecordedWind as RecordedWind
+    from tree_sway.simulation.wind_source import SimulatedWind as SimulatedWind
+    from tree_sway.simulation.wind_source import wind_ahead as wind_ahead
+    from tree_sway.simulation.wind_source import WindSource as WindSource
 else:
     __getattr__, __dir__, __all__ = face(__name__)

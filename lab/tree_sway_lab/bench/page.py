@@ -12,8 +12,9 @@ from pathlib import Path
 import statistics
 
 from tree_sway.errors import ParameterError
-from tree_sway.page import Choices, PageServer, PageSettings, Session, SimulatedWind
+from tree_sway.page import Choices, PageServer, PageSettings, Session
 from tree_sway.page.commands import add_arguments, build_scene
+from tree_sway.simulation import SimulatedWind
 from tree_sway_lab.bench.measured import Measured
 from tree_sway_lab.browser import Browser, chromium
 

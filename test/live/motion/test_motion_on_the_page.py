@@ -33,7 +33,7 @@ from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: 
 from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import RecordedWind  # noqa: E402
+from tree_sway.simulation.wind_source import RecordedWind  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402

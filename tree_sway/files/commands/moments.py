@@ -14,7 +14,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.errors import ParameterError
-from tree_sway.page import blow, WindSource
+from tree_sway.simulation import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
 _LATEST = 86400.0

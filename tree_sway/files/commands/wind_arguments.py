@@ -19,8 +19,8 @@ from tree_sway.files.commands.arguments import (
     add_tree_arguments,
 )
 from tree_sway.files.wind import read_wind, WindRecord
-from tree_sway.page import RecordedWind, SimulatedWind
 from tree_sway.parameters import SWAY
+from tree_sway.simulation import RecordedWind, SimulatedWind
 
 USUAL_SPEED = 6.0
 """Mean speed of the simulated wind where none is given [m/s]."""

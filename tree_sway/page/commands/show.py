@@ -36,10 +36,11 @@ from tree_sway.live.commands import (
     add_sensor_argument,
     listening,
 )
-from tree_sway.page import Choices, PageServer, PageSettings, Session, WindSource
+from tree_sway.page import Choices, PageServer, PageSettings, Session
 from tree_sway.page.commands.addition import PageAddition
 from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.page.commands.page_controls import page_controls
+from tree_sway.simulation import WindSource
 from tree_sway.stream import ControlPanel
 
 _SPACING = 1.2

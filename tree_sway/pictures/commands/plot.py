@@ -28,7 +28,6 @@ from tree_sway.files.commands import (
     refuse_unused_wind,
     simulated_speed,
 )
-from tree_sway.page import RecordedWind
 from tree_sway.parameters import SWAY
 from tree_sway.pictures import (
     picture_in_wind,
@@ -38,6 +37,7 @@ from tree_sway.pictures import (
     STUDY_COLUMNS,
 )
 from tree_sway.pictures.commands.swaying import swaying
+from tree_sway.simulation import RecordedWind
 from tree_sway.simulation.commands import (
     add_exposure_arguments,
     chosen_exposure,

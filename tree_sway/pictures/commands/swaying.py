@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from tree_sway.commands import bar
 from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
-from tree_sway.page import blow, WindSource
+from tree_sway.simulation import blow, WindSource
 
 _STEPS_PER_SECOND = 60.0
 
