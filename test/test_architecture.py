@@ -29,9 +29,9 @@ PACKAGES = {
 #: the commands that houses bring.
 STOREYS = {
     'errors': 0, 'faces': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'newest': 1,
-    'doorkeeper': 1, 'installed_models': 2, 'core': 20, 'growth': 21, 'twin': 21, 'simulation': 22, 'files': 23,
-    'parameters': 23, 'live': 24, 'stream': 24, 'page': 25, 'pictures': 25, 'forest': 25,
-    'commands': 19,
+    'doorkeeper': 1, 'installed_models': 2, 'commands': 19, 'core': 20, 'growth': 21, 'twin': 21,
+    'simulation': 22, 'files': 23, 'parameters': 23, 'live': 24, 'stream': 24, 'page': 25,
+    'pictures': 25, 'forest': 25,
     'core.arrays': 3, 'core.rotation': 4, 'core.checks': 4, 'core.random_source': 4,
     'core.native': 4, 'core.drag': 5, 'core.species': 5, 'core.tree': 6, 'core.wind': 7,
     'core.oscillators': 7, 'core.leaves': 8, 'core.settings': 8, 'core.tree_state': 7,

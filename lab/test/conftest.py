@@ -16,7 +16,9 @@ def commands_of_this_checkout():
     """Find the commands of the laboratory of this checkout, whose folder is on the path."""
     with pytest.MonkeyPatch.context() as patch:
         own = {entries.GROUP: [LABORATORY]}
-        patch.setattr(
-            entries, 'entry_points', lambda group: [*own.get(group, ()), *entry_points(group=group)]
-        )
+
+        def found(group):
+            return [*own.get(group, ()), *entry_points(group=group)]
+
+        patch.setattr(entries, 'entry_points', found)
         yield
