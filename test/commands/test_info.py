@@ -281,11 +281,11 @@ def test_a_tree_in_leaf_of_a_stand_is_damped_by_crowns_that_touch(
     write_tree(path, grow('birch', 8.0, rng=np.random.default_rng(0)))
     damping = []
 
-    def strength_rig(tree: PlacedTree, settings: Settings) -> None:
+    def rig(tree: PlacedTree, settings: Settings) -> None:
         damping.append(tree.species.damping_in_leaf)
         raise ParameterError('far enough')
 
-    monkeypatch.setattr('tree_sway.simulation.commands.info.strength_rig', strength_rig)
+    monkeypatch.setattr('tree_sway.simulation.commands.strength.Rig', rig)
     for exposure in ('open', 'stand'):
         words = ['--speed', '10', '--exposure', exposure, '--count', '1']
         assert cli.main(['info', str(path), *words]) == 2

@@ -208,7 +208,7 @@ def test_each_control_of_the_page_has_its_hint_in_all_languages() -> None:
     controls = [*page_controls(choices, SimulatedWind(5.0)), *page_controls(choices, wind)]
     sensors = SensorsOnThePage(argparse.Namespace(learn=None, motion=['udp:5006'], stand=1))
     sensors.places = {'phone': '3.2'}
-    controls += sensors.controls(choices)
+    controls += sensors.controls()
     described = {each.name for each in controls if each.description}
     assert 'sensor_at' in described
     assert [name for name in sorted(described) if len(words.get(f'{name}_hint', [])) != 4] == []

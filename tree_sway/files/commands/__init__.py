@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from tree_sway.files.commands.arguments import say_warnings as say_warnings
     from tree_sway.files.commands.arguments import what_was_written as what_was_written
     from tree_sway.files.commands.arguments import write_tree_file as write_tree_file
+    from tree_sway.files.commands.moments import at_moments as at_moments
+    from tree_sway.files.commands.moments import frame_times as frame_times
     from tree_sway.files.commands.wind_arguments import add_sway_arguments as add_sway_arguments
     from tree_sway.files.commands.wind_arguments import add_wind_arguments as add_wind_arguments
     from tree_sway.files.commands.wind_arguments import opened_record as opened_record

@@ -46,6 +46,11 @@ def moments_of(text: str) -> list[float]:
     return [start + k * every for k in range(count)]
 
 
+def frame_times(rate: float, seconds: float) -> list[float]:
+    """Return the times of frames at a rate [Hz] up to a length [s], the first after a frame."""
+    return [k / rate for k in range(1, max(1, round(seconds * rate)) + 1)]
+
+
 def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Path]:
     """
     Return the files of a number of moments, by a pattern such as ``scene_%03d.obj``.
@@ -70,7 +75,7 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
 
 
 def at_moments(
-    simulator: Simulator, wind: WindSource, moments: list[float]
+    simulator: Simulator, wind: WindSource, moments: list[float], what: str = 'swaying'
 ) -> Iterator[tuple[int, float]]:
     """
     Sway a scene from rest and yield the number and the time [s] of each moment as it is reached.
@@ -84,13 +89,15 @@ def at_moments(
         Scene at rest, and the samples of its wind.
     moments
         Times at equal distances, rising [s].
+    what
+        Label of the progress.
 
     """
     every = moments[1] - moments[0] if len(moments) > 1 else moments[0] or 1.0
     steps = max(1, math.ceil(_STEPS_PER_SECOND * every - 1e-9))
     run = Run(simulator, steps / every, intake=WindIntake(gate=WindGate(max_speed=FASTEST_WIND)))
     tick = 0
-    for number in bar(range(len(moments)), 'swaying'):
+    for number in bar(range(len(moments)), what):
         until = round(moments[number] * steps / every)
         while tick < until:
             tick += 1

@@ -35,9 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '-o', '--output', default='risk.csv', metavar='FILE',
         help='table, .csv, a row per tree; written as it is computed (%(default)s)',
     )  # fmt: skip
-    parser.add_argument(
-        '--workers', type=int, metavar='N', help='processes; one per core if left out'
-    )
     add_cluster_arguments(parser)
     add_exposure_arguments(parser, with_anemometer=False)
     parser.add_argument(
@@ -48,8 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute a row per tree, write the table."""
-    if arguments.workers is not None:
-        within('--workers', arguments.workers, 1, 1024)
     within('--seed', arguments.seed, 0, 2**31)
     if arguments.spacing is not None:
         within('--spacing', arguments.spacing, 0.1, 100.0, 'm')

@@ -25,9 +25,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '-o', '--output', default='study.csv', metavar='FILE',
         help='table, .csv or .parquet; cases are stored beside it, and reused (%(default)s)',
     )  # fmt: skip
-    parser.add_argument(
-        '--workers', type=int, metavar='N', help='processes; one per core if left out'
-    )
     add_cluster_arguments(parser)
     parser.add_argument(
         '--force', action='store_true', help='write over a table of a different study'
@@ -35,7 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_cluster_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the address of a cluster, and how long its workers may take."""
+    """Add the processes that compute, or a cluster, and how long its workers may take."""
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes; one per core if left out'
+    )
     parser.add_argument(
         '--scheduler', metavar='ADDRESS',
         help='Dask scheduler whose workers compute instead, tcp://host:8786 or tls://host:8786',
@@ -48,7 +48,9 @@ def add_cluster_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def refuse_wrong_cluster(arguments: argparse.Namespace) -> None:
-    """Raise a `ParameterError` for a wrong address or time of a cluster."""
+    """Raise a `ParameterError` for a wrong number of processes, address or time of a cluster."""
+    if arguments.workers is not None:
+        within('--workers', arguments.workers, 1, 1024)
     within('--deadline', arguments.deadline, 1.0, 1e7, 's')
     if arguments.scheduler is not None:
         refuse_wrong_address(arguments.scheduler)
@@ -56,8 +58,6 @@ def refuse_wrong_cluster(arguments: argparse.Namespace) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute missing cases, write the table."""
-    if arguments.workers is not None:
-        within('--workers', arguments.workers, 1, 1024)
     refuse_wrong_cluster(arguments)
     output = path_of(arguments.output)
     refuse_no_table(output)

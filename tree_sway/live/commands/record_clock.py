@@ -1,11 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The clock that dates the rows of a record."""
+"""The clock of a record: dates of its rows, and how long it waits."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from datetime import datetime, timezone
 import math
+import threading
 import time
+
+_LOOK = 0.1
 
 
 class RecordClock:
@@ -23,3 +28,19 @@ class RecordClock:
         """Return the date in [s] since 1970 of a time of `time.monotonic`."""
         self._ahead = max(self._ahead, time.time() - time.monotonic())
         return at + self._ahead
+
+
+def iso_date(date: float, timespec: str) -> str:
+    """Return a date in [s] since 1970 as ISO 8601, to ``milliseconds`` or ``microseconds``."""
+    stamp = datetime.fromtimestamp(date, timezone.utc).isoformat(timespec=timespec)
+    return stamp.replace('+00:00', 'Z')
+
+
+def wait(end: float, is_over: Callable[[], bool]) -> None:
+    """Wait until a time of `time.monotonic`, or until something is over, or Ctrl-C."""
+    pause = threading.Event()
+    try:
+        while (left := end - time.monotonic()) > 0.0 and not is_over():
+            pause.wait(min(_LOOK, left))
+    except KeyboardInterrupt:
+        pass

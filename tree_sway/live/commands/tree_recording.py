@@ -10,10 +10,8 @@ is there from the start: a record that breaks off can be read.
 from __future__ import annotations
 
 import argparse
-from datetime import datetime, timezone
 from pathlib import Path
 import sys
-import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -24,7 +22,7 @@ from tree_sway.files.export import write_tree
 from tree_sway.files.motion import RecordedSensor, TreeRecord, write_tree_record
 from tree_sway.files.trees import open_tree
 from tree_sway.live.commands.live_motion_arguments import sensing
-from tree_sway.live.commands.record_clock import RecordClock
+from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
 from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.twin import place_on
@@ -32,7 +30,6 @@ from tree_sway.twin import place_on
 if TYPE_CHECKING:
     from tree_sway.live import MotionSample
 
-_LOOK = 0.1
 _COLUMNS = {
     'acceleration': ('ax [m/s^2]', 'ay [m/s^2]', 'az [m/s^2]'),
     'rate': ('gx [rad/s]', 'gy [rad/s]', 'gz [rad/s]'),
@@ -70,7 +67,6 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         with inside('--at'):
             place_on(opened.tree, at)
     tables = [MotionTable() for _ in arguments.motion]
-    pause = threading.Event()
     end = time.monotonic() + seconds
     with sensing(arguments, heard=[each.take for each in tables]) as feed:
         folder.mkdir(parents=True, exist_ok=True)
@@ -86,11 +82,7 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         wind_table = WindTable(folder / 'wind.csv')
         with listening(arguments, heard=wind_table.take) as wind:
             wind_table.wind = wind
-            try:
-                while time.monotonic() < end and not _has_failed(wind_table, tables):
-                    pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
-            except KeyboardInterrupt:
-                pass
+            wait(end, lambda: _has_failed(wind_table, tables))
             wind_problem = wind.problem
         problems = [each.live.problem for each in feed.sensors.values()]
     wind_table.close()
@@ -142,8 +134,7 @@ class MotionTable:
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
         columns = [column for name in self._names for column in _COLUMNS[name]]
-        stamp = datetime.fromtimestamp(self._clock.date(sample.time), timezone.utc)
-        date = stamp.isoformat(timespec='microseconds').replace('+00:00', 'Z')
+        date = iso_date(self._clock.date(sample.time), 'microseconds')
         cells = [
             f'{value:.9g}'
             for name in self._names

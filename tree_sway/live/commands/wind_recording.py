@@ -10,10 +10,8 @@ blows gusts about them. Each row is on the disk when the next one comes.
 from __future__ import annotations
 
 import argparse
-from datetime import datetime, timezone
 import math
 from pathlib import Path
-import threading
 import time
 
 from tree_sway.commands import refuse_overwriting, RowFile
@@ -21,10 +19,9 @@ from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
 from tree_sway.live import LiveWind, WindReading
-from tree_sway.live.commands.record_clock import RecordClock
+from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
 
-_LOOK = 0.1
 INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')
 MEANS = ('time', 'wind_speed [m/s]', 'wind_direction [deg]', 'wind_gust [m/s]')
 """Columns of a table of means."""
@@ -50,16 +47,11 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     if not arguments.force:
         refuse_overwriting(path, '--output')
     refuse_unwritable(path)
-    pause = threading.Event()
     end = time.monotonic() + seconds
     table = WindTable(path)
     with listening(arguments, heard=table.take) as wind:
         table.wind = wind
-        try:
-            while time.monotonic() < end and not table.rows.failure:
-                pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
-        except KeyboardInterrupt:
-            pass
+        wait(end, lambda: bool(table.rows.failure))
         problem = wind.problem
     table.close()
     if not table.count:
@@ -114,7 +106,6 @@ class WindTable:
     def _write(self, row: tuple[float, WindReading]) -> None:
         stamp, reading = row
         assert self.wind is not None
-        date = datetime.fromtimestamp(stamp, timezone.utc).isoformat(timespec='milliseconds')
         if self.is_of_means:
             used = self.wind.bearing if reading.bearing is None else reading.bearing
             gust = '' if reading.gust is None else f'{reading.gust:.3f}'
@@ -123,4 +114,4 @@ class WindTable:
         else:
             cells = [f'{value:.3f}' for value in reading.velocity(self.wind.bearing)]
         header = MEANS if self.is_of_means else INSTANTS
-        self.rows.write(header, [date.replace('+00:00', 'Z'), *cells])
+        self.rows.write(header, [iso_date(stamp, 'milliseconds'), *cells])

@@ -45,12 +45,8 @@ class PageAddition:
     def open(self, stack: ExitStack) -> None:  # noqa: A003
         """Open what stays open while the page is served; the stack closes it."""
 
-    def chosen(self, choices: Choices) -> Choices:
-        """Return the first choices, changed."""
-        return choices
-
-    def controls(self, choices: Choices) -> tuple[Control, ...]:
-        """Make controls that the page shows before its own."""
+    def controls(self) -> tuple[Control, ...]:
+        """Make controls that the page shows before its own: fields of `Choices` as they begin."""
         return ()
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:

@@ -94,8 +94,9 @@ def _serve(
     """Serve the page of a wind, with what is added to it."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
-    for each in added:
-        choices = each.chosen(choices)
+    own = [control for each in added for control in each.controls()]
+    first = {control.name: control.value for control in own}
+    choices = replace(choices, **first)  # type: ignore[arg-type]
     told: dict[str, tuple[str, ...]] = {}
     session = Session(
         lambda wanted: build_scene(wanted, arguments, added, told),
@@ -110,8 +111,7 @@ def _serve(
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
-        controls = (*(own for each in added for own in each.controls(choices)), *controls)
-        panel = ControlPanel(controls, session.apply, session.pull)
+        panel = ControlPanel((*own, *controls), session.apply, session.pull)
         panel.update(session.values())
     pages = PageServer(settings, panel, session.status, session.written, critical_winds)
     with pages as server:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,9 @@ from tree_sway.files.commands import (
     add_exact_argument,
     add_output_arguments,
     add_sway_arguments,
+    at_moments,
     chosen_leaves,
+    frame_times,
     opened_scene,
     opened_wind,
     output_path,
@@ -36,16 +37,12 @@ from tree_sway.pictures import (
     plot_wind_and_tip,
     STUDY_COLUMNS,
 )
-from tree_sway.pictures.commands.swaying import swaying
 from tree_sway.simulation import RecordedWind
 from tree_sway.simulation.commands import (
     add_exposure_arguments,
-    chosen_exposure,
     refuse_unused_exposure,
-    strength_rig,
     tallest_of_kinds,
-    touched_species,
-    turbulence_of,
+    used_strength,
 )
 
 _SETTLING = 60.0
@@ -142,16 +139,8 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     speeds = np.linspace(0.0, fastest, 7)[1:]
     used = {}
     for each in bar(tallest.values(), 'loading trees'):
-        placed = each.placed()
-        exposure = chosen_exposure(arguments, placed, each.species)
-        settings = Settings(
-            model=arguments.model, in_leaf=chosen_leaves(arguments),
-            profile=exposure.profile(float(placed.start[0, 2])),
-        )  # fmt: skip
-        touched = replace(each, species=touched_species(exposure, each.species, each.learned))
-        rig = strength_rig(touched, settings)
-        rng = np.random.default_rng(0)
-        curve = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
+        settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
+        exposure, curve = used_strength(each, settings, arguments, speeds.tolist())
         for speed, use in zip(speeds, curve, strict=True):
             print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
         name = f'{each.name}, {exposure.place}, wind at {exposure.reference_height:.3g} m'
@@ -170,7 +159,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     if seconds < 2.0 / _RATE:
         raise ParameterError('the wind is too short', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)
-    frames = swaying(simulator, wind, _RATE, seconds)
+    frames = at_moments(simulator, wind, frame_times(_RATE, seconds))
     shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
     winds, tips = np.swapaxes(shown, 0, 1)
     title = f'{scene.tree.name}, model {arguments.model}, {source}'

@@ -14,14 +14,15 @@ from tree_sway.core.checks import within
 from tree_sway.files.commands import (
     add_output_arguments,
     add_sway_arguments,
+    at_moments,
     chosen_leaves,
+    frame_times,
     opened_scene,
     opened_wind,
     output_path,
     refuse_unused_wind,
 )
 from tree_sway.page import browser, page_pictures
-from tree_sway.pictures.commands.swaying import swaying
 
 _LEAVES = 2800
 """Share of the leaves, so that frames are drawn fast enough."""
@@ -61,7 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
     count = max(1, round(arguments.seconds * rate))
     why_plain = _why_not_the_page(arguments)
     what = 'swaying' if why_plain else f'drawing {count} pictures'
-    frames = swaying(simulator, wind, rate, arguments.seconds, what)
+    times = frame_times(rate, arguments.seconds)
+    frames = at_moments(simulator, wind, times, what)
     if not why_plain:
         from PIL import Image
 

@@ -13,16 +13,14 @@ if TYPE_CHECKING:
     from tree_sway.simulation.commands.exposure import (
         add_exposure_arguments as add_exposure_arguments,
     )
-    from tree_sway.simulation.commands.exposure import chosen_exposure as chosen_exposure
     from tree_sway.simulation.commands.exposure import (
         refuse_spacing_in_the_open as refuse_spacing_in_the_open,
     )
     from tree_sway.simulation.commands.exposure import (
         refuse_unused_exposure as refuse_unused_exposure,
     )
-    from tree_sway.simulation.commands.exposure import touched_species as touched_species
     from tree_sway.simulation.commands.exposure import turbulence_of as turbulence_of
-    from tree_sway.simulation.commands.strength import strength_rig as strength_rig
     from tree_sway.simulation.commands.strength import tallest_of_kinds as tallest_of_kinds
+    from tree_sway.simulation.commands.strength import used_strength as used_strength
 else:
     __getattr__, __dir__, __all__ = face(__name__)

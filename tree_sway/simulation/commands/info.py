@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 import json
 import math
 from typing import Any
@@ -32,13 +31,10 @@ from tree_sway.parameters import SWAY
 from tree_sway.simulation import StrengthUse
 from tree_sway.simulation.commands.exposure import (
     add_exposure_arguments,
-    chosen_exposure,
     refuse_unused_exposure,
-    touched_species,
-    turbulence_of,
 )
 from tree_sway.simulation.commands.mode_table import mode_table
-from tree_sway.simulation.commands.strength import strength_rig, tallest_of_kinds
+from tree_sway.simulation.commands.strength import tallest_of_kinds, used_strength
 from tree_sway.twin import advised_places
 
 _GRAVITY = 9.81
@@ -137,16 +133,9 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             notes.append(_sensor_advice(tree, species, settings, arguments.sensors))
     used = published = None
     if arguments.speed is not None:
-        rng = np.random.default_rng(0)
         placed = tallest.placed()
-        exposure = chosen_exposure(arguments, placed, species)
-        chosen = Settings(
-            gravity=settings.gravity, in_leaf=settings.in_leaf,
-            profile=exposure.profile(float(placed.start[0, 2])),
-        )  # fmt: skip
-        touched = replace(tallest, species=touched_species(exposure, species, tallest.learned))
-        rig = strength_rig(touched, chosen)
-        (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
+        chosen = Settings(gravity=settings.gravity, in_leaf=settings.in_leaf)
+        exposure, (used,) = used_strength(tallest, chosen, arguments, [arguments.speed])
         notes.append(
             f'{exposure}, of {arguments.speed:g} m/s: {used}; in brackets, where 80 % of such '
             'trees are; rot and wet soil are not included'

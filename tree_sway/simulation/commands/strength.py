@@ -4,11 +4,16 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.settings import Settings
-from tree_sway.simulation import Rig
+from tree_sway.simulation import Exposure, Rig, StrengthUse
+from tree_sway.simulation.commands.exposure import chosen_exposure, touched_species, turbulence_of
 
 
 def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:
@@ -17,14 +22,22 @@ def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:
     return {int(scene.kind_numbers[row]): scene.trees[row] for row in by_height}
 
 
-def strength_rig(tree: PlacedTree, settings: Settings) -> Rig:
+def used_strength(
+    tree: PlacedTree, settings: Settings, arguments: argparse.Namespace, speeds: Sequence[float]
+) -> tuple[Exposure, list[StrengthUse]]:
     """
-    Set up a tree at its height and in its own size, for its used strength.
+    Return where a tree stands, and the strength that it uses at mean wind speeds [m/s].
 
     The wind blows along the axis x of the tree itself: trees of an inventory have random yaws, and
     a crown bends its stem by some hundredths more or less from different sides.
     """
-    unturned = replace(tree, yaw=0.0).placed()
-    at_place = PlacedTree(tree.name, unturned, species=tree.species)
-    in_leaf = settings.in_leaf if tree.leaf_on is None else tree.leaf_on
-    return Rig(at_place, replace(settings, in_leaf=in_leaf))
+    placed = tree.placed()
+    exposure = chosen_exposure(arguments, placed, tree.species)
+    settings = replace(
+        settings, in_leaf=settings.in_leaf if tree.leaf_on is None else tree.leaf_on,
+        profile=exposure.profile(float(placed.start[0, 2])),
+    )  # fmt: skip
+    species = touched_species(exposure, tree.species, tree.learned)
+    rig = Rig(PlacedTree(tree.name, replace(tree, yaw=0.0).placed(), species=species), settings)
+    rng = np.random.default_rng(0)
+    return exposure, rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))

@@ -12,7 +12,6 @@ COMMANDS = commands_of(__name__)
 if TYPE_CHECKING:
     from tree_sway.twin.commands.learn_argument import add_learn_argument as add_learn_argument
     from tree_sway.twin.commands.learn_argument import check_learn_argument as check_learn_argument
-    from tree_sway.twin.commands.learn_argument import Learning as Learning
     from tree_sway.twin.commands.learn_argument import write_learned as write_learned
     from tree_sway.twin.commands.motion_arguments import (
         add_motion_arguments as add_motion_arguments,

@@ -7,16 +7,14 @@ from __future__ import annotations
 import argparse
 import sys
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
-from tree_sway.core.scene import Scene, Simulator
-from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.errors import inside, ParameterError
 from tree_sway.files.commands import what_was_written
 from tree_sway.files.trees import LearnedFile, refuse_no_learned_file
 from tree_sway.twin import LearnedTree
 
 if TYPE_CHECKING:
-    from tree_sway.twin import ObservedTree
+    pass
 
 
 def add_learn_argument(parser: argparse.ArgumentParser) -> None:
@@ -51,49 +49,3 @@ def write_learned(file: LearnedFile, learned: LearnedTree | None) -> None:
         return
     file.write(learned)
     print(f'{what_was_written(file.path, file.opened.tree)}; {learned}')
-
-
-class Learning:
-    """
-    The files of the simulators of a page, which viewers exchange.
-
-    Parameters
-    ----------
-    path
-        File of what is learned; None to keep nothing.
-
-    """
-
-    def __init__(self, path: str | None) -> None:
-        self._path = path
-        self._files: WeakKeyDictionary[object, LearnedFile] = WeakKeyDictionary()
-
-    def file_of(self, scene: Scene, in_leaf: bool | None) -> LearnedFile | None:
-        """Open the file of what was learned about the tree of a scene; None without one."""
-        return None if self._path is None else LearnedFile(self._path, scene.trees[0], in_leaf)
-
-    def follow(self, twin: ObservedTree, file: LearnedFile) -> None:
-        """Keep what a simulator learns in a file."""
-        twin.learned_before = file.opened.learned
-        self._files[twin] = file
-
-    def keep(self, simulator: Simulator) -> None:
-        """Write what a simulator has learned, if anything is new; say if that is impossible."""
-        if simulator not in self._files:
-            return
-        from tree_sway.twin import ObservedTree
-
-        assert isinstance(simulator, ObservedTree)
-        try:
-            self._files[simulator].keep(simulator)
-        except FormatError as error:
-            print(f'warning: {error}', file=sys.stderr)
-
-    def tell(self, simulator: Simulator) -> None:
-        """Say what a simulator has learned, and where it is."""
-        if simulator not in self._files:
-            return
-        from tree_sway.twin import ObservedTree
-
-        assert isinstance(simulator, ObservedTree)
-        print(f'{self._files[simulator].path}: {simulator.learned or "nothing was learned"}')

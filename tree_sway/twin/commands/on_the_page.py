@@ -10,21 +10,19 @@ from contextlib import ExitStack
 from dataclasses import replace
 import sys
 import time
+from weakref import WeakKeyDictionary
 
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import model_of, Settings
 from tree_sway.errors import FormatError, inside, ParameterError
 from tree_sway.files.motion import refuse_no_history, TreeHistory
+from tree_sway.files.trees import LearnedFile
 from tree_sway.live.commands import add_live_motion_arguments, sensing
 from tree_sway.page import Choices, RATE
 from tree_sway.page.commands import PageAddition
 from tree_sway.stream import Control
 from tree_sway.twin import observed_scene, ObservedTree
-from tree_sway.twin.commands.learn_argument import (
-    add_learn_argument,
-    check_learn_argument,
-    Learning,
-)
+from tree_sway.twin.commands.learn_argument import add_learn_argument, check_learn_argument
 from tree_sway.worker import submit_beside
 
 
@@ -51,8 +49,9 @@ class SensorsOnThePage(PageAddition):
         if arguments.motion and arguments.stand > 1:
             what = f'motion sensors on a stand of {arguments.stand} trees'
             raise ParameterError(what, where='--motion', cure='leave --stand out')
-        self._learning = Learning(arguments.learn)
         self._history: TreeHistory | None = None
+        # Of each simulator, which viewers exchange: another tree learns nothing.
+        self._learned = WeakKeyDictionary[Simulator, LearnedFile]()
 
     def open(self, stack: ExitStack) -> None:  # noqa: A003
         """Listen to the sensors."""
@@ -63,18 +62,14 @@ class SensorsOnThePage(PageAddition):
                 refuse_no_history(path, list(self.places))
             self._history = TreeHistory(path, list(self.places))
 
-    def chosen(self, choices: Choices) -> Choices:
-        """Return the choices with the place of a single sensor, which viewers may change."""
-        return replace(choices, sensor_at=next(iter(self._place()), ''))
-
-    def controls(self, choices: Choices) -> tuple[Control, ...]:
+    def controls(self) -> tuple[Control, ...]:
         """Make the control of where a single sensor sits."""
-        if not self._place():
+        if len(self.places) != 1:
             return ()
         what = (
             "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
         )
-        return (Control('sensor_at', 'Sensor at', choices.sensor_at, what),)
+        return (Control('sensor_at', 'Sensor at', *self.places.values(), what),)
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
         """Make an observed tree; None without sensors, and for a stand."""
@@ -84,30 +79,38 @@ class SensorsOnThePage(PageAddition):
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)
         settings = replace(settings, model=model_of(choices.model))
-        file = self._learning.file_of(scene, settings.in_leaf)
-        if file is not None:
+        file = None
+        if (path := self.arguments.learn) is not None:
+            file = LearnedFile(path, scene.trees[0], settings.in_leaf)
             scene = scene.of_species(file.opened.species)
         twin = observed_scene(
             scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
         )
         if file is not None:
-            self._learning.follow(twin, file)
+            twin.learned_before = file.opened.learned
+            self._learned[twin] = file
         return twin
 
     def note(self, simulator: Simulator) -> None:
-        """Write what was learned, and a row of the history if one is due."""
-        self._learning.keep(simulator)
-        if self._history is None or not isinstance(simulator, ObservedTree):
+        """Write what was learned if anything is new, and a row of the history if one is due."""
+        if not isinstance(simulator, ObservedTree):
             return
-        try:
-            self._history.note(simulator, time.monotonic())
-        except FormatError as error:
-            print(f'warning: {error}', file=sys.stderr)
+        for write in (self._keep, self._note_history):
+            try:
+                write(simulator)
+            except FormatError as error:
+                print(f'warning: {error}', file=sys.stderr)
+
+    def _keep(self, twin: ObservedTree) -> None:
+        if twin in self._learned:
+            self._learned[twin].keep(twin)
+
+    def _note_history(self, twin: ObservedTree) -> None:
+        if self._history is not None:
+            self._history.note(twin, time.monotonic())
 
     def tell(self, simulator: Simulator) -> None:
-        """Say what was learned."""
-        self._learning.tell(simulator)
-
-    def _place(self) -> list[str]:
-        """Place of a single sensor; none of several."""
-        return list(self.places.values()) if len(self.places) == 1 else []
+        """Say what was learned, and where it is."""
+        if isinstance(simulator, ObservedTree) and simulator in self._learned:
+            learned = simulator.learned or 'nothing was learned'
+            print(f'{self._learned[simulator].path}: {learned}')
