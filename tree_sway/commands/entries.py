@@ -23,25 +23,22 @@ GROUP = 'tree_sway.commands'
 def own_commands() -> tuple[dict[str, Command], list[str]]:
     """Return the commands of this distribution in their order, and whose are not there."""
     loaded, missing = _loaded(_own())
-    table = {name: command for found in loaded for name, command in found.items()}
-    table = dict(sorted(table.items(), key=lambda each: each[1].place))
+    commands = [each for table in loaded for each in table.items()]
+    table = dict(sorted(commands, key=lambda each: each[1].place))
     return table, missing if table else [PACKAGE]
 
 
 def commands_called(group: str) -> dict[str, Command] | None:
     """Return the commands of another package by the name of its entry point; None without."""
     own = _own()
-    for point in entry_points(group=GROUP):
-        if point.name == group and point not in own:
-            table: dict[str, Command] = point.load()
-            return table
-    return None
+    points = (each for each in entry_points(group=GROUP) if each not in own)
+    return next((each.load() for each in points if each.name == group), None)
 
 
 def additions(command: str) -> list[Any]:
     """Return what is added to a command, in the order of the names of its entry points."""
-    points = {point.name: point for point in entry_points(group=f'tree_sway.{command}')}
-    return _loaded(points[name] for name in sorted(points))[0]
+    points = entry_points(group=f'tree_sway.{command}')
+    return _loaded(sorted(points, key=lambda each: each.name))[0]
 
 
 def _own() -> list[EntryPoint]:

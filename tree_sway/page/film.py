@@ -45,7 +45,7 @@ def browser() -> str | None:
 
 
 def page_pictures(
-    simulator: Simulator, frames: Iterable[None], rate: float, pixels: int, n_leaves: int
+    simulator: Simulator, frames: Iterable[object], rate: float, pixels: int, n_leaves: int
 ) -> Iterator[bytes]:
     """
     Yield a PNG of a simulator's state at each frame.

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 import dataclasses
 import math
 import sys
-from typing import Any
+from typing import Any, TypeVar
 
 from tree_sway.commands import refuse_overwriting, waiting
 from tree_sway.core.leaves import LeafClusters
@@ -29,6 +29,8 @@ from tree_sway.files.trees import (
     same,
     TreeFile,
 )
+
+T = TypeVar('T')
 
 OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
 _TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'
@@ -70,16 +72,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not finite and above 0.
     """
-    wood = _wood_of(arguments)
-    with waiting(f'opening {arguments.tree}'):
-        opened = open_tree(
-            arguments.tree,
-            arguments.seed,
-            wood=wood,
-            in_leaf=chosen_leaves(arguments),
-            warn=False,
-            **_options(arguments),
-        )
+    opened = _opened(open_tree, arguments)
     say_warnings(opened.warnings)
     return opened
 
@@ -91,17 +84,7 @@ def opened_scene(arguments: argparse.Namespace, *, says: bool = True) -> Scene:
     Errors are those of `opened_tree`, and values of one tree for several. A command that shows the
     warnings in its own form has ``says=False``.
     """
-    wood = _wood_of(arguments)
-    with waiting(f'opening {arguments.tree}'):
-        scene = open_scene(
-            arguments.tree,
-            arguments.seed,
-            exact=getattr(arguments, 'exact', False),
-            wood=wood,
-            in_leaf=chosen_leaves(arguments),
-            warn=False,
-            **_options(arguments),
-        )
+    scene = _opened(open_scene, arguments, exact=getattr(arguments, 'exact', False))
     if says:
         say_warnings(scene.warnings)
     if _wood(arguments) and not scene.is_one_tree:
@@ -111,6 +94,20 @@ def opened_scene(arguments: argparse.Namespace, *, says: bool = True) -> Scene:
             cure='use --species, or files of trees with their own wood',
         )
     return scene
+
+
+def _opened(opener: Callable[..., T], arguments: argparse.Namespace, **more: bool) -> T:
+    wood = _wood_of(arguments)
+    with waiting(f'opening {arguments.tree}'):
+        return opener(
+            arguments.tree,
+            arguments.seed,
+            wood=wood,
+            in_leaf=chosen_leaves(arguments),
+            warn=False,
+            **more,
+            **_options(arguments),
+        )
 
 
 def say_warnings(warnings: Iterable[str]) -> None:

@@ -31,10 +31,11 @@ def refuse_no_table(path: Path) -> None:
         Parquet without pyarrow.
 
     """
-    if path.suffix not in TABLE_SUFFIXES:
+    suffix = path.suffix.lower()
+    if suffix not in TABLE_SUFFIXES:
         cure = f'end it with one of: {", ".join(TABLE_SUFFIXES)}'
         raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
-    if path.suffix == '.parquet' and find_spec('pyarrow') is None:
+    if suffix == '.parquet' and find_spec('pyarrow') is None:
         cure = f'{cure_of_missing("pyarrow")}; or end the name with .csv'
         raise MissingDependencyError('Parquet needs pyarrow', cure=cure)
 
@@ -52,7 +53,7 @@ def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
 
     """
     refuse_no_table(path)
-    if path.suffix == '.csv':
+    if path.suffix.lower() == '.csv':
         text = io.StringIO()
         writer = csv.writer(text, lineterminator='\n')
         writer.writerow(columns)

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-import csv
-import io
+from itertools import chain
 from pathlib import Path
 import sys
 import time
@@ -15,11 +14,12 @@ import time
 from tree_sway.commands import bar, refuse_overwriting, RowFile
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
-from tree_sway.files import path_of, read_head, refuse_unwritable, write_text_whole
+from tree_sway.files import path_of, read_head, refuse_unwritable
 from tree_sway.files.scenes import inventory_of, inventory_table
 from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
-from tree_sway.forest.risk import risk_rows, risk_work, RiskWork, Row
+from tree_sway.forest.risk import risk_rows, risk_work, Row
 from tree_sway.forest.runner import cores
+from tree_sway.forest.table import write_table
 from tree_sway.simulation.commands import add_exposure_arguments, refuse_spacing_in_the_open
 
 _LEFT_OUT = (
@@ -71,9 +71,12 @@ def run(arguments: argparse.Namespace) -> int:
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    results = _each_tree(work, workers, arguments.scheduler, arguments.deadline)
+    kinds = risk_rows(
+        work, workers=workers, scheduler=arguments.scheduler, deadline=arguments.deadline
+    )
+    results = chain.from_iterable(rows for _, rows in kinds)
     rows = _written(output, results, len(inventory.names))
-    _sort(output, rows)
+    write_table(sorted(rows, key=lambda row: row['line']), output)
     n_failed = sum(row['critical_wind_10m [m/s]'] is None for row in rows)
     failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
     print(f'{output}: {len(rows)} trees{failed} in {time.monotonic() - began:.1f} s')
@@ -93,19 +96,3 @@ def _written(output: Path, results: Iterator[Row], n_trees: int) -> list[Row]:
     finally:
         file.close()
     return rows
-
-
-def _each_tree(
-    work: RiskWork, workers: int, scheduler: str | None, deadline: float
-) -> Iterator[Row]:
-    for _, rows in risk_rows(work, workers=workers, scheduler=scheduler, deadline=deadline):
-        yield from rows
-
-
-def _sort(output: Path, rows: list[Row]) -> None:
-    """Write the finished table anew in the order of the inventory."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
-    writer.writeheader()
-    writer.writerows(sorted(rows, key=lambda row: row['line']))
-    write_text_whole(output, text.getvalue())

@@ -69,7 +69,7 @@ class SensorsOnThePage(PageAddition):
         what = (
             "A height on the stem in m, '3.2', or a branch and a share of its length, 'b12:0.5'."
         )
-        return (Control('sensor_at', 'Sensor at', *self.places.values(), what),)
+        return (Control('sensor_at', 'Sensor at', next(iter(self.places.values())), what),)
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
         """Make an observed tree; None without sensors, and for a stand."""

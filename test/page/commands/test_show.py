@@ -31,7 +31,7 @@ from tree_sway.simulation.wind_source import RecordedWind, SimulatedWind  # noqa
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
 QUICK = 'branch'
 """Model that is prepared soonest, for tests of the tree alone."""

@@ -14,7 +14,7 @@ from tree_sway.errors import ParameterError
 from tree_sway.files.commands.moments import moments_of
 from tree_sway.files.trees.source import open_tree
 
-SEEDLING = str(Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml')
+SEEDLING = str(Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml')
 
 
 def vertices(path: Path) -> np.ndarray:

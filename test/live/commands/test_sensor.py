@@ -30,7 +30,7 @@ from tree_sway.live.commands.sensor_arguments import HELP  # noqa: E402
 from tree_sway.live.registry import source_kinds  # noqa: E402
 from tree_sway.stream.protocol import decode_frame  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SEEDLING = str(ROOT / 'test' / 'files' / 'data' / 'seedling.yaml')
 DEADLINE = 120.0
 

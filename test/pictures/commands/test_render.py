@@ -18,7 +18,7 @@ from tree_sway.page import film  # noqa: E402
 from tree_sway.page.film import browser  # noqa: E402
 from tree_sway.pictures.commands import render  # noqa: E402
 
-FILES = Path(__file__).parents[1] / 'files' / 'data'
+FILES = Path(__file__).parents[2] / 'files' / 'data'
 SEEDLING = str(FILES / 'seedling.yaml')
 
 

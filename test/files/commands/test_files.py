@@ -15,7 +15,7 @@ from tree_sway.commands import cli
 from tree_sway.files.trees.source import open_tree
 
 PNG = b'\x89PNG\r\n\x1a\n'
-SEEDLING = str(Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml')
+SEEDLING = str(Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml')
 
 
 @pytest.fixture

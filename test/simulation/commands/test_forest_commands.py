@@ -17,7 +17,7 @@ from tree_sway.files.trees.source import open_scene
 from tree_sway.simulation.commands import info
 from tree_sway.simulation.commands.mode_table import mode_table
 
-SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 SEGMENTS = SEEDLING.with_name('segments.csv')
 SCAN = SEEDLING.parent / 'fork.treeqsm23.txt'
 
