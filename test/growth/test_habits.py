@@ -4,9 +4,9 @@
 
 from itertools import combinations
 
+from drawn_trees import branch_order
 import numpy as np
 import pytest
-from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError

@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
+from drawn_trees import crown, WOOD
 import numpy as np
 import pytest
-from tree_sway_lab.bench.bench_tree import bench_tree
-from tree_sway_lab.validation.truth import WOOD
 
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring
 from tree_sway.core.scene.make import make_simulator
@@ -25,7 +24,7 @@ TURN = np.array(
 
 @pytest.fixture(scope='module')
 def tree():
-    return bench_tree()
+    return crown()
 
 
 def stand_of(tree, scale=1.0, *, has_own=True):
@@ -35,7 +34,7 @@ def stand_of(tree, scale=1.0, *, has_own=True):
         PlacedTree('other', tree, 20.0, 5.0, species=WOOD),
     ]
     if has_own:
-        trees.append(PlacedTree('own', tree, 30.0, 5.0, species=WOOD, model='full'))
+        trees.append(PlacedTree('own', tree, 30.0, 5.0, species=WOOD, model='auto'))
     return Scene(trees).simulator(Settings(model=20))
 
 

@@ -11,10 +11,10 @@ another must be what the matrices say.
 
 from __future__ import annotations
 
+from drawn_trees import crown
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tree_sway_lab.example_trees import forked_tree
 
 from tree_sway.core.native.model import bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
@@ -159,7 +159,7 @@ def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences,
     for fine in cuts:
         tree = fork(fine)
         if shape == 'straight':
-            tree = forked_tree(0.5, 0.6, segments=fine, generations=2)
+            tree = crown((3,), fine)
         reduced = Reduced(tree, enriched=range(tree.n_branches))
         matrix = reduced.reduction.mass.toarray()
         error.append(relative(matrix, mass_by_differences(reduced, differences)))
@@ -171,7 +171,7 @@ def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences,
 
 def test_plain_branches_are_drawn_nearly_as_they_move(fork, differences):
     # By one slope about both axes, and their twist by what it turns their children by.
-    for tree in (fork(8), forked_tree(0.5, 0.6, segments=12, generations=2)):
+    for tree in (fork(8), crown((3,), 12)):
         reduced = Reduced(tree)
         matrix = reduced.reduction.mass.toarray()
         assert relative(matrix, mass_by_differences(reduced, differences)) < 0.025

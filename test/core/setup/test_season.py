@@ -19,7 +19,6 @@ from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.errors import ParameterError
-from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.growth.builtin import builtin_tree
 from tree_sway.growth.growing import grow
 
@@ -95,12 +94,9 @@ def test_needles_stay(key):
     assert wood.leaves.is_evergreen == ((wood.habit != 'broadleaf') != exception)
 
 
-SPRUCE = species_named('spruce')
 DOORS = {
     'make_simulator': lambda tree, **how: make_simulator(tree, **how),
     'auto': lambda tree, **how: make_simulator(tree, model='auto', **how),
-    'full': lambda tree, **how: make_simulator(tree, model='full', **how),
-    'file': lambda tree, **how: make_simulator(TreeFile(tree, SPRUCE, 'a file'), **how),
     'Scene': lambda tree, **how: Scene([PlacedTree('tree', tree)]).simulator(**how),
 }
 
