@@ -21,11 +21,13 @@ ROOT = Path(__file__).resolve().parent.parent
 ANNEXES = (
     'twin', 'simulation', 'files', 'live', 'stream', 'page', 'forest', 'pictures', 'commands',
 )  # fmt: skip
-OTHER_PACKAGES = ('tree_sway_ros', 'tree_sway_lab')
+NOT_FOUND = ('tree_sway_ros', 'tree_sway_lab', *(f'tree_sway.{name}' for name in ANNEXES))
+"""Modules that an installation beside would offer all the same."""
+
 #: What the suite reads beside its own folders: sources and pages that it compares with the code.
 COPIED = (
     'conftest.py', 'pyproject.toml', 'native', 'doc/sway_model.md', 'examples/native', 'tree_sway',
-    'test/core', 'test/growth', 'test/kit',
+    'test/core', 'test/growth', 'test/kit', 'test/golden/pyconturb',
 )  # fmt: skip
 NOT_THERE = """import sys
 sys.modules.update(dict.fromkeys({names!r}))
@@ -45,7 +47,7 @@ def copy_to(folder):
     for name in ANNEXES:
         shutil.rmtree(folder / 'tree_sway' / name)
     # Python runs it at its start, in workers and in programs that tests start as well.
-    text = NOT_THERE.format(names=OTHER_PACKAGES)
+    text = NOT_THERE.format(names=NOT_FOUND)
     (folder / 'sitecustomize.py').write_text(text, encoding='utf-8')
 
 

@@ -142,9 +142,9 @@ def test_each_species_keeps_its_habit() -> None:
 
 
 def outline(species: str) -> tuple[np.ndarray, float]:
-    """Half-width over height in twelve levels, and the mean rise of twigs, of three trees."""
+    """Half-width over height in twelve levels, and the mean rise of twigs, of two trees."""
     widths, rises = [], []
-    for seed in range(3):
+    for seed in range(2):
         tree = grown(species, seed=seed)
         nodes = np.vstack([tree.start, tree.end])
         level = np.minimum((12 * nodes[:, 2] / tree.height).astype(int), 11)

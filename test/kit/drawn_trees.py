@@ -138,7 +138,7 @@ def random_tree(seed, n=12):
     return start[order], end[order], diameter[order], parents
 
 
-def crown(children=(5, 3), cuts=6):
+def crown(children=(6, 3), cuts=6):
     """Draw a straight stem of 6 m whose limbs, and those on them, stand by the golden angle."""
     sizes = (6.0, 0.120, 0.044), (2.2, 0.044, 0.022), (0.9, 0.022, 0.013), (0.4, 0.013, 0.008)
     drawn, waiting = Sketch(), [(None, 0, UP, 0)]

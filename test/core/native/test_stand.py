@@ -111,9 +111,11 @@ def last():
         simulators[0].step((5.0, 0.0, 0.0), 1 / 60)
     print(np.isfinite(simulators[0].place()).all())
 atexit.register(last)
-from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
-simulators.append(make_simulator(builtin_tree('goldcrest'), model=6))
+from tree_sway.core.tree.building import tree_from_segments
+ends = np.outer(np.arange(4), [0.0, 0.0, 0.5])
+tree = tree_from_segments(ends[:-1], ends[1:], [0.03, 0.02, 0.01], parent=[-1, 0, 1])
+simulators.append(make_simulator(tree, model=4))
 """
 
 

@@ -118,8 +118,9 @@ def test_enriching_makes_no_mode_faster(fork):
         assert (rich[: len(plain)] <= plain * (1 + 1e-9)).all()
 
 
-def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork):
-    sim = make_simulator(fork(), model=60, gravity=0.0, damping_ratio=0.5)
+@pytest.mark.parametrize('model', FULL)
+def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork, model):
+    sim = make_simulator(fork(), model=model, gravity=0.0, damping_ratio=0.5)
     for _ in range(1500):
         sim.step([1.0, 0.4, 0.0], 1 / 30)
     bank = sim.banks[0].oscillators

@@ -63,7 +63,7 @@ def test_a_stiffer_tree_sways_as_one_made_so(tree, model):
 
 
 def sway_after_tuning(sim, steps):
-    sim.tune(stiffness_factor=2.0, damping_ratio=0.3)
+    sim.tune(stiffness_factor=3.0, damping_ratio=0.3)
     for dt in steps:
         sim.step(BREEZE, dt)
     return sim.tip_displacement

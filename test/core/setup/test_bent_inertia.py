@@ -57,7 +57,7 @@ def test_a_change_of_the_inertia_is_bounded(fork):
 
 
 def test_the_inertia_remains_symmetric_on_few_coordinates():
-    still = make_simulator(crooked(1), model=3, in_leaf=False, cache=None)
+    still = make_simulator(crooked(1, 12), model=3, in_leaf=False, cache=None)
     slopes = slopes_of(still)
     assert slopes.shape == (3, 3, 3)
     np.testing.assert_allclose(slopes, slopes.swapaxes(0, 1), atol=1e-12 * np.abs(slopes).max())

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 import math
 
-import numpy as np
+from drawn_trees import crown
 import pytest
 from scipy.optimize import brentq
 
@@ -15,7 +15,6 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named, typical_root_stiffness
 from tree_sway.errors import ParameterError
-from tree_sway.growth.growing import grow
 
 OAK = species_named('oak')
 LENGTH, WIDTH = 5.0, 0.1
@@ -48,7 +47,7 @@ def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
 
 
 def test_roots_take_a_few_per_cent_of_the_frequency_of_a_tree():
-    tree = grow('walnut', 6.0, rng=np.random.default_rng(0))
+    tree = crown()
     mass = float(OAK.density * tree.volume[tree.segments_of(0)].sum())
     rooted = replace(OAK, root_stiffness=typical_root_stiffness(mass))
     rigid, soft = (

@@ -13,10 +13,10 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.beams.cutting import CARRIED, cut_tree, pieces_by_turn
 
 
-@pytest.mark.parametrize('model', [20, *FULL])
+@pytest.mark.parametrize('model', [6, *FULL])
 def test_a_tree_at_rest_has_every_segment_where_the_file_has_it(model):
     for seed in range(3):
-        tree = crooked(seed, 20)
+        tree = crooked(seed, 8)
         poses = make_simulator(tree, WOOD, model=model).place()
         assert poses == pytest.approx(tree.rest_poses, abs=1e-12)
 
