@@ -50,4 +50,4 @@ if TYPE_CHECKING:
     from tree_sway.twin import calibrate as calibrate
 else:
     __getattr__, __dir__, __all__ = face(__name__)
-    __all__ += ['__version__']
+    __all__ = sorted((*__all__, '__version__'))

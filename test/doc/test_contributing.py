@@ -45,7 +45,7 @@ def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
     environment = os.environ | {'PYTHONPATH': str(tmp_path)}
     known = "from tree_sway import species_named; print(species_named('mulberry').title)"
     words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist']
-    tests = [*words, 'test/core/tree/test_species.py', '-v']
+    tests = [*words, 'test/core/species/test_species.py', '-v']
     for arguments, wanted in ((['-c', known], 'mulberry'), (tests, '[mulberry]')):
         result = subprocess.run(
             [sys.executable, *arguments], cwd=tmp_path, env=environment,

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What is stored on disk between runs: the set-ups of trees."""
+"""What is kept on disk between runs: the set-ups of trees, by a digest of all they depend on."""
 
 from typing import TYPE_CHECKING
 

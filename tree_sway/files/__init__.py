@@ -1,10 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Files to trees and winds, and back.
+Files to trees, winds and motions, and back.
 
-Text, tables and schemas that several formats share are in this folder itself. It has no ROS and no
-arithmetic of motion.
+Each wing has a face of its own: `trees`, `scenes` (lists and inventories), `wind`, `motion`,
+`models` (prepared ones), `recording` (bags) and `export`. What they share is here: text in any
+encoding, tables of any separator, names and units of columns, times as people write them, YAML
+checked against schemas, and writing that leaves the old file until the new one is whole. A reader
+refuses what it does not understand, with file, line and cure; it never guesses in silence.
+
+A format is one module with a sniffer and a reader, found by its registry. Here is no arithmetic of
+motion.
 """
 
 from typing import TYPE_CHECKING

@@ -14,6 +14,10 @@ from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.text_file import read_head
 
+_POINTS = 8
+"""Lines that are looked at for whether a file is a cloud of points."""
+_POINT = re.compile(r'\s*[-+]?\d+(\.\d+)?([\s,;]+[-+]?\d+(\.\d+)?){2,8}\s*')
+
 
 class UnknownFormatError(FormatError):
     """A file that no format recognises."""
@@ -131,6 +135,12 @@ def _is_header_alone(head: str) -> bool:
     return has_cells and re.search(r'\d', lines[0]) is None
 
 
+def _is_cloud(head: str) -> bool:
+    """Whether all lines are three to nine numbers, as points with colours."""
+    lines = head.splitlines()[:_POINTS]
+    return len(lines) == _POINTS and all(map(_POINT.fullmatch, lines))
+
+
 def _unknown(path: Path, kind: str, names: str) -> FormatError:
     """Return the error for a file of no format: what it is, if its suffix tells, or its kind."""
     what, cure = foreign_file(path)
@@ -138,6 +148,9 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
         cures = filter(None, (cure, f'formats that are read: {names}'))
         return FormatError(f'{what}, not a {kind}', where=str(path), cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
+    if kind == 'tree' and _is_cloud(read_head(path)):
+        what, cure = foreign_file(Path('cloud.las'))
+        return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
     if kind == 'tree':
         cure += '; an inventory has columns for the place, the species, and the height or dbh'
     return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

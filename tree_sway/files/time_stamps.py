@@ -37,7 +37,7 @@ _DATE = (
     r'|(?P<name_m>[A-Za-z]{3})[a-z]* (?P<day_m>\d\d?),? (?P<year_m>\d{4}))'
 )
 _CLOCK = (
-    r'(?:[T,_: ]*(?P<hour>\d\d?)(?::?(?P<minute>\d\d))?(?::?(?P<seconds>\d\d(?:[.,]\d+)?))?'
+    r'(?:[T,_: ]*(?P<hour>\d\d?)(?::?(?P<minute>\d\d))?(?::?(?P<seconds>\d\d(?:[.,:]\d+)?))?'
     r'\s*(?P<half>[apAP]\.?(?:[mM]\.?)?)?)?'
 )
 _ZONE = r'\s*(?P<zone>Z|UTC|GMT|[+-]\d\d(?::?\d\d)?)?'
@@ -207,7 +207,7 @@ def _general(match: re.Match[str], is_month_first: bool) -> int:
         return _NONE
     hour = int(match['hour'] or 0)
     minute = int(match['minute'] or 0)
-    seconds = float((match['seconds'] or '0').replace(',', '.'))
+    seconds = float((match['seconds'] or '0').replace(',', '.').replace(':', '.'))
     if match['half']:
         if not 1 <= hour <= 12:
             return _NONE

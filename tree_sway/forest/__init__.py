@@ -1,11 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Many trees in many winds with many settings, offline: ``tree-sway study STUDY.yaml``.
+Many trees in many winds: studies, and the wind that each tree of an inventory stands.
 
-A plan becomes cases; each case is computed independently, in any process and order, once. Live
-programs do not import this room.
-
+``tree-sway study`` computes every tree in every wind with every combination of settings;
+``tree-sway risk`` the critical wind of each tree of a list. A plan becomes cases, computed once
+each in any order, on the cores of a machine or a Dask cluster, with workers that may die. Live
+programs do not need this house.
 """
 
 from typing import TYPE_CHECKING

@@ -1,10 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Trees grown from a species, a height and a seed.
+Trees grown from a species, a height and a seed, for who has no scan.
 
-Habits, thickness, twigs; the built-in trees by name.
-Nothing here knows of wind or files.
+`grow` makes a plausible tree: a habit (`broadleaf`, `conifer`) with the forms of its species
+(``*_forms.csv``), twigs, and diameters by the pipe model (`thickness`). `builtin_tree` gives the
+paper's two pot plants and a small broadleaf by name. `stem_growth` is a stem's diameter by age,
+and `grown_beyond` grows what a scan could not see. Nothing here knows of wind or files.
 """
 
 from typing import TYPE_CHECKING

@@ -1,10 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Live instruments: links over a network or a serial port, and what their messages mean.
+Live instruments: wind and motion from a network, a serial port, a phone, the internet.
 
-``transports`` delivers messages as bytes and reconnects; ``sources`` has one file per kind of
-source, which puts a transport and a reader together; the registry opens one by its address.
+`open_source` makes a `LiveWind` from an address such as ``udp://:10110``: `transports` deliver
+bytes and connect again, `readers` say what they mean, and a file of `sources` puts one of each
+together. One sender is followed; another is refused, counted and named. `open_motion` and
+`MotionFeed` do the same for motion sensors. A new instrument is one file in `sources`
+(``CONTRIBUTING.md``).
 """
 
 from typing import TYPE_CHECKING

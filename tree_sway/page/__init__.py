@@ -1,11 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The browser page and its server.
+The page in the browser, and its server.
 
-`server` sends a stream to any number of browsers: `guard` checks their requests, `page_client` is
-one of them, `published` what they are sent. `session` is a live tree without ROS.
-``static/`` has the page: our own ES modules, without external ones.
+`Session` is a live tree without ROS, `PageServer` sends it to any number of browsers (`guard`
+checks requests, `page_client` is one of them), `page_of_scene` makes one HTML file that sways by
+itself, and `page_pictures` draws the page without a screen. ``static/`` is the page: ES modules of
+our own and the native core as ``sway.wasm``.
 """
 
 from typing import TYPE_CHECKING

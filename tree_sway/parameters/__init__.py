@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Parameters with default, unit, range and source.
+Parameters, each once: default, unit, range, source.
 
-One table each, which nodes, commands and the documentation read.
+Tables in YAML (``sway.yaml`` here, ``nodes.yaml`` of the nodes) from which commands, nodes and the
+documentation take their values; an unknown name is answered by the nearest.
 """
 
 from typing import TYPE_CHECKING

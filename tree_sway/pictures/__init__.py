@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Pictures and films of trees with matplotlib.
+Pictures and films of trees and of their sway, with matplotlib.
 
-Projection, bark, leaves, plots. Solving and streaming do not need this room.
+`picture_in_wind`, `animate_poses`, `plot_wind_and_tip`, `plot_strength`, `plot_study`. Nothing
+that steps or streams needs this house.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Used share of the strength of a tree: of the wood by its strain, of the roots by the base moment.
+A tree in a wind in one call, and what its sway means for its strength.
 
-Strain along every branch, shares and their bands. This is no verdict on safety.
+`simulate` (and `Rig`, for several winds) steps a tree from rest through a record and returns a
+`SwayRecord`: tips, moments, strains, notes of doubt, a band. `Exposure` is the wind where a tree
+stands: in the open, at an edge, inside a stand. `StrengthUse` is the largest share of its strength
+that the tree used, of the wood by its strain and of the roots by the moment at the base, with the
+band of trees of its kind; `critical_wind` is the mean wind at which that share reaches one. It is
+no verdict on a tree's safety.
 """
 
 from typing import TYPE_CHECKING

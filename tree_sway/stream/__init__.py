@@ -1,9 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The stream of a scene: description, frames, tables; what receivers place and solve by.
+The stream of a scene: description, frames, tables, and their clients.
 
-`doc/streaming.md` is the specification.
+A description is sent once, then each frame is complete by itself: the coordinates of each tree, or
+the wind alone for receivers that solve. `SceneState` makes them, `StreamClient` receives them over
+a connection that is restored, `placing` gives poses by the native core, `ControlPanel` is what
+viewers may change. Whatever arrives is checked before it is used. ``doc/streaming.md`` is the
+specification.
 """
 
 from typing import TYPE_CHECKING

@@ -1,10 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-State estimation: motion sensors on the real tree correct the virtual one.
+Sensors on the real tree: they correct the virtual one, and tell what it is like.
 
-A steady-state Kalman filter corrects the motion that the wind alone would cause by what sensors on
-the tree measure.
+In the order of a sample: `motion_sensor` checks and keeps it, `sensor_track` and `alignment` find
+how the sensor is mounted, `sensor_readings` is what it measures beyond the model, and a
+steady-state Kalman filter (`unknown_motion`, `gain_design`, `steady_filter`, `observer`) moves the
+coordinates. `ObservedTree` is the simulator in which this happens, `observed_scene` makes it from
+a scene, `members` says how sure it is (the band). `tree_fit` and `running_fit` learn stiffness and
+damping, `sway_watch` tells when a tree sways differently than it did. `identification` has the
+same for a record: free decay, spectra, `calibrate`.
+
+``doc/motion_sensors.md`` says what is promised, and what it was measured on.
 """
 
 from typing import TYPE_CHECKING

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -118,3 +119,25 @@ def test_a_stem_of_no_tree_is_said(tmp_path: Path) -> None:
     )
     notes = '\n'.join(opened(tmp_path, paris).notes)
     assert "1 cells of CIRCONFERENCE (cm) do not count: line 3 is '250050'" in notes
+
+
+def test_places_in_degrees_minutes_and_seconds(tmp_path):
+    path = tmp_path / 'trees.csv'
+    path.write_text(
+        'Baumart,Höhe,BHD,Breite,Länge\n'
+        'Spitzahorn,12,25,"52°30\'00""N","13°24\'00""E"\n'
+        'Winterlinde,18,48,"52°30\'03.6""N","13°24\'00""E"\n',
+        encoding='utf-8',
+    )
+    trees = open_scene(path, warn=False).trees
+    assert trees[1].y - trees[0].y == pytest.approx(math.radians(0.001) * 6.371e6, rel=1e-6)
+    assert trees[1].x == trees[0].x
+
+
+def test_places_of_a_census_plot(tmp_path):
+    path = tmp_path / 'census.csv'
+    path.write_text(
+        'treeID,sp,gx,gy,dbh\n1,oak,0.0,0,250\n2,oak,2.5,3,480\n3,oak,5.0,6,180\n', 'utf-8'
+    )
+    trees = open_scene(path, warn=False).trees
+    assert [(each.x, each.y) for each in trees] == [(0.0, 0.0), (2.5, 3.0), (5.0, 6.0)]

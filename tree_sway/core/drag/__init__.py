@@ -1,6 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""x."""
+"""
+The drag of air on wood and leaves, and how sure its numbers are.
+
+`DragLaw` and `drag_density`: force per area and squared speed of a crown, which streamlines as the
+wind rises (Vogel 1984; ``doc/models.md``). `crown_drag` joins wood and leaves of a tree to one
+law. `fill_harmonics` gives the spherical harmonics in which the load of all directions of wind is
+expanded. The spreads `WIND`, `DRAG`, `LEAVES` and `SHARE_WITHIN` are the standard deviations of
+loads between trees of a kind, for bands.
+"""
 
 from typing import TYPE_CHECKING
 

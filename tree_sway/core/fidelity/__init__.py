@@ -1,9 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Error and cost of every number of coordinates, and the choice among them.
+How many coordinates a tree needs: the model ``auto``.
 
-Estimates are made before a step is taken. The models themselves are in rooms below.
+`estimate` finds error and cost of every number of coordinates before a step is taken, from the
+spectrum of the wind that blows; `AdaptiveSimulator` takes the smallest number that is good enough,
+and changes it while the tree sways without a jump.
 """
 
 from typing import TYPE_CHECKING

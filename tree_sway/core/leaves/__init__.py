@@ -1,10 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Leaves: traits of a species, mass and area per branch, places and flutter.
+Leaves: mass and area per branch for the solver, clusters and flutter for viewers.
 
-Arrays per branch or per leaf.
-Drag of leaves in wind is in ``motion/drag``.
+`foliage_of` spreads the leaf area of a species over the twigs of a tree; `clad_wood` adds their
+mass. `leaf_clusters` places what a viewer draws, `leaf_poses` and `flutter_angle` move it with the
+air that passes. `species_in_month` and `is_bare` follow the year of central Europe.
+
+The solver takes mass and area alone; nothing here steps.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The model as data, between set-up and run.
+The prepared model of a tree: the wall between set-up and run.
 
-Settings, layouts of arrays, the laws that both use, states.
+`SwayModel` is one object of named arrays with units and shapes (`MEANINGS`,
+``doc/sway_model.md``): whoever has it steps and places the tree without any of the set-up, in
+Python, C++ or a browser. Its ``check`` names the array that is wrong. `ModelCache` is where
+prepared models are found again, by a digest of what they were made of. `StateBasis` is the basis
+in which poses are streamed.
+
+`records`, `places`, `branch_blocks` and `branch_loads` are layouts that set-up fills and the
+native core reads. Here is no arithmetic of motion; a new array begins here, in `sway_model`.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-One linear or two-axis oscillator over one step: exact propagator, matrix exponential, step rules.
+One oscillator over one step, exactly.
 
-The solver steps with these; other methods are in the laboratory. Nothing here knows of branches.
+`propagator` gives the eight coefficients that advance ``I x'' + k2 x' + k1 x = M(t)`` over a step
+for a moment that changes linearly (Higham 2008, Functions of Matrices, 10.7), to the last digits
+for any damping and any step; `guards` are the limits within which a branch on two axes stays
+bounded. The model ``branch``, observers and methods of the laboratory step with these; the table's
+coordinates by the same equation in ``native/propagate.cpp``.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Run: what happens per frame. A tree is stepped, pushed, tuned and placed.
+Run: one tree, step by step.
 
-The simulator of one tree is `simulator`; scenes of many trees are in the room ``scene``.
+`SwaySimulator` takes a wind and a length of time, and gives poses: `bank` is the tree ready to be
+stepped, `table_model` the default law on a table of winds, `branch_oscillators` the method of
+Kanda & Ohya branch by branch, `rigid` the tree that the wind does not move; `assembly` chooses
+among them by the name of the model. `pushes` are the forces of a hand, `tuning` changes stiffness,
+damping and weight while the tree sways, `clamp_watch` leaves coordinates out where a step stays
+clamped. `Outcome` is what a step says of itself.
+
+It is thin: the law is in ``native/`` (``table.h``, ``limp.h``, ``place.h``, ``branch.h``), its
+equations in ``doc/sway_model.md``. Many trees are in the house `scene`.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Several trees in one wind: their places, delays of gusts, and accuracy.
+Trees that stand somewhere, in one wind.
 
-`make` makes every kind of simulator. Nothing here draws or publishes.
+`PlacedTree` is a tree with place, size and yaw; `Scene` holds one, a forest or thousands, and
+makes their `Simulator`: a `SwaySimulator` of one tree, a `SceneSimulator` of several, whose trees
+of one kind share a table and step in one native call (`sharing`, `shared_tables`). `Run` is the
+runtime that nodes, page and `simulate` have in common: the grid of time, gate and mean of the
+wind, requests between steps. `ReceivedScene` is the same scene at a receiver, solved from an
+exported table (`table_export`); `shard_of` divides a scene among solvers; `wind_at` is the wind at
+any place.
+
+Nothing here draws, publishes or reads files.
 """
 
 from typing import TYPE_CHECKING

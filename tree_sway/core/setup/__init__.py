@@ -1,11 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Set-up: all that is computed once per tree, before the first step.
+Set-up: all that is computed once for a tree, before the first step.
 
-Beams become matrices (`matrices`), matrices become modes (`modes`), modes and static deflections
-become the coordinates (`gust_responses`, `static_responses`), and the wind load on these becomes a
-table (`load_table`). Nothing here runs in a step.
+In the order of the mechanics:
+
+1. `beams`: each branch as a beam, and the fields of rotation in which it bends.
+2. `matrices`, `subtree_inertia`: mass, weight and stiffness of the key rotations of all branches.
+3. `modes`: natural modes of the coupled tree; a tree that buckles is refused.
+4. `gust_responses`, `static_responses`: what gusts and steady winds move; the coordinates span it.
+5. `load_table`: the load of every wind on every coordinate at every lean.
+6. `stream_basis`: the few numbers in which poses are streamed.
+
+`make_model` is this order in code, `prepare` finds the result in a cache or makes it, and
+`TreeReductions` shares the parts among models. `season` adds the leaves. It is numpy and scipy,
+with the loads of branches from the native core; nothing here runs in a step.
 """
 
 from typing import TYPE_CHECKING

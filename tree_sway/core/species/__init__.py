@@ -1,6 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""x."""
+"""
+Wood, bark, leaves and look of a species, by name.
+
+A species is one row of ``species.csv``: density and modulus of green wood, modulus of rupture,
+damping, drag in leaf, mass and area of leaves, and how bark and leaves look. `species_named` finds
+it by any of its names, `species_like` by its last word, so that a silver birch is a birch; an
+unknown name is a `SpeciesError` with names that are near. `Species` is the plain data, which a
+caller may make or change (`dataclasses.replace`).
+
+The sources of the numbers are in `species`. Leaves on a tree are in the house `leaves`.
+"""
 
 from typing import TYPE_CHECKING
 

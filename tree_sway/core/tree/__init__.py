@@ -1,9 +1,19 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The tree as arrays of segments in depth-first order, and its construction.
+A tree as arrays: segments in depth-first order, grouped in branches.
 
-Species are here too: wood, damping and drag by name. This room has no wind or motion.
+`Tree` has nodes, diameters and parents as read-only arrays. Segments are sorted such that every
+subtree is one slice, so that sums over what a branch carries are differences of running sums.
+`tree_from_segments` makes one from segments in any order: it checks them, infers parents from
+places where they are missing (`parents_first`), follows the thickest child for a branch, and names
+what is wrong with the first bad segment.
+
+`oddities` and `refuse_implausible` compare a tree with what is known of trees (`plausibility`,
+`crown_allometry`); `ends_of_poses` and `tips_of_poses` read poses of segments, whose frames
+`segment_frame` defines. `GrownTree` is anything with a tree and its species.
+
+Here is no wind and no motion; wood is in `species`, leaves are in `leaves`.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The wind from a sensor to the trees, by convention, gate, mean over a step, profile, travel.
+The wind from a sensor to the trees.
 
-Units, sign and limits of all samples are checked here. This room has no trees or messages.
+In the order of a sample: `WindConvention` (unit, sign, turn of the mast), `WindGate` (what no wind
+does is refused and counted), `WindIntake` (both, then the force plane), `WindAverage` (the mean of
+the curve through the samples over a step), `WindProfile` (height), `GustHistory` (gusts travel to
+a tree) and `CrownWind` (and from limb to limb). `ClimateTracker` keeps mean and spectrum of what
+has blown, for who chooses or filters by them. Speeds are in [m/s], the way the air goes, east,
+north, up; times in [ns] where they are stamps, else in [s].
+
+Simulated winds are in `simulated`; formats of files and instruments are in other houses.
 """
 
 from typing import TYPE_CHECKING

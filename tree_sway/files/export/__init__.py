@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Trees to files: YAML, glTF, USD, MJCF, SDF.
+Trees for other programs: YAML, glTF, USD, MJCF, SDF, OBJ; columns as CSV, JSON, Parquet.
 
-One function per format.
+One module a format, over a mesh (`tree_mesh`) or bodies on hinges (`hinged_tree`); animated files
+sway in a breeze that is always the same.
 """
 
 from typing import TYPE_CHECKING

@@ -1,6 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Prepared models of trees on disk: in the cache, and as files of their own."""
+"""
+Prepared models on disk: in the cache, as ``.npz``, and as bytes of the native core.
+
+Written whole or not at all, without pickles, and checked as they are read.
+"""
 
 from typing import TYPE_CHECKING
 

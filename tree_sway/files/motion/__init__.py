@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Records of motion sensors on real trees: tables and bags."""
+"""Records of motion sensors on real trees, as tables and bags, and what they told over days."""
 
 from typing import TYPE_CHECKING
 

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Scenes as files.
+Scenes as files: YAML lists of trees, forests and stands, inventories of any city.
 
-A YAML list of trees, a forester's table, or a YAML file that names one.
+An inventory becomes trees of a few classes that share their grown forms (`kind_classes`).
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Tree files: opened ones, their readers, segments to a `Tree`.
+A tree by name or by path: scans, skeletons, grown descriptions, prepared models.
 
-Formats by kind in the rooms below. This room computes no frequencies.
+`open_tree` and `open_scene` are what commands, nodes and programs call. `TreeFile` is a tree with
+its species, its notes and what was changed; a format is one module of `formats`, `cylinders` or
+`yaml`. A tree that is described is never changed unless asked.
 """
 
 from typing import TYPE_CHECKING

@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Wind records: TOA5, NMEA 0183, tables, bags; records of sway for calibration.
+Wind records of loggers, stations, services, bags and reanalyses.
 
-All result in times in [s] and velocities in [m/s], blowing TO, ENU. Gating and averaging are done
-in ``core/wind``.
+All become times in [s] and velocities in [m/s], the way the air goes, east, north, up. A layout of
+a table is one module of `layouts`; names and units of columns are data. Live instruments use the
+same readers of lines (`parse_nmea`, `parse_sonic`, `SensorLine`).
 """
 
 from typing import TYPE_CHECKING

@@ -14,7 +14,8 @@ import numpy as np
 
 from tree_sway.files.column_names import folded, name_and_unit, TIME_PARTS
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.time_stamps import Times, times_of
+from tree_sway.files.text_file import finite
+from tree_sway.files.time_stamps import dates, Times, times_of
 
 Join = Callable[[Sequence[str]], str]
 
@@ -68,8 +69,18 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
             return [names.index(name) for name in wanted], join, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
+    if not clocks and names[0] == '' and _are_dates(table.cells(0, first)):
+        clocks = [0]  # an index without a name
+    if not clocks:
+        return None
     clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
-    return ([clocks[0]], None, table.factor_of(clocks[0], 'time')) if clocks else None
+    is_dated = _are_dates(table.cells(clocks[0], first))  # what is in brackets is no unit then
+    return [clocks[0]], None, 1.0 if is_dated else table.factor_of(clocks[0], 'time')
+
+
+def _are_dates(cells: Sequence[str]) -> bool:
+    """Whether cells are dates; none is a number."""
+    return all(finite(cell) is None for cell in cells) and dates(cells).epoch != 0.0
 
 
 def _run_on(cells: Sequence[str]) -> bool:

@@ -17,6 +17,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import replace
 from pathlib import Path
+import re
 
 import numpy as np
 
@@ -39,6 +40,8 @@ from tree_sway.files.wind.station_units import speed_units
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
+_AT_HEIGHT = re.compile(r'(\d+(?:\.\d+)?) ?m (\D.*)')
+"""Height before a name, as profilers have it: ``40m Wind Speed (m/s)``."""
 
 
 def read_table_wind(
@@ -89,9 +92,9 @@ def wind_of_table(
     seed: float = 0,
 ) -> WindRecord:
     """Return the wind of a table, as `read_table_wind`."""
-    table = with_units_in_head(table)
+    table, note = _at_one_height(with_units_in_head(table))
     rows = WindRows(table.source)
-    notes = list[str]()
+    notes = [note] if note else []
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
@@ -123,6 +126,21 @@ def wind_of_table(
         epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)
     )
     return filled_means(record, turbulence, seed)
+
+
+def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
+    """Return a profiler's table with the columns of its lowest height alone, and which it is."""
+    heights = [_AT_HEIGHT.match(name) for name in table.columns]
+    known = sorted({float(each[1]) for each in heights if each and 'wind' in each[2].lower()})
+    if not known:
+        return table, ''
+    names = [
+        name if at is None else at[2] if float(at[1]) == known[0] else ''
+        for name, at in zip(table.columns, heights, strict=True)
+    ]
+    others = ', '.join(f'{each:g}' for each in known[1:])
+    note = f'the wind at {known[0]:g} m' + (f'; there is one at {others} m' if others else '')
+    return replace(table, columns=tuple(names)), note
 
 
 def _points(table: TextTable, speed: Column) -> Column | None:

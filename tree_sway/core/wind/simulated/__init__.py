@@ -1,9 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Simulated winds: turbulence of a given spectrum, gust events, a simulated anemometer.
+Simulated winds: turbulence of a given spectrum, gusts about means, an anemometer.
 
-Randomness comes from an ``rng`` argument. Recorded winds are in the room above.
+`simulate_turbulence` draws a record from Kaimal's spectra (IEC 61400-1:2005, annex B.2) by a
+seeded generator; `turbulence_about_means` and `GustsAboutMean` put such gusts between means of
+minutes or hours; `AnemometerModel` is an instrument that never ends, with the faults of
+`SensorFaults` where a test asks for them. The same seed gives the same wind on every machine.
 """
 
 from typing import TYPE_CHECKING

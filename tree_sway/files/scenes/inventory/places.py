@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 import math
+import re
 
 import numpy as np
 
@@ -26,6 +27,11 @@ _MOST_LATITUDE = 90.0
 
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
+
+_DMS = re.compile(
+    r"(\d+)\s*°\s*(\d+(?:\.\d+)?)\s*['′’]\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|”|''))?\s*([NSEW])"
+)
+"""Degrees, minutes and maybe seconds, and the side of the equator or of Greenwich."""
 
 _FEW_DIGITS = 3
 _CLOSEST = 0.1
@@ -55,7 +61,7 @@ def places_of(columns: InventoryColumns) -> Places | None:
     """Return the places of all rows; None without columns of them."""
     by_degrees = columns.find('latitude', 'longitude')
     if by_degrees is not None:
-        latitude, longitude = (columns.numbers(each.index)[0] for each in by_degrees)
+        latitude, longitude = (_degrees(columns, each.index) for each in by_degrees)
         return _of_degrees(columns, latitude, longitude)
     by_metres = columns.find('x', 'y')
     if by_metres is not None:
@@ -64,6 +70,21 @@ def places_of(columns: InventoryColumns) -> Places | None:
     if by_geometry is not None:
         return _of_geometries(columns, by_geometry.index)
     return None
+
+
+def _degrees(columns: InventoryColumns, index: int) -> Floats:
+    """Read a column of degrees, decimal or with minutes and seconds: ``52°31'10.5"N``."""
+    parts = [_DMS.fullmatch(text.strip()) for text in columns.texts(index)]
+    if not any(parts):
+        return columns.numbers(index)[0]
+    return np.array([math.nan if each is None else _decimal(each) for each in parts])
+
+
+def _decimal(parts: re.Match[str]) -> float:
+    """Return degrees, minutes and seconds as degrees, negative in the south and west."""
+    degrees, minutes, seconds = (float(part or 0.0) for part in parts.groups()[:3])
+    sign = -1.0 if parts[4] in ('S', 'W') else 1.0
+    return sign * (degrees + minutes / 60.0 + seconds / 3600.0)
 
 
 def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:

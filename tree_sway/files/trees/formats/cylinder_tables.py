@@ -8,7 +8,7 @@ aRchi (Martin-Ducup et al. 2021) numbers from 1, the root's parent 0; a cylinder
 from 0, the root's parent -1, and has no column for the extension. The branch order replaces it: of
 the children of a cylinder the one of the same order continues; ``branchID`` numbers whole limbs
 with their subtrees, not chains. Of several of the same order, the one with the greatest growth
-length, that of its subtree, continues.
+length, that of its subtree, continues; without that column, the thickest.
 """
 
 from __future__ import annotations
@@ -39,7 +39,9 @@ def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a SimpleForest table."""
     table = parse_table(read_lines(path), str(path))
     labels, parent = table.family('ID', 'parentID', [-1], 'cylinder')
-    order, growth = table.strict(['branchOrder', 'growthLength']).T
+    columns = {column.lower() for column in table.columns}
+    size = 'growthLength' if 'growthlength' in columns else 'radius'
+    order, growth = table.strict(['branchOrder', size]).T
     rivals = np.flatnonzero((parent >= 0) & (order == order[parent]))
     continuations = first_of_each(parent, rivals, -growth[rivals], rivals)
     continues = np.isin(np.arange(len(parent)), continuations)
@@ -48,5 +50,9 @@ def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
 
 ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi, FITTED)
 SIMPLEFOREST = FileFormat(
-    'simpleforest', (), has_columns('ID', 'parentID', 'growthLength'), _read_simpleforest, FITTED
+    'simpleforest',
+    (),
+    has_columns('ID', 'parentID', 'startX', 'branchOrder'),
+    _read_simpleforest,
+    FITTED,
 )

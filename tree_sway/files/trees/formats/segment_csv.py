@@ -6,6 +6,9 @@ A plain table of segments: one row each, with nodes, diameters, parent and branc
 Columns ``segment, parent, branch, x0, y0, z0, x1, y1, z1, d0, d1`` in any order, in metres;
 ``segment`` names the row and ``parent`` refers to such a name, -1 for the root; without ``branch``
 the branches are found from continuations of segments, without ``d1`` a segment is a cylinder.
+
+Cylinders without parents, ``x1, y1, z1, x2, y2, z2, radius`` in metres, are joined where one
+begins at the end of another.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.species import species_named
 from tree_sway.files.file_format import FileFormat, has_columns
-from tree_sway.files.table_file import parse_table
+from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -26,6 +29,8 @@ def _read(path: Path) -> TreeFile:
     """Tree from a table of segments."""
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
+    if {*_ENDS, 'radius'} <= columns:
+        return _read_ends(path, text)
     labels, parents = text.family('segment', 'parent', [-1], 'segment')
     tip = 'd1' if 'd1' in columns else 'd0'
     values = text.strict(['x0', 'y0', 'z0', 'x1', 'y1', 'z1', 'd0', tip])
@@ -40,4 +45,18 @@ def _read(path: Path) -> TreeFile:
     return TreeFile(tree, wood, str(path))
 
 
-FORMAT = FileFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)
+def _read_ends(path: Path, text: TextTable) -> TreeFile:
+    """Tree from a table of both ends and the radius of cylinders, whose parents are inferred."""
+    values = text.strict([*_ENDS, 'radius'])
+    wood = species_named('broadleaf')
+    start, end, radius = np.hsplit(values, [3, 6])
+    tree = built_tree(
+        str(path), start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key
+    )
+    return TreeFile(tree, wood, str(path), notes=('parents are found by the ends that meet',))
+
+
+_ENDS = ('x1', 'y1', 'z1', 'x2', 'y2', 'z2')
+_HAS_ENDS = has_columns(*_ENDS, 'radius')
+_HAS_SEGMENTS = has_columns('x0', 'y0', 'z0', 'x1', 'd0')
+FORMAT = FileFormat('csv', (), lambda head: _HAS_SEGMENTS(head) or _HAS_ENDS(head), _read)

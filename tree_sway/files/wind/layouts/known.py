@@ -17,12 +17,13 @@ from tree_sway.files.wind.layouts.long import LONG
 from tree_sway.files.wind.layouts.meteoblue import METEOBLUE
 from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.layouts.spaced import SPACED
+from tree_sway.files.wind.layouts.tagged import TAGGED
 from tree_sway.files.wind.layouts.toa5 import TOA5
 from tree_sway.files.wind.layouts.weatherlink_text import WEATHERLINK_TEXT
 
 LAYOUTS = (
     *(TOA5, JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, ISD_LITE, BADC_CSV),
-    *(CUMULUS_LOG, CUMULUS_REALTIME, EPW, JMA, METEOBLUE),
+    *(TAGGED, CUMULUS_LOG, CUMULUS_REALTIME, EPW, JMA, METEOBLUE),
     *LONG,
     PLAIN,
 )
