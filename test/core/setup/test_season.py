@@ -42,10 +42,8 @@ def branch_wood(tree):
 
 
 def first_frequency(tree, settings):
-    """Frequency of the one coordinate of a tree on one; its table of winds is not made."""
-    wood = species_named(tree.species)
-    reductions = TreeReductions(tree, wood, settings)
-    return reductions.modes(1).circular[0] / (2.0 * np.pi)
+    """First natural frequency of a tree; its table of winds is not made."""
+    return TreeReductions(tree, species_named(tree.species), settings).natural_frequencies(1)[0]
 
 
 def test_leaves_weigh_catch_and_damp(fork):
