@@ -82,6 +82,19 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
         np.testing.assert_allclose(force @ push.lever, by_differences, atol=1e-3 * largest)
 
 
+@pytest.mark.parametrize('model', [60, 'auto'])
+def test_the_foot_holds_the_force(tree, model):
+    segment, force = outer_segment(tree), np.array([3.0, 1.0, -0.5])
+    sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
+    for _ in range(round(SETTLING / DT)):
+        sim.push(segment, force, 1.0)
+        sim.step(CALM, DT)
+    assert moved(sim, segment) @ force > 0.0
+    np.testing.assert_allclose(sim.push_load[:3], force)
+    arm = place_of(sim.place(), tree, segment) - tree.start[0]
+    np.testing.assert_allclose(sim.push_load[3:], np.cross(arm, force), rtol=1e-3)
+
+
 def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
     segment = outer_segment(tree)
     found = []

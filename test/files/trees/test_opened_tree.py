@@ -35,8 +35,8 @@ def test_an_evergreen_of_a_file_is_in_leaf(opened):
 def test_it_is_simulated_calibrated_and_written(opened, tmp_path):
     wind = np.full((3, 3), 4.0)
     record = sway.simulate(opened, wind, model='branch')
-    apart = sway.simulate(opened.tree, wind, species=opened.species, model='branch')
-    np.testing.assert_array_equal(record.tips, apart.tips)
+    of_the_table = sway.simulate(opened.tree, wind, model='branch')
+    assert not np.array_equal(record.tips, of_the_table.tips)
     assert sway.calibrate(opened, None, 5.0).species.key == 'oak'
     sway.write_tree(tmp_path / 'tree.yaml', opened)
     again = sway.open_tree(tmp_path / 'tree.yaml')
