@@ -8,6 +8,7 @@ from importlib.metadata import EntryPoint
 from pathlib import Path
 import re
 
+import numpy as np
 import pytest
 
 from tree_sway import installed_models as module
@@ -75,6 +76,20 @@ def test_a_model_of_another_package_is_made_by_its_own_function(installed, fork)
         one.step((6.0, 1.0, 0.0), 1 / 60)
     assert sim.model == 'mine'
     assert sim.place().tobytes() == other.place().tobytes()
+
+
+def test_rotations_of_another_number_are_refused_before_they_are_read(installed, fork) -> None:
+    class Short(RigidBank):
+        def rotations(self):
+            return np.zeros(1)
+
+    def make(model, branches):
+        return Short(branches, model)
+
+    installed['short'] = type('Point', (), {'load': staticmethod(lambda: make)})()
+    sim = make_simulator(fork(), model='short', cache=None)
+    with pytest.raises(ValueError, match=r'an array of shape \(1,\) where'):
+        sim.place()
 
 
 def test_an_unknown_model_is_refused_with_those_that_there_are(installed) -> None:

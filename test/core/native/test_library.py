@@ -9,12 +9,13 @@ import math
 import re
 
 from native_headers import fields_of, HEADER, LIBRARY_HEADER, NATIVE
+import numpy as np
 import pytest
 
 from tree_sway.core.model.branch_blocks import BRANCH_BLOCK
 from tree_sway.core.model.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
-from tree_sway.core.native.library import LIBRARY, SIGNATURES, VERSION
+from tree_sway.core.native.library import contiguous, LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
@@ -102,3 +103,20 @@ def test_the_list_of_arrays_is_that_of_the_model() -> None:
             if size != 'SIZE_any':
                 own = size.removeprefix('SIZE_').replace('_plus_', ' + ')
                 assert own == str(wanted), name
+
+
+def test_a_history_without_room_is_left_alone() -> None:
+    wanted, wind, out = np.ones(2), np.ones(3), np.full((2, 3), 7.0)
+    past = np.full(2, 5.0)
+    LIBRARY.sway_past_winds(
+        contiguous(past), 0, 0.0, contiguous(wanted), contiguous(wanted.copy()), 2, 1.0,
+        contiguous(wind), 0.02, contiguous(out),
+    )  # fmt: skip
+    assert (past == 5.0).all()
+    assert (out == 7.0).all()
+
+
+@pytest.mark.parametrize('array', [np.zeros((4, 4))[:, :2], np.zeros((2, 4))])
+def test_an_array_that_is_not_in_a_row_or_of_another_shape_is_refused(array) -> None:
+    with pytest.raises(ValueError, match='an array of shape'):
+        contiguous(array, (4, 2))

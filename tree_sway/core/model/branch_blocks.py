@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Records
 from tree_sway.core.model.records import WIDTH
-from tree_sway.core.native import address, LIBRARY
+from tree_sway.core.native import address, contiguous, LIBRARY
 
 
 class BranchBlock:
@@ -89,10 +89,10 @@ class BranchBlocks:
         rotations = np.zeros(self.state.shape[1])
         records, count, *_ = self._arguments
         own = np.ascontiguousarray(stiffness, dtype=np.float64)
-        assert own.shape == (count,)
         LIBRARY.sway_rest_branches(
-            records, count, *wind.tolist(), drag_density, address(own), address(rotations)
-        )
+            records, count, *wind.tolist(), drag_density, contiguous(own, (count,)),
+            address(rotations),
+        )  # fmt: skip
         return rotations
 
     def reset(self) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Records
-from tree_sway.core.native import address, LIBRARY
+from tree_sway.core.native import address, contiguous, LIBRARY
 from tree_sway.core.rotation import cross_matrix
 
 
@@ -77,18 +77,14 @@ class BranchLoads:
 
         The tree is in poses [rad], (p, N), and moves at rates [rad/s], (p, N), or is still.
         """
-        x, v, wind = (
-            None if each is None else np.ascontiguousarray(each, dtype=np.float64)
-            for each in (poses, rates, winds)
-        )
-        assert x is not None
-        assert wind is not None
-        assert x.shape == (len(wind), self.n)
-        assert v is None or v.shape == x.shape
-        out = np.empty_like(x)
+        x, wind = (np.ascontiguousarray(each, dtype=np.float64) for each in (poses, winds))
+        v = None if rates is None else np.ascontiguousarray(rates, dtype=np.float64)
+        shape = len(wind), self.n
+        out = np.empty(shape)
         LIBRARY.sway_wind_moments(
-            ctypes.byref(self._branches), address(x), None if v is None else address(v),
-            address(wind), len(wind), address(self.loads), address(out),
+            ctypes.byref(self._branches), contiguous(x, shape),
+            None if v is None else contiguous(v, shape), contiguous(wind, (len(wind), 3)),
+            len(wind), address(self.loads), address(out),
         )  # fmt: skip
         return out
 
@@ -99,10 +95,9 @@ class BranchLoads:
         The tree was still; shapes are (N, c), c a multiple of 8, and so are the changes, which are
         written. Memory is the caller's: to take it anew takes as long as to fill it.
         """
-        for each in (shapes, turning, damping):
-            assert each.flags.c_contiguous
-            assert each.shape == (self.n, shapes.shape[1])
+        shape = self.n, shapes.shape[1]
         LIBRARY.sway_load_slopes(
-            ctypes.byref(self._branches), address(self.loads), address(shapes), shapes.shape[1],
-            address(self._scratch), address(turning), address(damping),
+            ctypes.byref(self._branches), address(self.loads), contiguous(shapes, shape),
+            shapes.shape[1], address(self._scratch), contiguous(turning, shape),
+            contiguous(damping, shape),
         )  # fmt: skip

@@ -15,6 +15,7 @@ from tree_sway.faces import face
 
 if TYPE_CHECKING:
     from tree_sway.core.native.library import address as address
+    from tree_sway.core.native.library import contiguous as contiguous
     from tree_sway.core.native.library import LastAddress as LastAddress
     from tree_sway.core.native.library import LIBRARY as LIBRARY
     from tree_sway.core.native.model import AT_POSE as AT_POSE

@@ -124,6 +124,21 @@ class Opened:
         weakref.finalize(self, close, handle).atexit = False
 
 
+def contiguous(array: NDArray[Any], shape: tuple[int, ...] | None = None) -> Address:
+    """
+    Return where the numbers of an array begin, which the native core reads or writes in a row.
+
+    Raises
+    ------
+    ValueError
+        An array of another shape, or one whose numbers are not in a row.
+
+    """
+    if not array.flags.c_contiguous or (shape is not None and array.shape != shape):
+        raise ValueError(f'an array of shape {array.shape} where {shape} in a row is read')
+    return address(array)
+
+
 def address(array: NDArray[Any]) -> Address:
     """Return where the numbers of an array begin."""
     return Address(array.ctypes.data)

@@ -13,7 +13,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from tree_sway.core.native.library import Address, address
+from tree_sway.core.native.library import Address, contiguous
 
 
 def _fields(words: str, numbers: str = '') -> list[tuple[str, Any]]:
@@ -44,8 +44,7 @@ class Structure(ctypes.Structure):
 def _value(field: float | NDArray[Any]) -> float:
     if isinstance(field, int | float):
         return field
-    assert field.flags.c_contiguous
-    return address(field)
+    return contiguous(field)
 
 
 class NativeSensor(Structure):

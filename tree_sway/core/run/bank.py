@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.native import NativeStand
+from tree_sway.core.native import contiguous, NativeStand
 
 
 class Tunable(NamedTuple):
@@ -117,4 +117,6 @@ class Bank:
         if self.oscillators.loads is None:
             self.stand.place_first(out)
         else:
-            self.place(self.oscillators.rotations(), out)
+            rotations = np.ascontiguousarray(self.oscillators.rotations(), dtype=np.float64)
+            contiguous(rotations, (self.stand.models[0].sizes.keys,))
+            self.place(rotations, out)
