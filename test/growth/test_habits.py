@@ -142,9 +142,9 @@ def test_each_species_keeps_its_habit() -> None:
 
 
 def outline(species: str) -> tuple[np.ndarray, float]:
-    """Half-width over height in twelve levels, and the mean rise of twigs, of two trees."""
+    """Half-width over height in twelve levels, and the mean rise of twigs, of three trees."""
     widths, rises = [], []
-    for seed in range(2):
+    for seed in range(3):
         tree = grown(species, seed=seed)
         nodes = np.vstack([tree.start, tree.end])
         level = np.minimum((12 * nodes[:, 2] / tree.height).astype(int), 11)
@@ -154,6 +154,7 @@ def outline(species: str) -> tuple[np.ndarray, float]:
     return np.mean(widths, axis=0), float(np.mean(rises))
 
 
+@pytest.mark.long
 def test_silhouettes_differ() -> None:
     """By the outline, a tenth of the width at least, or by twigs that hang or rise."""
     # Species without a form of their own grow as their group.

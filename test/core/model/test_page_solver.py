@@ -69,7 +69,7 @@ def test_a_solver_of_the_page_moves_a_limp_tree_as_the_library_does(tmp_path, sp
     grows tenfold in two frames.
     """
     path = tmp_path / 'limp.npz'
-    model = prepare(weeping(1, twigs=3), WOOD, SETTINGS, model=24, cache=None)
+    model = prepare(weeping(1, twigs=3), WOOD, SETTINGS, model=18, cache=None)
     write_file(path, model)
     solver, simulator = page_solver(path, 'LimpPageSolver'), SwaySimulator(model)
     assert simulator.models[0].is_limp

@@ -27,6 +27,12 @@ def tree():
     return crown()
 
 
+@pytest.fixture(scope='module')
+def resting(tree):
+    """Return a stand at rest, which the tests of refusals share."""
+    return stand_of(tree)
+
+
 def stand_of(tree, scale=1.0, *, has_own=True):
     """Return a stand whose first tree is turned and scaled; a last one has its own model."""
     trees = [
@@ -96,11 +102,11 @@ def test_a_tree_on_a_model_of_its_own_is_pushed_too(tree):
         (1, Spring((0.0, 0.0), 1.0), 'push'),
     ],
 )
-def test_what_cannot_be_is_refused_and_counted(tree, segment, force, why):
-    stand = stand_of(tree)
+def test_what_cannot_be_is_refused_and_counted(resting, segment, force, why):
+    stand, refused = resting, resting.counts.refused_pushes
     with pytest.raises(ParameterError, match=why):
         stand.push(segment, force, 0.5)
-    assert stand.counts.refused_pushes == 1
+    assert stand.counts.refused_pushes == refused + 1
     before = stand.place()
     stand.step(CALM, DT)
     np.testing.assert_array_equal(stand.place(), before)

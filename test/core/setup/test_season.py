@@ -129,7 +129,7 @@ _too_heavy = pytest.mark.xfail(
         pytest.param('benjamina', (0.15, 0.44), marks=_long),
         pytest.param('spruce', (0.20, 0.60), marks=_long),
         pytest.param('spruce', (0.15, 0.60), marks=_long),
-        ('goldcrest', (0.15, 0.60)),
+        pytest.param('goldcrest', (0.15, 0.60), marks=_long),
         pytest.param('broadleaf', (0.15, 0.33), marks=_long),
         pytest.param('broadleaf', (0.15, 0.60), marks=[_long, _too_heavy]),
         pytest.param('oak', (0.08, 0.22), marks=_long),
