@@ -9,9 +9,8 @@ from itertools import pairwise
 from drawn_trees import crown
 import numpy as np
 import pytest
-from simulators import FULL
 
-from tree_sway.core.fidelity.estimate import ErrorEstimator, frame_cost
+from tree_sway.core.fidelity.estimate import ErrorEstimator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
@@ -98,11 +97,3 @@ def test_estimates_are_those_of_the_tree_as_it_is_tuned():
         sim.step((2.0, 0.0, 0.0), DT)
     after = sim.estimates(climate)
     assert all(b.error < 0.6 * a.error for a, b in zip(before, after, strict=True))
-
-
-@pytest.mark.parametrize('model', FULL)
-def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch(model):
-    few, all_of_them = (
-        frame_cost(make_simulator(crown(), model=each).banks[0]) for each in (6, model)
-    )
-    assert few < all_of_them

@@ -118,17 +118,6 @@ def test_enriching_makes_no_mode_faster(fork):
         assert (rich[: len(plain)] <= plain * (1 + 1e-9)).all()
 
 
-@pytest.mark.parametrize('model', FULL)
-def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork, model):
-    sim = make_simulator(fork(), model=model, gravity=0.0, damping_ratio=0.5)
-    for _ in range(1500):
-        sim.step([1.0, 0.4, 0.0], 1 / 30)
-    bank = sim.banks[0].oscillators
-    x, moment = bank.rotations(), bank.state[0]
-    shapes, w2 = bank.shapes, bank.stiffness
-    assert x == pytest.approx(shapes @ ((shapes.T @ moment) / w2), rel=1e-6, abs=1e-12)
-
-
 @pytest.mark.parametrize(('tree', 'rows'), [('fork', ROOMS[1]), ('stem', ROOMS[2])])
 def test_records_have_room_for_all_that_a_step_needs(fork, stem, tree, rows):
     bank = bank_of(

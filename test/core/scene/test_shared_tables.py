@@ -52,8 +52,7 @@ def test_a_tree_of_a_stand_sways_as_it_does_alone(kinds):
         assert stand.step(wind, DT) == 0
         alone.step(wind, DT)
     placed = stand.place()[stand.segments_of('b')]
-    # Rounding, by 1.1e-11 without the compiler: BLAS adds the products of a batch in an order of
-    # its own, another on each processor.
+    # Rounding alone.
     place = np.abs(placed[:, :3] - [4.0, 2.0, 0.5] - alone.place()[:, :3]).max()
     turn = np.abs(placed[:, 3:] - alone.place()[:, 3:]).max()
     print(f'{place:.1e} m, {turn:.1e}')

@@ -12,9 +12,8 @@ from tree_sway.core.tree.segment_frame import ends_of_poses
 
 
 def slopes_of(sim):
-    """Slopes of the inertia, whether the tree has a table or, without the compiler, none."""
-    bank = sim.banks[0].oscillators
-    return (bank if hasattr(bank, 'inertia_slopes') else bank.modal).inertia_slopes
+    """Slopes of the inertia of the first coordinates."""
+    return sim.banks[0].oscillators.modal.inertia_slopes
 
 
 def middles(sim, x):

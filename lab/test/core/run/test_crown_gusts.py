@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Every model gets the same gusts limb by limb, and has them in its state."""
+"""A table meets gusts limb by limb as all coordinates do."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A sapling whose light leaves have more drag than inertia: stiff coordinates in a table."""
+"""A sapling whose light leaves have more drag than inertia, against all coordinates."""
 
 from __future__ import annotations
 

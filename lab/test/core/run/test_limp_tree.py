@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Limp trees: nearer to the truth, no energy from nothing, stable."""
+"""Limp trees against segments that are solved: nearer than the table, in storms as well."""
 
 from dataclasses import replace
 from functools import cache

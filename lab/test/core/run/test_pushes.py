@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A branch that is pushed: moments by differences, compliance, reaction, release, refusals."""
+"""A branch that is pushed moves as with all coordinates."""
 
 from __future__ import annotations
 

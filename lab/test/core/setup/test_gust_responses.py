@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Coordinates by what turbulence does: the air's damping in them, and what few of them hold."""
+"""Coordinates by what turbulence does: what few of them hold."""
 
 from __future__ import annotations
 

@@ -35,11 +35,6 @@ def least_share(damping):
 def test_no_motion_gains_energy_by_drag(kind):
     model = judged_simulator('default', kind_called(kind)).models[0]
     assert least_share_of_table(model) > -1e-5  # single precision
-
-
-@pytest.mark.parametrize('kind', TRIED)
-def test_no_motion_gains_energy_by_the_drag_of_an_exported_table(kind):
-    model = judged_simulator('default', kind_called(kind)).models[0]
     table = arrays_of_table(*exported_table(model, model.own_damping))
     assert least_share_of_table(SimpleNamespace(**table)) > -1e-5
 

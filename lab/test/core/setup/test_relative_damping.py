@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Damping of coordinates by the wood: that of dampers on its springs, none by the weight."""
+"""Hanging twigs are damped as those of segments that are solved."""
 
 import numpy as np
 import pytest

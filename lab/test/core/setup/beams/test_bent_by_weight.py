@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Limp branches: weight that goes with them bends them further, as the textbooks have it."""
+"""Hanging twigs swing as fast as when every segment is solved."""
 
 from __future__ import annotations
 

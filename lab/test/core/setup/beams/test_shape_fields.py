@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The fields by which a branch moves: orthogonal, right-handed, the static first, converging."""
+"""Frequencies of trees whose limbs swing apart, against segments that are solved."""
 
 from __future__ import annotations
 
