@@ -22,20 +22,20 @@ os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 # test beside.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
+import drawn_trees  # noqa: E402
 from hypothesis import settings  # noqa: E402
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
 from tree_sway.cache.model_cache import MODELS as ON_DISK  # noqa: E402
-from tree_sway.commands import cli  # noqa: E402
 from tree_sway.core.model.model_cache import PREPARED  # noqa: E402
-from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
 from tree_sway.installed_models import GROUP, installed_models  # noqa: E402
 
 # The laboratory of this checkout may not be installed, or have been before it had models.
-_FULL = EntryPoint('full', 'tree_sway_lab.full.assembly:full_bank', GROUP)
-installed_models().setdefault('full', _FULL)
+if importlib.util.find_spec('tree_sway_lab') is not None:
+    _FULL = EntryPoint('full', 'tree_sway_lab.full.assembly:full_bank', GROUP)
+    installed_models().setdefault('full', _FULL)
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -50,7 +50,12 @@ _FIRST_PORT, _PORTS_OF_DOMAIN = 7400, 250
 """Ports of RTPS: of domain 0, and of each domain."""
 
 
-LONG_FOLDERS = [Path(__file__).parent / 'lab' / 'test' / name for name in ('battery', 'methods')]
+ROOT = Path(__file__).parent
+
+CORE_FOLDERS = [ROOT / 'test' / name for name in ('core', 'growth')]
+"""The suite of the core, which passes without any annex."""
+
+LONG_FOLDERS = [ROOT / 'lab' / 'test' / name for name in ('battery', 'methods')]
 """Tests of integrators that no product runs; each compiles kernels of its own."""
 
 
@@ -77,8 +82,10 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark what opens a page in Chromium and what is long by its folder, before any is chosen."""
+    """Mark tests of the core, those that open Chromium, and long ones, before any is chosen."""
     for item in items:
+        if any(item.path.is_relative_to(folder) for folder in CORE_FOLDERS):
+            item.add_marker('core')
         if 'one_chromium' in getattr(item, 'fixturenames', ()):
             item.add_marker('browser')
         if any(item.path.is_relative_to(folder) for folder in LONG_FOLDERS):
@@ -237,6 +244,8 @@ def _lacks(error):
 def installed():
     """Give a function that skips a test of a command whose modules are not installed."""
 
+    from tree_sway.commands import cli
+
     def check(*words):
         table, group = cli._table(words[0])
         command = words[bool(group)]
@@ -249,93 +258,6 @@ def installed():
             pytest.importorskip('geometry_msgs', reason='ROS 2 is not installed')
 
     return check
-
-
-def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species='broadleaf'):
-    """One straight branch of even taper, cut in equal segments."""
-    along = np.asarray(direction) / np.linalg.norm(direction)
-    nodes = np.linspace(0.0, length, cuts + 1)[:, None] * along
-    thick = np.linspace(base, base if tip is None else tip, cuts + 1)
-    return tree_from_segments(
-        nodes[:-1],
-        nodes[1:],
-        np.stack([thick[:-1], thick[1:]], axis=1),
-        parent=np.arange(-1, cuts - 1),
-        species=species,
-    )
-
-
-class _Sketch:
-    """A tree drawn branch by branch, each an arc of even taper."""
-
-    def __init__(self):
-        self.start, self.end, self.diameter, self.parent, self.branch = [], [], [], [], []
-        self.nodes = []
-
-    def add(self, seat, node, direction, length, base, tip, cuts, sag=0.0):
-        """Add a branch on a node of another (None for the stem); returns its number."""
-        number = len(self.nodes)
-        root = np.zeros(3) if seat is None else self.nodes[seat][1][node]
-        along = np.asarray(direction, float) / np.linalg.norm(direction)
-        u = np.linspace(0.0, 1.0, cuts + 1)[:, None]
-        nodes = root + length * (u * along + sag * u**2 * np.array([0.3, 0.2, -1.0]))
-        thick = np.linspace(base, tip, cuts + 1)
-        first = len(self.start)
-        on = -1 if seat is None else self.nodes[seat][0] + node - 1
-        self.start += list(nodes[:-1])
-        self.end += list(nodes[1:])
-        self.diameter += list(np.stack([thick[:-1], thick[1:]], axis=1))
-        self.parent += [on, *range(first, first + cuts - 1)]
-        self.branch += [number] * cuts
-        self.nodes.append((first, nodes))
-        return number
-
-    def tree(self, **changes):
-        given = {'parent': np.array(self.parent), 'branch': np.array(self.branch)} | changes
-        return tree_from_segments(self.start, self.end, self.diameter, **given)
-
-
-def _fork(fine=1):
-    """Stem, two limbs and a twig, none in one plane, the limbs bent; cut `fine` times finer."""
-    s = _Sketch()
-    stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, 4 * fine, sag=0.05)
-    limb = s.add(stem, 2 * fine, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, 3 * fine, sag=0.08)
-    s.add(stem, 4 * fine, (-0.5, 0.8, 0.7), 0.8, 0.011, 0.005, 2 * fine)
-    s.add(limb, 2 * fine, (0.4, 1.0, 0.2), 0.4, 0.006, 0.003, 2 * fine, sag=-0.05)
-    return s.tree()
-
-
-def _mirror_fork():
-    """Make a tree that is its own mirror image in the plane y = 0, and each segment's partner."""
-    s = _Sketch()
-    stem = s.add(None, 0, (0.1, 0.0, 1.0), 1.5, 0.02, 0.01, 3)
-    for side in (1.0, -1.0):
-        limb = s.add(stem, 2, (0.4, side, 0.6), 0.7, 0.010, 0.005, 2)
-        s.add(limb, 1, (1.0, 0.5 * side, 0.8), 0.3, 0.005, 0.003, 1)
-    s.add(stem, 3, (-1.0, 0.0, 0.5), 0.5, 0.008, 0.004, 2)
-    tree = s.tree()
-    image = tree.start * [1.0, -1.0, 1.0] + tree.end * [1.0, -1.0, 1.0]
-    gap = np.linalg.norm(image[:, None] - (tree.start + tree.end)[None], axis=2)
-    assert gap.min(axis=1).max() < 1e-12
-    return tree, gap.argmin(axis=1)
-
-
-def _random_tree(seed, n=12):
-    """Segments in random order on earlier ones' ends; returns start, end, diameter, parent."""
-    rng = np.random.default_rng(seed)
-    start, end = np.zeros((n, 3)), np.zeros((n, 3))
-    parent = np.full(n, -1)
-    end[0] = (0.0, 0.0, 1.0)
-    for i in range(1, n):
-        parent[i] = rng.integers(max(0, i - 4), i)
-        start[i] = end[parent[i]]
-        step = rng.normal(size=3) + np.array([0.0, 0.0, 0.5])
-        end[i] = start[i] + rng.uniform(0.1, 0.6) * step / np.linalg.norm(step)
-    diameter = rng.uniform(0.002, 0.02, n)
-    order = rng.permutation(n)
-    place = np.argsort(order)
-    parents = np.where(parent[order] < 0, -1, place[parent[order]])
-    return start[order], end[order], diameter[order], parents
 
 
 def _differences(f, at, h=1e-3):
@@ -354,13 +276,13 @@ def _shared(function):
     return pytest.fixture(scope='session', name=name)(lambda: function)
 
 
-stem = _shared(_stem)
-fork = _shared(_fork)
-mirror_fork = _shared(_mirror_fork)
-random_tree = _shared(_random_tree)
+stem = _shared(drawn_trees.stem)
+fork = _shared(drawn_trees.fork)
+mirror_fork = _shared(drawn_trees.mirror_fork)
+random_tree = _shared(drawn_trees.random_tree)
 differences = _shared(_differences)
 
 
 @pytest.fixture(scope='session')
 def sketch():
-    return _Sketch
+    return drawn_trees.Sketch

@@ -64,6 +64,7 @@ NEEDS = {
     **dict.fromkeys(('ruff', 'mypy', 'codespell', 'clang-format', 'pre-commit'), ('lint',)),
     'sphinx-build': ('docs',),
     'python setup.py': ('wasm',),
+    'python .ci/without_annexes.py': ('test',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
 NEEDS_OF_FILES = {

@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulators import MODELS, OBSERVED, swaying
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.settings import MODELS, Settings
+from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree_state import digest_of
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import StateError
-from tree_sway.twin.observed_tree import ObservedTree
 
 DT = 1.0 / 60.0
 
@@ -25,12 +25,10 @@ def winds(n, seed=4):
     return np.array([5.0, 1.0, 0.2]) + np.cumsum(rng.normal(0.0, 0.5, (n, 3)), axis=0)
 
 
-@pytest.fixture(scope='module', params=[0, 6, 60, *MODELS, 'observed'])
+@pytest.fixture(scope='module', params=[0, 6, 60, *MODELS, *OBSERVED])
 def tree_on(request, fork):
     tree = fork()
-    if request.param == 'observed':
-        return lambda: ObservedTree(tree, at={'phone': 'stem:0.5'})
-    return lambda: make_simulator(tree, species_named(tree.species), model=request.param)
+    return lambda: swaying(tree, request.param)
 
 
 def test_a_simulator_goes_on_from_a_state_bit_for_bit(tree_on):
@@ -122,7 +120,7 @@ def test_values_that_differ_have_different_digests():
     assert len({digest_of(each) for each in given}) == len(given)
 
 
-@pytest.mark.parametrize('model', ['branch', 12, 'full', 'auto'])
+@pytest.mark.parametrize('model', [12, *MODELS])
 def test_a_state_of_a_tree_that_is_tuned_otherwise_is_refused(tree_of, model):
     sim, other = (make_simulator(tree_of, model=model) for _ in range(2))
     sim.tune(stiffness_factor=3.0)

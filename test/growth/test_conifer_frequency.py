@@ -20,7 +20,7 @@ from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named
 from tree_sway.growth.growing import grow
 
-FEW = {('spruce', 10.0), ('pine', 30.0), ('fir', 20.0), ('larch', 20.0)}
+FEW = {('spruce', 10.0)}
 LONG, FAST = (
     pytest.mark.long,
     pytest.mark.xfail(strict=True, reason='firs and larches of 10 m are 16 % too fast'),

@@ -5,11 +5,11 @@
 from collections.abc import Callable
 from functools import cache
 
+from drawn_trees import branch_order
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.species.species import species_named

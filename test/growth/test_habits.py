@@ -4,9 +4,9 @@
 
 from itertools import combinations
 
+from drawn_trees import branch_order
 import numpy as np
 import pytest
-from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
@@ -154,6 +154,7 @@ def outline(species: str) -> tuple[np.ndarray, float]:
     return np.mean(widths, axis=0), float(np.mean(rises))
 
 
+@pytest.mark.long
 def test_silhouettes_differ() -> None:
     """By the outline, a tenth of the width at least, or by twigs that hang or rise."""
     # Species without a form of their own grow as their group.

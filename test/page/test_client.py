@@ -442,3 +442,12 @@ def test_the_offset_is_the_least_of_the_last_half_minute() -> None:
     assert clock.value == pytest.approx(2.0)
     clock.add(200.0, 202.5)
     assert clock.value == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    ('address', 'changes'),
+    [(None, {}), ('http://there', {'rate': '3'}), ('http://there', {'delay': -1.0})],
+)
+def test_what_a_client_cannot_take_is_refused(address, changes):
+    with pytest.raises(ParameterError):
+        StreamClient(address, **changes)

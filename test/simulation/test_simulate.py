@@ -4,15 +4,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import io
 import sys
 from types import SimpleNamespace
 
+from drawn_trees import SETTINGS, weeping, WOOD
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
@@ -165,3 +169,25 @@ def test_a_gap_of_a_record_is_clamped_then_fades(stem):
     exact = 8.0 * np.exp(-(ends[fading] - 0.05 - 4.95 - 2.0) / 3.0)
     np.testing.assert_allclose(means[fading], exact, atol=0.02)
     np.testing.assert_allclose(means[ends > 25.7], 8.0)  # faded in over half a second
+
+
+def test_a_record_says_that_steps_stayed_clamped(fork, monkeypatch):
+    from tree_sway.core.setup import load_table
+
+    wind = np.tile((9.0, 1.0, 0.0), (200, 1))
+    assert simulate(fork(), wind, model=12, cache=None).notes == ()
+    monkeypatch.setattr(load_table, '_MOST_ENERGY', 1e-9)
+    record = simulate(fork(), wind, model=12, cache=None)
+    assert 'stayed clamped' in record.notes[0]
+
+
+def test_a_record_says_how_many_coordinates_were_left_out():
+    record = simulate(weeping(3), np.full((9, 3), 2.0), settings=SETTINGS)
+    assert ' of 60 coordinates are solved' in ''.join(record.notes)
+
+
+def test_a_limp_tree_without_inertia_says_so():
+    model = prepare(weeping(), WOOD, SETTINGS, model=40)
+    rig = Rig(weeping(), model=12)
+    rig.simulator = SwaySimulator(replace(model, segment_mass=0.0 * model.segment_mass))
+    assert 'no inertia to solve with' in ' '.join(rig.run(np.full((9, 3), 2.0)).notes)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from simulators import FULL
 
 from tree_sway.core.drag.drag_law import AIR_DENSITY, drag_density
 from tree_sway.core.model.branch_blocks import BranchBlocks
@@ -133,7 +134,7 @@ def test_levers_are_those_of_the_load(stem):
     assert push * flow == pytest.approx(4.0 * 104.0 / 405.0, rel=1e-9)
 
 
-@pytest.mark.parametrize('model', ['branch', 'full'])
+@pytest.mark.parametrize('model', ['branch', *FULL])
 def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     """
     A cantilever that swings freely loses in each cycle what the drag of its pieces takes.

@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
+from drawn_trees import crown
 import numpy as np
 import pytest
-from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.fidelity.adaptive import LEAVE_IN, REVIEW
-from tree_sway.core.run.simulator import RESTARTED
+from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
@@ -17,7 +17,7 @@ from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import StateError
 
 DT = 1.0 / 60.0
-TREE = bench_tree()
+TREE = crown()
 
 
 def adaptive(tolerance, **changes):
@@ -127,7 +127,7 @@ def test_a_motion_that_is_not_finite_is_counted_and_goes_on_from_rest():
     sim = adaptive(0.005)
     sim.step((5.0, 0.0, 0.0), DT)
     sim.banks[0].oscillators.swing[0][:] = np.nan
-    assert sim.step((5.0, 0.0, 0.0), DT) & RESTARTED
+    assert sim.step((5.0, 0.0, 0.0), DT) & Outcome.RESTARTED
     assert sim.counts.restarted == 1
     assert np.isfinite(sim.place()).all()
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from drawn_trees import crown
 import numpy as np
 import pytest
-from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.fidelity.estimate import ErrorEstimator, frame_cost
+from tree_sway.core.fidelity.estimate import ErrorEstimator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
@@ -21,7 +21,7 @@ DT = 1.0 / 60.0
 
 @pytest.fixture(scope='module')
 def sim():
-    return make_simulator(bench_tree())
+    return make_simulator(crown())
 
 
 @pytest.fixture(scope='module')
@@ -89,7 +89,7 @@ def test_still_air_and_a_wind_straight_up_is_no_calm(estimator):
 
 
 def test_estimates_are_those_of_the_tree_as_it_is_tuned():
-    sim = make_simulator(bench_tree(), model='auto')
+    sim = make_simulator(crown(), model='auto')
     climate = climate_of(6.0)
     before = sim.estimates(climate)
     sim.tune(stiffness_factor=3.0)
@@ -97,10 +97,3 @@ def test_estimates_are_those_of_the_tree_as_it_is_tuned():
         sim.step((2.0, 0.0, 0.0), DT)
     after = sim.estimates(climate)
     assert all(b.error < 0.6 * a.error for a, b in zip(before, after, strict=True))
-
-
-def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch():
-    few, all_of_them = (
-        frame_cost(make_simulator(bench_tree(), model=model).banks[0]) for model in (6, 'full')
-    )
-    assert few < all_of_them

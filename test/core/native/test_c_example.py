@@ -8,14 +8,13 @@ from pathlib import Path
 import shutil
 import subprocess
 
+from drawn_trees import weeping
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.kinds import kind_called
 
 from tree_sway.core.native.library import FILE
+from tree_sway.core.native.model import bytes_of
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.errors import ParameterError
-from tree_sway.files.models.model_writer import write_native_model
 
 ROOT = Path(__file__).parents[3]
 SOURCE = ROOT / 'examples' / 'native' / 'sway.c'
@@ -36,11 +35,11 @@ def program(tmp_path_factory):
 
 @pytest.mark.parametrize('kind', ['fork', 'limp'])
 def test_it_gives_the_poses_of_python(fork, program, tmp_path, kind):
-    tree = fork() if kind == 'fork' else kind_called('reeds')
+    tree = fork() if kind == 'fork' else weeping(twigs=3)
     simulator = make_simulator(tree, model=12)
     assert simulator.models[0].is_limp == (kind == 'limp')
     path = tmp_path / 'tree.sway'
-    write_native_model(path, simulator.models[0])
+    path.write_bytes(bytes_of(simulator.models[0].native_arrays()))
     done = subprocess.run([program, path], capture_output=True, text=True, check=True, timeout=60)
     found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
     expected = []
@@ -53,14 +52,9 @@ def test_it_gives_the_poses_of_python(fork, program, tmp_path, kind):
 
 def test_a_damaged_file_is_refused_by_name(fork, program, tmp_path):
     path = tmp_path / 'fork.sway'
-    write_native_model(path, make_simulator(fork(), model=12).models[0])
-    path.write_bytes(path.read_bytes()[:5000])
+    arrays = make_simulator(fork(), model=12).models[0].native_arrays()
+    path.write_bytes(bytes_of(arrays)[:5000])
     done = subprocess.run([program, path], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert "array '" in done.stderr
     assert 'cut off' in done.stderr
-
-
-def test_a_model_without_a_table_is_refused(fork, tmp_path):
-    with pytest.raises(ParameterError, match='has no table'):
-        write_native_model(tmp_path / 'x.sway', make_simulator(fork(), model='branch').models[0])

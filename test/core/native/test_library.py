@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import ctypes
 import math
-from pathlib import Path
 import re
 
+from native_headers import fields_of, HEADER, LIBRARY_HEADER, NATIVE
 import numpy as np
 import pytest
 
@@ -19,35 +19,8 @@ from tree_sway.core.native.library import contiguous, LIBRARY, SIGNATURES, VERSI
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
-from tree_sway.twin.sample_ring import _RING, CAPACITY
-from tree_sway.twin.sensor_readings import _KEPT, LATEST
-
-NATIVE = Path(__file__).parents[3] / 'native'
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
-
-
-def code_of(name: str) -> str:
-    """Return a header without its comments."""
-    return re.sub(r'/\*.*?\*/', '', (NATIVE / name).read_text(encoding='utf-8'), flags=re.S)
-
-
-HEADER = code_of('sway.h')
-LIBRARY_HEADER = code_of('library.h')
-
-
-def fields_of(structure: str) -> list[tuple[str, bool, int]]:
-    """Return name, whether it is a number, and count of each field of a structure."""
-    body = LIBRARY_HEADER.partition(f'struct {structure} {{')[2].partition('}')[0]
-    body = body.replace('SWAY_RING', str(CAPACITY))
-    found = []
-    for line in filter(None, map(str.strip, body.split(';'))):
-        of, names = re.match(r'((?:const )?\w+\b(?: \*const)?) ?(.*)', line, re.S).groups()
-        for name in names.split(','):
-            sizes = [int(each) for each in re.findall(r'\[(\d+)\]', name)]
-            is_number = of == 'double' and '*' not in name
-            found.append((re.search(r'\w+', name)[0], is_number, math.prod(sizes)))
-    return found
 
 
 def kind(declared: str) -> object:
@@ -109,17 +82,12 @@ def test_structures_of_branches_are_those_of_the_header() -> None:
 
 
 def test_structures_are_those_of_the_header() -> None:
-    for name, number in {'RING': CAPACITY, 'SLOTS': _KEPT, 'LATEST': LATEST}.items():
-        assert f'enum {{ SWAY_{name} = {number} }};' in LIBRARY_HEADER
     structures = Structure.__subclasses__()
     assert len(structures) == 5
     for each in structures:
         name = each.__name__.replace('Native', 'sway_').lower()
         own = [(field, kind is ctypes.c_double, 1) for field, kind in each._fields_]
         assert own == fields_of(name), name
-    assert fields_of('sway_ring') == [
-        (name, of.base.kind == 'f', math.prod(of.shape)) for name, (of, _) in _RING.fields.items()
-    ]
 
 
 def test_the_list_of_arrays_is_that_of_the_model() -> None:

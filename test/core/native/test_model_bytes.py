@@ -7,9 +7,9 @@ from __future__ import annotations
 import os
 import struct
 
+from drawn_trees import weeping
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.shoots import Drawing, towards
 
 from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
@@ -20,18 +20,9 @@ TRIALS = int(os.environ.get('TREE_SWAY_TRIALS', '3000'))
 """Damaged models of a run; each that is read is stepped and placed."""
 
 
-def hanging():
-    """Draw a stem with three twigs that hang."""
-    to = Drawing(np.random.default_rng(11))
-    stem = to.shoot(np.array([0.0, 0.0, 1.0]), 3.0, (0.05, 0.03), 4)
-    for k in range(3):
-        to.shoot(towards(120.0 * k, 20.0), 1.4, (0.004, 0.002), 5, on=stem, node=3, rise=-25.0)
-    return to.tree('hanging')
-
-
 @pytest.fixture(scope='module', params=['by a table', 'at its pose'])
 def arrays(fork, request):
-    tree = fork() if request.param == 'by a table' else hanging()
+    tree = fork() if request.param == 'by a table' else weeping(twigs=3)
     found = make_simulator(tree, model=6, crown_coherence=0.5).models[0].native_arrays()
     is_stepped = NativeModel(bytes_of(found)).sizes.is_stepped
     assert is_stepped == (1 if request.param == 'by a table' else AT_POSE)

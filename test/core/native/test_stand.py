@@ -10,9 +10,9 @@ import subprocess
 import sys
 import threading
 
+from drawn_trees import weeping
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.shoots import Drawing, towards
 
 from tree_sway.core.native.library import address, Opened
 from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
@@ -37,11 +37,7 @@ def model(fork):
 
 @pytest.fixture(scope='module')
 def hanging():
-    to = Drawing(np.random.default_rng(11))
-    stem = to.shoot(np.array([0.0, 0.0, 1.0]), 3.0, (0.05, 0.03), 4)
-    for k in range(3):
-        to.shoot(towards(120.0 * k, 20.0), 1.4, (0.004, 0.002), 5, on=stem, node=3, rise=-25.0)
-    return make_simulator(to.tree('hanging'), model=6).models[0]
+    return make_simulator(weeping(twigs=3), model=6).models[0]
 
 
 @pytest.mark.parametrize(
@@ -115,9 +111,11 @@ def last():
         simulators[0].step((5.0, 0.0, 0.0), 1 / 60)
     print(np.isfinite(simulators[0].place()).all())
 atexit.register(last)
-from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
-simulators.append(make_simulator(builtin_tree('goldcrest'), model=6))
+from tree_sway.core.tree.building import tree_from_segments
+ends = np.outer(np.arange(4), [0.0, 0.0, 0.5])
+tree = tree_from_segments(ends[:-1], ends[1:], [0.03, 0.02, 0.01], parent=[-1, 0, 1])
+simulators.append(make_simulator(tree, model=4))
 """
 
 

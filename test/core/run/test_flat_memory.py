@@ -7,16 +7,16 @@ from __future__ import annotations
 from pathlib import Path
 import sys
 
+from drawn_trees import SETTINGS, weeping, WOOD
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.kinds import kind_called
-from tree_sway_lab.validation.trial import judged_simulator
+from simulators import FULL
 
 from tree_sway.core.scene.make import make_simulator
 
 DT = 1.0 / 60.0
 WINDS = [(5.0 + np.sin(0.1 * k), np.cos(0.07 * k), 0.1) for k in range(200)]
-MODELS = (12, 'full', 'branch')
+MODELS = (12, 'branch', *FULL)
 
 
 def resident():
@@ -46,7 +46,7 @@ def test_no_step_asks_for_memory(fork, model):
 
 
 def test_no_step_of_a_limp_tree_asks_for_memory():
-    simulator = judged_simulator('24', kind_called('whips'))
+    simulator = make_simulator(weeping(), WOOD, SETTINGS, model=24)
     assert simulator.models[0].is_limp
     out = np.zeros((simulator.tree.n_segments, 7))
     sway(simulator, out, 2)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from simulators import FULL
 
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.settings import Settings
@@ -23,7 +24,7 @@ seeds = st.integers(0, 10**6)
 class Puppet:
     """A tree that is placed at key rotations given by hand."""
 
-    def __init__(self, tree, model='full', enrich='none'):
+    def __init__(self, tree, model=12, enrich='none'):
         chosen = Settings(model=model, enrich=enrich, gravity=0.0)
         self.tree = tree
         self.bank = bank_of(prepare(tree, species_named('broadleaf'), chosen))
@@ -70,7 +71,7 @@ def gappy_doll(gappy):
 
 
 @pytest.mark.parametrize('seed', range(2))
-@pytest.mark.parametrize('model', ['branch', 'full'])
+@pytest.mark.parametrize('model', ['branch', 12, *FULL])
 def test_at_rest_the_poses_are_the_input(random_tree, model, seed):
     tree = tree_from_segments(*random_tree(seed, 25)[:3])
     doll = Puppet(tree, model)

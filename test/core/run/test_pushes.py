@@ -4,25 +4,18 @@
 
 from __future__ import annotations
 
-from functools import cache
-
+from drawn_trees import crown, Sketch, towards, UP, WOOD
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tree_sway_lab.bench.bench_tree import bench_tree
-from tree_sway_lab.kinds.kinds import kind_called
-from tree_sway_lab.validation.truth import WOOD
+from simulators import FULL
 
+from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring, Touch
-from tree_sway.core.run.simulator import LOAD_CLAMPED
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.errors import ParameterError
-from tree_sway.files.trees.source import open_scene
-from tree_sway.stream.placing import Placer
-from tree_sway.stream.protocol import decode_description, decode_frame
-from tree_sway.stream.scene_state import SceneState
+from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
 CALM = (0.0, 0.0, 0.0)
@@ -32,7 +25,16 @@ SETTLING, DAMPING = 5.0, 0.3
 
 @pytest.fixture(scope='module')
 def tree():
-    return bench_tree()
+    return crown()
+
+
+def fronds():
+    """Draw a bare stem with arching fronds at its top."""
+    to = Sketch(1)
+    to.shoot(None, 0, UP, 8.0, 0.15, 0.11, 10)
+    for k in range(5):
+        to.shoot(0, -1, towards(72.0 * k, 15.0 * k), 2.5, 0.030, 0.006, 7, rise=-11.0)
+    return to.tree()
 
 
 def place_of(poses, tree, segment, along=0.5):
@@ -52,12 +54,12 @@ def outer_segment(tree):
     return int(tree.branch_first[-2] + 2)
 
 
-@pytest.mark.parametrize(('name', 'along'), [('bench', 0.0), ('bench', 0.3), ('palm', 1.0)])
+@pytest.mark.parametrize(('name', 'along'), [('crown', 0.0), ('crown', 0.3), ('frond', 1.0)])
 def test_moments_are_the_derivatives_of_places(tree, name, along):
-    if name == 'palm':  # whose branches are cut, as of the other the stem alone
-        tree = kind_called('palm')
-    sim = make_simulator(tree, WOOD, model='full')
-    assert (len(sim.banks[0].branches) > tree.n_branches + 1) == (name == 'palm')
+    if name == 'frond':  # whose branches are cut, as of the other the stem alone
+        tree = fronds()
+    sim = make_simulator(tree, WOOD, model=60)
+    assert (len(sim.banks[0].branches) > tree.n_branches + 1) == (name == 'frond')
     for _ in range(90):
         sim.step((14.0, 5.0, 1.0), DT)
     x = 5.0 * sim.rotations()
@@ -80,42 +82,17 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
         np.testing.assert_allclose(force @ push.lever, by_differences, atol=1e-3 * largest)
 
 
-FORCE = np.array([3.0, 1.0, -0.5])
-
-
-@cache
-def held_back(model):
-    """Simulate a tree that hangs at rest from a force on its outer segment."""
-    sim = make_simulator(bench_tree(), WOOD, model=model)
-    for _ in range(round(15.0 / DT)):
-        sim.push(outer_segment(sim.tree), FORCE, 1.0)
+@pytest.mark.parametrize('model', [60, 'auto'])
+def test_the_foot_holds_the_force(tree, model):
+    segment, force = outer_segment(tree), np.array([3.0, 1.0, -0.5])
+    sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
+    for _ in range(round(SETTLING / DT)):
+        sim.push(segment, force, 1.0)
         sim.step(CALM, DT)
-    return sim
-
-
-@pytest.mark.parametrize('model', [60, 'auto', 'full'])
-def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model):
-    segment, sim = outer_segment(tree), held_back(model)
-    truth, found = moved(held_back('full'), segment), moved(sim, segment)
-    assert np.linalg.norm(found - truth) < 0.05 * np.linalg.norm(truth)
-    assert found @ FORCE > 0.0
-    np.testing.assert_allclose(sim.push_load[:3], FORCE)
+    assert moved(sim, segment) @ force > 0.0
+    np.testing.assert_allclose(sim.push_load[:3], force)
     arm = place_of(sim.place(), tree, segment) - tree.start[0]
-    np.testing.assert_allclose(sim.push_load[3:], np.cross(arm, FORCE), rtol=1e-3)
-
-
-def test_a_pull_moves_a_tree_further_than_any_wind_may():
-    tree, segment, force = kind_called('leaning'), 7, np.array([8000.0, 2400.0, 0.0])
-    table, truth = (make_simulator(tree, WOOD, model=each) for each in (60, 'full'))
-    for _ in range(round(5.0 / DT)):
-        for sim in (table, truth):
-            sim.push(segment, force, 1.0)
-            sim.step(CALM, DT)
-    model, eta = table.models[0], table.banks[0].oscillators.swing[0]
-    assert model.stiffness @ eta**2 > model.most_energy
-    there = moved(truth, segment)
-    assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
-    assert table.counts.clamped == 0
+    np.testing.assert_allclose(sim.push_load[3:], np.cross(arm, force), rtol=1e-3)
 
 
 def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
@@ -146,26 +123,11 @@ def test_it_acts_for_its_time_then_swings_freely(tree):
     assert 0.0 < max(own_chord[-120:]) < 0.1 * max(own_chord)
 
 
-def test_in_wind_it_adds_to_what_the_wind_does(tree):
-    segment = outer_segment(tree)
-    moves = []
-    for model in ('full', 60):
-        rests = []
-        for force in (0.0, 3.0):
-            sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
-            for _ in range(round(SETTLING / DT)):
-                sim.push(segment, (0.0, force, 0.0), 1.0)
-                sim.step((6.0, 0.0, 0.0), DT)
-            rests.append(moved(sim, segment))
-        moves.append(rests[1] - rests[0])
-    assert np.linalg.norm(moves[1] - moves[0]) < 0.1 * np.linalg.norm(moves[0])
-
-
 def test_a_force_beyond_bounds_is_clamped_and_counted(tree):
     sim = make_simulator(tree, WOOD, model=60)
     sim.push(outer_segment(tree), (1e12, 0.0, -1e12), 1.0)
     statuses = {sim.step(CALM, DT) for _ in range(60)}
-    assert LOAD_CLAMPED in statuses
+    assert Outcome.LOAD_CLAMPED in statuses
     assert sim.counts.clamped > 0
     assert np.isfinite(sim.place()).all()
 
@@ -213,7 +175,7 @@ def test_a_reset_ends_every_push(tree):
     assert not sim.rotations().any()
 
 
-@pytest.mark.parametrize('model', [60, 'full'])
+@pytest.mark.parametrize('model', [60, *FULL])
 @pytest.mark.parametrize('stiffness', [30.0, 1e6])
 def test_a_spring_holds_a_branch_between_its_rest_and_its_place(tree, model, stiffness):
     segment = outer_segment(tree)
@@ -248,16 +210,15 @@ def test_springs_that_are_none_and_pushes_that_are_too_many_are_refused(tree):
     assert sim.counts.refused_pushes == 5
 
 
-@pytest.mark.parametrize('name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)])
-def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
-    sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)
-    tree, state = sim.tree, SceneState(sim)
-    described = decode_description(state.description)
+def test_a_limb_gives_way_as_with_all_coordinates():
+    tree = builtin_tree('goldcrest')
+    sim = make_simulator(tree, model=60)
+    sim.tune(damping_ratio=0.5)
     reductions = TreeReductions(sim.tree, sim.models[0].species, sim.settings)
     factors, n_rotations = reductions.with_subtrees.reduction.factors, len(sim.rotations())
     lengths = np.add.reduceat(tree.length, tree.branch_first[:-1])
     limbs = np.flatnonzero(tree.branch_parent == 0)
-    longest = limbs[np.argsort(lengths[limbs])[::-1][:13:3]]
+    longest = limbs[np.argsort(lengths[limbs])[::-1][:7:3]]
     errors = []
     for branch in longest:
         first, end = tree.branch_first[branch : branch + 2]
@@ -275,21 +236,15 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
             for _ in range(round(SETTLING / DT)):
                 sim.push(segment, force, 1.0, along=0.0)
                 sim.step(CALM, DT)
-            frame = decode_frame(state.frame(0))
-            shape = np.concatenate([described.coordinates(frame), frame.beyond])
             goal *= 0.001 / np.linalg.norm(goal)
-            moves = [each[segment, :3] - tree.start[segment] for each in
-                     (sim.place(), Placer(described).place(shape))]  # fmt: skip
-            errors.append([np.linalg.norm(each - goal) / 0.001 for each in moves])
-    own, shown = np.max(errors, axis=0)
-    print(f'{name}: 60 coordinates are up to {own:.4f} off, as shown {shown:.4f}')
-    assert own < 0.03
-    assert shown < 0.03
+            move = sim.place()[segment, :3] - tree.start[segment]
+            errors.append(np.linalg.norm(move - goal) / 0.001)
+    assert max(errors) < 0.03
 
 
-@pytest.mark.parametrize('model', [20, 'full', 'auto'])
+@pytest.mark.parametrize('model', [20, 'auto', *FULL])
 def test_a_spring_at_the_foot_of_the_stem_moves_nothing(tree, model):
-    pulled, alone = (make_simulator(tree, WOOD, model=model) for _ in range(2))
+    pulled, alone = (make_simulator(tree, WOOD, model=model, tolerance=1e-9) for _ in range(2))
     for number in range(120):
         if number % 20 == 0:
             pulled.push(0, Spring((3.0, 0.0, 1.0), 1e6), 0.5, along=0.0)
@@ -302,7 +257,7 @@ def test_a_spring_at_the_foot_of_the_stem_moves_nothing(tree, model):
 @pytest.mark.parametrize('stiffness', [1e-12, 50.0, 1e7])
 @pytest.mark.parametrize('far', [0.0, 1e5])
 def test_a_spring_at_any_segment_and_place_leaves_the_motion_finite(stiffness, far):
-    tree = bench_tree(3, (3, 3, 3))
+    tree = crown((3, 3, 3), 3)
     sim = make_simulator(tree, WOOD, model=20)
     for segment in range(tree.n_segments):
         for along in (0.0, 1.0):

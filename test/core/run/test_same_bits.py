@@ -21,7 +21,7 @@ from tree_sway.growth.builtin import builtin_tree
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 tree = builtin_tree("benjamina")
-for model in (20, "full"):
+for model in ("branch", 20):
     sim, digest = make_simulator(tree, model=model), hashlib.blake2b(digest_size=8)
     for wind in np.random.default_rng(1).normal(4.0, 2.0, (100, 3)):
         sim.step(wind, 1.0 / 60.0)

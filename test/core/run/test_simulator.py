@@ -10,14 +10,14 @@ import tracemalloc
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from simulators import FULL, OBSERVED, swaying
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError, SpeciesError
 from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.twin.observed_tree import ObservedTree
 
-MOVING = [4, 'branch', 'full', 'observed']
+MOVING = [4, 'branch', *FULL, *OBSERVED]
 FEW = pytest.mark.xfail(
     strict=True, reason='few coordinates are chosen by winds that are not mirrored in this plane'
 )
@@ -43,12 +43,6 @@ def model(request):
     return request.param
 
 
-def swaying(tree, model, **changes):
-    if model == 'observed':
-        return ObservedTree(tree, at={'phone': 'stem:0.5'}, model=4, **changes)
-    return make_simulator(tree, model=model, **changes)
-
-
 def test_the_same_wind_gives_the_same_bits(fork, model):
     winds = gusts(100)
     one, other = (run(swaying(fork(), model), winds) for _ in range(2))
@@ -64,11 +58,6 @@ def test_without_wind_a_tree_is_exactly_at_rest(fork, model):
     assert sim.tip_displacement == pytest.approx(np.zeros(3), abs=1e-14)
 
 
-@pytest.mark.parametrize('name', BUILTIN_TREES)
-def test_a_westerly_bends_every_tree_to_the_east(name):
-    bends_east(builtin_tree(name), 6)
-
-
 @pytest.mark.parametrize('model', [0, *MOVING])
 def test_a_westerly_bends_the_tree_of_every_model_to_the_east(fork, model):
     bends_east(fork(), model)
@@ -76,7 +65,7 @@ def test_a_westerly_bends_the_tree_of_every_model_to_the_east(fork, model):
 
 @pytest.mark.long
 @pytest.mark.parametrize('name', BUILTIN_TREES)
-@pytest.mark.parametrize('model', [0, 'branch', 12, 'full'])
+@pytest.mark.parametrize('model', [0, 'branch', 6, 12, *FULL])
 def test_a_westerly_bends_every_tree_on_every_model_to_the_east(name, model):
     bends_east(builtin_tree(name), model)
 
@@ -95,7 +84,7 @@ def bends_east(tree, model, **changes):
     assert mean[0] > 5.0 * abs(mean[1])
 
 
-@pytest.mark.parametrize('model', ['branch', pytest.param(4, marks=FEW), 'full'])
+@pytest.mark.parametrize('model', ['branch', pytest.param(4, marks=FEW), *FULL])
 def test_mirrored_wind_gives_mirrored_motion(mirror_fork, model):
     tree, partner = mirror_fork()
     mirror = np.array([1.0, -1.0, 1.0])
@@ -107,11 +96,8 @@ def test_mirrored_wind_gives_mirrored_motion(mirror_fork, model):
 
 
 @pytest.mark.parametrize('heading', [0.7, np.pi])
-@pytest.mark.parametrize(
-    ('model', 'within', 'gravity'),
-    [('branch', 1e-12, 9.81), ('full', 1e-12, 9.81)],
-)
-def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, heading):
+@pytest.mark.parametrize('model', ['branch', *FULL])
+def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, heading):
     tree = fork()
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -123,10 +109,10 @@ def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, 
         branch=tree.branch_of_segment,
     )
     winds = gusts(60)
-    one, other = (swaying(t, model, gravity=gravity) for t in (tree, turned))
+    one, other = (swaying(t, model) for t in (tree, turned))
     moved = run(one, winds)[:, :, :3]
     assert np.ptp(moved, axis=0).max() > 5e-3
-    assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=within)
+    assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=1e-12)
 
 
 @pytest.mark.usefixtures('memory_alone')
@@ -213,8 +199,8 @@ def test_place_writes_where_it_is_reported(fork):
 
 
 def test_what_it_says_of_the_tree(fork):
-    sim = swaying(fork(), 'full', leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
-    assert sim.model == 'full'
+    sim = swaying(fork(), 8, leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
+    assert sim.model == '8'
     assert sim.mass == pytest.approx(900.0 * sim.tree.volume.sum() + 0.3)
     assert (np.diff(sim.frequencies()) >= 0).all()
     assert len(sim.frequencies(3)) == 3

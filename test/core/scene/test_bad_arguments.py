@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulators import FULL, MODELS, OBSERVED, swaying
 
 from tree_sway.core.checks import LONGEST_STEP
-from tree_sway.core.run.simulator import RESTARTED
+from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -20,15 +21,10 @@ from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError, StateError, TreeError
-from tree_sway.files.models.model_writer import write_model
 from tree_sway.growth.growing import grow
-from tree_sway.simulation.rig import simulate
-from tree_sway.stream.client import StreamClient
-from tree_sway.twin.identification.calibration import calibrate
-from tree_sway.twin.observed_tree import ObservedTree
 
 DT = 1.0 / 60.0
-KINDS = (0, 4, 'branch', 'full', 'auto', 'forest', 'observed')
+KINDS = (0, 4, 'branch', 'auto', 'forest', *FULL, *OBSERVED)
 
 
 def simulator(tree, kind, **changes):
@@ -36,7 +32,7 @@ def simulator(tree, kind, **changes):
     if kind == 'auto':
         return make_simulator(tree, wood, Settings(**(changes | {'model': 'auto'})))
     if kind == 'observed':
-        return ObservedTree(tree, wood, at={'phone': 'stem:0.5'}, **changes)
+        return swaying(tree, kind, **changes)
     if kind == 'forest':
         return Scene([PlacedTree('one', tree), PlacedTree('two', tree, 3.0)]).simulator()
     return make_simulator(tree, wood, Settings(model=kind, **changes))
@@ -123,14 +119,14 @@ def test_leaves_are_one_number_per_branch(fork, kind, name):
     simulator(fork(), kind, **{name: [0.1] * n})
 
 
-@pytest.mark.parametrize('model', ['branch', 12, 'full'])
+@pytest.mark.parametrize('model', ['branch', 12, *FULL])
 def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
     sim = simulator(fork(), model)
     sim.step((5.0, 0.0, 0.0), DT)
     for array in sim.banks[0].oscillators.memory():
         if array.dtype.kind == 'f':
             array.flat[0] = np.nan
-    assert sim.step((5.0, 0.0, 0.0), DT) & RESTARTED
+    assert sim.step((5.0, 0.0, 0.0), DT) & Outcome.RESTARTED
     assert sim.counts.restarted == 1
     assert np.isfinite(sim.place()).all()
     for _ in range(60):
@@ -138,7 +134,7 @@ def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
     assert sim.tip_displacement[0] > 0.0
 
 
-@pytest.mark.parametrize('model', ['branch', 12, 'full'])
+@pytest.mark.parametrize('model', ['branch', 12, *FULL])
 def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
     """Half a millimetre across and a kilometre long, with its weight left out."""
     nodes = np.array([(0, 0, 0), (0, 0, 2), (0, 0, 4), (1e3, 0, 4)], float)
@@ -157,24 +153,6 @@ def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
 def test_a_wind_that_is_not_three_numbers_is_one_clear_error(sim, wind):
     with pytest.raises(ParameterError, match=r'wind: .*is not three numbers; give x, y and z'):
         sim.step(wind, DT)
-
-
-@pytest.mark.parametrize('wind', ['wind.csv', 'canopy', [['a', 'b', 'c']], [[1.0], [2.0, 3.0]]])
-def test_what_is_no_wind_is_refused_with_a_cure(fork, wind):
-    with pytest.raises(ParameterError, match=r'no wind; open a file by read_wind'):
-        simulate(fork(), wind, model=2)
-
-
-@pytest.mark.parametrize('wind', [5.0, np.nan, np.zeros((5, 7)), [[1.0, 2.0]]])
-def test_a_wind_of_another_shape_is_refused(fork, wind):
-    with pytest.raises(ParameterError, match=r'wind (of shape|that is not finite)'):
-        simulate(fork(), wind, model=2)
-
-
-@pytest.mark.parametrize('branches', ['stem', ['b1'], [0.5], 3])
-def test_branches_that_are_no_numbers_are_refused(fork, branches):
-    with pytest.raises(ParameterError, match='not numbers of branches'):
-        simulate(fork(), np.zeros((3, 3)), model=2, branches=branches)
 
 
 @pytest.mark.parametrize('count', [0, -1, np.nan, 'all', 2.5, True])
@@ -198,7 +176,7 @@ def test_a_number_in_place_of_segments_is_one_clear_error(value):
         tree_from_segments(value, [[0.0, 0.0, 1.0]], [0.1])
 
 
-@pytest.mark.parametrize('model', [4, 'full', 'branch', 'auto'])
+@pytest.mark.parametrize('model', [4, *MODELS])
 def test_a_tree_without_any_drag_stays_at_rest(fork, model):
     wood = replace(species_named('broadleaf'), bare_drag_coefficient=0.0)
     sim = make_simulator(fork(), wood, Settings(model=model, gravity=0.0))
@@ -215,13 +193,11 @@ NO_NUMBERS = ('3', None, b'3', [1.0], {}, 1j)
 def test_what_is_no_number_is_named(fork, value):
     sim = simulator(fork(), 2)
     place = PlacedTree('one', fork())
-    wind = np.zeros((60, 3))
     for call in (
         lambda: sim.step((1.0, 2.0, 3.0), value),
         lambda: grow('oak', value, rng=5),
         lambda: simulate_turbulence(value, rate=10.0, duration=5.0, rng=5),
         lambda: simulate_turbulence(5.0, rate=value, duration=5.0, rng=5),
-        lambda: calibrate(fork(), None, value),
         lambda: make_simulator(fork(), model='auto', tolerance=value),
         lambda: make_simulator(fork(), model='auto', budget=value),
         lambda: Settings(gravity=value),
@@ -231,7 +207,6 @@ def test_what_is_no_number_is_named(fork, value):
         lambda: Scene([place]).moved(value),
         lambda: WindAverage().add(value, (1.0, 2.0, 3.0)),
         lambda: WindAverage().mean(value, 2.0),
-        lambda: simulate(fork(), wind, model=2, rate=value),
     ):
         with pytest.raises(ParameterError, match='is not a number'):
             call()
@@ -269,13 +244,6 @@ def test_what_is_of_another_type_is_named(fork):
         lambda: replace(place, leaf_on=-1),
         lambda: replace(place, name=None),
         lambda: Scene(None),
-        lambda: calibrate(fork(), None, 1.0, branch=3),
-        lambda: simulate(fork(), np.zeros((9, 3)), model=2, motion=3),
-        lambda: simulate(fork(), np.zeros((9, 3)), model=2, motion='a'),
-        lambda: write_model('tree.npz', fork()),
-        lambda: StreamClient(None),
-        lambda: StreamClient('http://there', rate='3'),
-        lambda: StreamClient('http://there', delay=-1.0),
     ):
         with pytest.raises(ParameterError):
             call()

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from drawn_trees import branch_order
 import numpy as np
 import pytest
-from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
 from tree_sway.core.settings import Settings

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.run.simulator import OK, WIND_REFUSED
+from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -47,7 +47,7 @@ def test_one_tree_at_the_anemometer_moves_as_alone(fork):
         make_simulator(tree, model='branch'),
     )
     for wind in gusts(120):
-        assert forest.step(wind, DT) == alone.step(wind, DT) == OK
+        assert forest.step(wind, DT) == alone.step(wind, DT) == Outcome.OK
         assert forest.place() == pytest.approx(alone.place(), abs=1e-12)
     assert forest.simulators[0].tip_displacement == pytest.approx(
         alone.tip_displacement, abs=1e-12
@@ -66,7 +66,7 @@ def test_a_turned_tree_moves_as_alone_in_the_turned_wind(fork, yaw, x, y, model)
 
 
 def test_a_turned_tree_of_all_coordinates_moves_as_alone(fork):
-    _turned_moves_as_alone(fork, 1.0, 0.0, 0.0, 'full')
+    _turned_moves_as_alone(fork, 1.0, 0.0, 0.0, 12)
 
 
 def _turned_moves_as_alone(fork, yaw, x, y, model):
@@ -137,7 +137,7 @@ def test_a_wind_that_cannot_be_is_refused_and_forgotten(fork, bad):
     winds = gusts(200)
     for i, wind in enumerate(winds):
         status = forests[0].step(bad if i == 50 else wind, DT)
-        assert status == (WIND_REFUSED if i == 50 else OK)
+        assert status == (Outcome.WIND_REFUSED if i == 50 else Outcome.OK)
         forests[1].step(winds[49] if i == 50 else wind, DT)
     assert forests[0].counts.refused == 1
     assert forests[0].counts.steps == 200
@@ -194,7 +194,7 @@ def test_every_tree_finds_the_model_it_needs(fork, stem):
     chosen = [each.choice.name for each in forest.simulators]
     assert chosen[1] == '0'
     assert int(chosen[0]) > 3
-    assert forest.step((6.0, 0.0, 0.0), DT) == OK
+    assert forest.step((6.0, 0.0, 0.0), DT) == Outcome.OK
     assert forest.simulators[0].simulators == (forest.simulators[0],)
 
 

@@ -5,28 +5,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.shard import shard_of
 from tree_sway.errors import ParameterError
-from tree_sway.files.trees.source import open_scene
-
-DATA = Path(__file__).parents[2] / 'files' / 'data'
-KINDS = {'pine': 'seedling.yaml', 'oak': 'segments.csv'}
-ROWS = [(4.0 * i, 3.0 * (i % 3), ('pine', 'oak')[i % 2], 1.5 + 0.1 * i) for i in range(7)]
 
 
 @pytest.fixture
-def stand(tmp_path):
-    path = tmp_path / 'stand.csv'
-    lines = [','.join(map(str, row)) for row in ROWS]
-    path.write_text('\n'.join(['x,y,species,height', *lines]) + '\n')
-    kinds = [f'  - {{species: {key}, tree: {DATA / name}}}' for key, name in KINDS.items()]
-    path.with_suffix('.yaml').write_text('\n'.join(['stand: stand.csv', 'kinds:', *kinds]) + '\n')
-    return open_scene(str(path.with_suffix('.yaml')))
+def stand(fork, stem):
+    kinds = fork(), stem()
+    trees = [
+        PlacedTree(f't{i}', kinds[i % 2], 4.0 * i, 3.0 * (i % 3), scale=1.0 + 0.1 * i)
+        for i in range(7)
+    ]
+    return Scene(trees)
 
 
 @pytest.mark.parametrize('shards', [1, 2, 3, 7])
@@ -69,6 +65,6 @@ def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
         shard_of(stand, shard, shards)
 
 
-def test_one_tree_cannot_be_divided():
+def test_one_tree_cannot_be_divided(fork):
     with pytest.raises(ParameterError, match='2 shards of 1 trees'):
-        shard_of(open_scene('benjamina'), 0, 2)
+        shard_of(Scene([PlacedTree('one', fork())]), 0, 2)

@@ -15,7 +15,6 @@ from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
-from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
 
@@ -52,9 +51,9 @@ def test_before_any_wind_it_is_calm() -> None:
     assert GustHistory([[0.0, 0.0, 0.0]]).wind_at(3.0, 4.0).tolist() == [0.0, 0.0, 0.0]
 
 
-def test_height_follows_the_profile() -> None:
+def test_height_follows_the_profile(fork) -> None:
     profile = WindProfile('log', 10.0, roughness=0.03)
-    tree = builtin_tree('goldcrest', 0)
+    tree = fork()
     one = make_simulator(tree, species_named(tree.species), model=4, profile=profile)
     two = Scene(
         [PlacedTree(name, tree, x=x) for name, x in (('a', 0.0), ('b', 5.0))], 'two', 'two'
@@ -68,8 +67,8 @@ def test_height_follows_the_profile() -> None:
         assert wind_at(simulator, (0.0, 0.0, -1.0))[0] == 0.0
 
 
-def test_a_place_that_is_none_is_refused() -> None:
-    tree = builtin_tree('goldcrest', 0)
+def test_a_place_that_is_none_is_refused(fork) -> None:
+    tree = fork()
     simulator = make_simulator(tree, species_named(tree.species), model=4)
     with pytest.raises(ParameterError, match='is no place'):
         wind_at(simulator, (0.0, np.nan, 0.0))

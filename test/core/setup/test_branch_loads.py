@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from drawn_trees import crooked
 import numpy as np
 import pytest
-from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.rotation import cross_matrix, quaternion_rotated
@@ -38,7 +38,7 @@ class Loaded:
     """A tree in a pose, that moves, in a wind of 1 kg/m^3."""
 
     def __init__(self, tree, enrich='none'):
-        chosen = Settings(model='full', enrich=enrich, gravity=0.0)
+        chosen = Settings(model=60, enrich=enrich, gravity=0.0)
         self.tree = tree
         self.branches = branch_records(prepare(tree, species_named('broadleaf'), chosen))
         self.hold()
@@ -118,7 +118,7 @@ def test_a_turned_branch_faces_the_wind_as_it_is_turned(sketch):
 
 
 def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
-    tree = crooked_tree(4)
+    tree = crooked(4)
     reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).with_subtrees
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
         true, fitted, centred = np.zeros((3, len(reduced.branches), 3))

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from drawn_trees import crooked, crown
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.kinds import kind_called
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.static_responses import WindMoments
@@ -19,7 +19,7 @@ def bent():
 
     Its branches are damped at the mean of their motion, as they are loaded.
     """
-    simulator = make_simulator(kind_called('crooked 8'), model=12)
+    simulator = make_simulator(crooked(8), model=12)
     modal = simulator.banks[0].oscillators.modal
     load = WindMoments(with_mean_damping(modal.branches))
     rng = np.random.default_rng(2)
@@ -53,7 +53,7 @@ def test_slopes_are_those_of_the_load(bent, wind):
 
 def test_the_damping_of_a_branch_alone_is_that_of_its_points():
     """One branch, whose points are damped more than its mean is."""
-    simulator = make_simulator(kind_called('straight'), model=12)
+    simulator = make_simulator(crown((3, 3, 3)), model=12)
     branches = simulator.banks[0].oscillators.modal.branches
     load, last = WindMoments(branches), branches[-1]
     key = np.zeros((load.n, 1))

@@ -4,27 +4,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.sparse import csc_matrix
-from tree_sway_lab.segments.articulated import ArticulatedTree
+from simulators import FULL
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.settings import Settings
 from tree_sway.core.setup import modes as modes_module
 from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.beams.greenhill import greenhill_length
 from tree_sway.core.setup.matrices import Factors, reduce_tree
 from tree_sway.core.setup.modes import buckling_factor, natural_modes, refuse_buckling
-from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import Species, species_named
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError, TreeError
-
-TREE_121 = Path(__file__).parents[2] / 'files' / 'data' / 'tree121.csv'
 
 
 def reduced(tree, gravity=9.81, modulus=9e9, enriched=()):
@@ -79,17 +72,16 @@ def test_lanczos_finds_what_the_dense_problem_has(sketch, monkeypatch):
     assert np.linalg.svd(overlap, compute_uv=False) == pytest.approx(np.ones(8), abs=1e-6)
 
 
-@pytest.mark.parametrize('model', ['full'])
 @pytest.mark.parametrize(('share', 'ratio'), [(0.5, 0.935), (0.9, 0.521)])
-def test_weight_slows_an_upright_stem(stem, model, share, ratio):
+def test_weight_slows_an_upright_stem(stem, share, ratio):
     """Greenhill (1881): at these shares of the length at which it buckles."""
     tree, wood = flagpole(stem, share)
-    there = make_simulator(tree, wood, model=model).frequencies(1)[0]
-    without = make_simulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0]
+    there = make_simulator(tree, wood, model=12).frequencies(1)[0]
+    without = make_simulator(tree, wood, model=12, gravity=0.0).frequencies(1)[0]
     assert there / without == pytest.approx(ratio, rel=0.03)
 
 
-@pytest.mark.parametrize('model', ['branch', 12, 'full'])
+@pytest.mark.parametrize('model', ['branch', 12, *FULL])
 def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, model):
     tree, wood = flagpole(stem, 1.02)
     with pytest.raises(
@@ -124,7 +116,7 @@ def test_a_thin_branch_that_buckles_is_the_one_that_is_named(sketch):
     drawn.add(0, 2, (1, 0, 1), 0.5, 0.02, 0.01, 2)
     drawn.add(0, 4, (0, 0.01, 1), 3.0, 0.004, 0.004, 3)
     with pytest.raises(TreeError, match="branch 'b2': buckles"):
-        make_simulator(drawn.tree(), model='full')
+        make_simulator(drawn.tree(), model=12)
 
 
 def test_the_cure_in_the_refusal_cures(stem):
@@ -142,7 +134,7 @@ def test_the_cure_in_the_refusal_cures(stem):
 def test_a_branch_without_mass_is_refused_by_name(stem):
     weightless = Species('air', 'air', modulus=1e9, density=0.0)
     with pytest.raises(TreeError, match="branch 'stem': massless"):
-        make_simulator(stem(), weightless, model='full')
+        make_simulator(stem(), weightless, model=12)
 
 
 @pytest.mark.parametrize('count', [0, -1, 3])
@@ -154,37 +146,9 @@ def test_a_count_of_modes_that_is_not_there_is_refused(stem, count):
 
 @pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, 2, 0.3)])
 def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
-    sim = make_simulator(stem(direction=direction), model='full', gravity=0.0)
-    upright = make_simulator(stem(), model='full', gravity=0.0)
+    sim = make_simulator(stem(direction=direction), model=12, gravity=0.0)
+    upright = make_simulator(stem(), model=12, gravity=0.0)
     assert sim.frequencies() == pytest.approx(upright.frequencies(), rel=1e-9)
-
-
-def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
-    """
-    0.7154 0.7254 1.4084 1.7586 Hz, from an Euler-Bernoulli frame of 17,424 degrees of freedom.
-
-    E is 8 GPa, the density 900 kg/m^3, and the twist that of an isotropic rod.
-    """
-    rows = np.genfromtxt(TREE_121, delimiter=',', names=True)
-    columns = [np.stack([rows[c + k] for c in 'xyz'], axis=1) for k in '01']
-    tree = tree_from_segments(
-        *columns,
-        np.stack([rows['d0'], rows['d1']], axis=1),
-        parent=rows['parent'].astype(int),
-        branch=rows['branch'].astype(int),
-    )
-    wood = Species('frame', 'frame', modulus=8e9, density=900.0, shear_ratio=1 / 2.6)
-    found = TreeReductions(tree, wood, Settings(gravity=0.0)).natural_frequencies(4)
-    assert found == pytest.approx([0.7154, 0.7254, 1.4084, 1.7586], rel=0.005)
-    # Green wood twists more easily, and the weight of what leans helps it to.
-    green = replace(wood, shear_ratio=1 / 14)
-    for gravity in (0.0, 9.81):
-        reductions = TreeReductions(tree, green, Settings(gravity=gravity))
-        chain = ArticulatedTree(
-            tree, 8e9, 900.0, gravity=gravity, subdivisions=2, twist_ratio=2 / 14
-        )
-        found = reductions.natural_frequencies(12)
-        assert found == pytest.approx(chain.linear_modes(12)[0], rel=0.005)
 
 
 def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
@@ -193,7 +157,7 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.01, 0.01, 10)
     drawn.add(0, 10, (1, 0, 0), 0.02, 0.1, 0.1, 1)
     drawn.add(0, 10, (-1, 0, 0), 0.02, 0.1, 0.1, 1)
-    sim = make_simulator(drawn.tree(), model='full', gravity=0.0, enrich='all')
+    sim = make_simulator(drawn.tree(), model=12, gravity=0.0, enrich='all')
     wood = species_named('broadleaf')
     tip = 2 * wood.density * np.pi / 4 * 0.1**2 * 0.02
     own = wood.density * np.pi / 4 * 0.01**2

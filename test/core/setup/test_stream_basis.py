@@ -8,10 +8,11 @@ from functools import cache
 import subprocess
 import sys
 
+from drawn_trees import crown
 import numpy as np
 import pytest
 from scipy import linalg
-from tree_sway_lab.bench.bench_tree import bench_tree
+from simulators import FULL
 
 from tree_sway.core.model.state_basis import FULL_SCALE
 from tree_sway.core.run.simulator_basis import basis_of
@@ -21,7 +22,6 @@ from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_compon
 from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.growth.builtin import builtin_tree
-from tree_sway.stream.protocol import FRAME_SIZE, quantised
 
 DT = 1.0 / 60.0
 
@@ -34,13 +34,8 @@ def with_basis(name):
 
 
 @pytest.fixture
-def benjamina():
-    return with_basis('benjamina')[0]
-
-
-@pytest.fixture
 def basis():
-    return with_basis('benjamina')[1]
+    return with_basis('goldcrest')[1]
 
 
 def gaps(sim, basis, speed, steps=600):
@@ -60,23 +55,15 @@ def gaps(sim, basis, speed, steps=600):
     return np.linalg.norm(placed - through, axis=2), placed - placed.mean(axis=0)
 
 
-@pytest.mark.parametrize('name', ['benjamina', 'goldcrest'])
+@pytest.mark.parametrize(
+    'name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize('speed', [2.0, 9.0, 15.0])
 def test_no_segment_is_farther_off_than_the_error_that_is_reported(name, speed):
     sim, basis = with_basis(name)
     gap, motion = gaps(sim, basis, speed)
     assert gap.max() <= basis.error
     assert np.sqrt(np.square(motion).sum(axis=2).mean()) > 5.0 * np.sqrt(np.square(gap).mean())
-
-
-def test_a_storm_beyond_the_reported_error_is_flagged_and_a_breeze_is_not(benjamina, basis):
-    for speed, is_beyond in ((6.0, False), (30.0, True)):
-        rng, flags = np.random.default_rng(2), []
-        benjamina.reset()
-        for wind in simulate_turbulence(speed, rate=60.0, duration=4.0, rng=rng):
-            benjamina.step(wind, DT)
-            flags.append(quantised(basis.coordinates(benjamina.rotations()), basis.scale)[1])
-        assert any(flags) == is_beyond
 
 
 def test_coordinates_of_a_shape_in_the_basis_are_its_own(basis):
@@ -95,7 +82,7 @@ def test_what_is_beyond_full_scale_is_held(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = make_simulator(fork(), model='full', enrich='all').banks[0].branches
+    joints = make_simulator(fork(), model=60, enrich='all').banks[0].branches
     rng = np.random.default_rng(3)
     x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
@@ -124,22 +111,18 @@ def test_motions_that_are_too_many_for_a_frame_take_the_most_that_it_has():
     assert shapes.shape == (50, COUNTS[-1])
 
 
-@pytest.mark.parametrize('model', ['branch', 'full', 'auto', 12])
+@pytest.mark.parametrize('model', ['branch', 'auto', 12, *FULL])
 def test_the_motion_of_every_model_is_streamed(model):
-    sim = make_simulator(bench_tree(), model=model)
+    sim = make_simulator(crown((5, 3)), model=model)
     gap, motion = gaps(sim, basis_of(sim), 9.0)
     assert np.sqrt(np.square(gap).mean()) < 0.01 * np.sqrt(np.square(motion).sum(axis=2).mean())
-
-
-def test_a_frame_has_at_most_a_hundred_bytes(basis):
-    assert FRAME_SIZE + 2 * basis.n_coordinates <= 100
 
 
 @pytest.mark.parametrize(('what', 'component'), [('along', 0), ('across', 1), ('up', 2)])
 def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component):
     """Small gusts of one frequency on a steady wind of 13 m/s, stepped until they repeat."""
     speed, azimuth = 13.0, 4  # of 24: 60 degrees
-    sim = make_simulator(bench_tree(), model=12)
+    sim = make_simulator(crown(), model=12)
     bank = sim.banks[0].oscillators
     stiffness, damping = bank.modal.stiffness, bank.modal.damping
     leaning = next(

@@ -30,7 +30,7 @@ def count(bank):
 
 def test_small_rotations_are_joined_from_the_root(bank_of):
     """On its own, a turn of the stem carries all that sits on it as a rigid body at its seat."""
-    bank = bank_of('full')
+    bank = bank_of(12)
     branches, stem = bank.branches, bank.branches[0]
     for c in range(int(stem['n_coordinates'])):
         rotations = np.zeros(count(bank))
@@ -47,7 +47,7 @@ def test_small_rotations_are_joined_from_the_root(bank_of):
 
 
 def test_motion_is_linear_in_the_rotations_and_in_every_column(bank_of):
-    bank, rng = bank_of('full'), np.random.default_rng(0)
+    bank, rng = bank_of(12), np.random.default_rng(0)
     many = rng.normal(size=(count(bank), 2, 3)) + 1j * rng.normal(size=(count(bank), 2, 3))
     whole = tip_motion(bank.branches, many)
     assert whole.shape == (len(bank.branches), 3, 2, 3)
@@ -58,7 +58,7 @@ def test_motion_is_linear_in_the_rotations_and_in_every_column(bank_of):
 
 
 def test_a_branch_turns_with_all_that_it_hangs_on(bank_of):
-    bank = bank_of('full')
+    bank = bank_of(12)
     rotations = np.zeros(count(bank))
     rotations[0] = 0.1
     turns = branch_rotations(bank.branches, rotations)

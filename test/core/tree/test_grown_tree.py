@@ -5,66 +5,72 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-import tree_sway as sway
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.species.species import Species, species_named
 from tree_sway.core.tree.grown_tree import tree_and_species
+from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, SpeciesError
+from tree_sway.growth.growing import grow
 
-WIND = np.full((3, 3), 4.0)
-SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 DOORS = {
-    'make_simulator': lambda tree, **options: sway.make_simulator(tree, model='branch', **options),
-    'prepare': lambda tree, **options: sway.make_simulator(
+    'make_simulator': lambda tree, **options: make_simulator(tree, model='branch', **options),
+    'prepare': lambda tree, **options: make_simulator(
         prepare(tree, model='branch', **options)
     ),
-    'simulate': lambda tree, **options: sway.simulate(tree, WIND, model='branch', **options),
-    'Scene': lambda tree, **options: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
+    'Scene': lambda tree, **options: Scene([PlacedTree('one', tree)]).simulator(
         model='branch', **options
     ),
 }
 
 
+class Grown(NamedTuple):
+    """A tree with a species of its own, as a file gives it."""
+
+    tree: Tree
+    species: Species
+
+
 @pytest.fixture(scope='module')
-def opened():
-    found = sway.open_tree(SEEDLING)
-    return replace(found, species=replace(found.species, modulus=2.0 * found.species.modulus))
+def opened(fork):
+    oak = species_named('oak')
+    return Grown(replace(fork(), species='oak'), replace(oak, modulus=2.0 * oak.modulus))
 
 
 def test_a_tree_brings_its_species(opened):
     assert tree_and_species(opened) == (opened.tree, opened.species)
-    ash = sway.species_named('ash')
+    ash = species_named('ash')
     assert tree_and_species(opened, ash) == (opened.tree, ash)
-    assert tree_and_species(opened.tree) == (opened.tree, sway.species_named('oak'))
+    assert tree_and_species(opened.tree) == (opened.tree, species_named('oak'))
 
 
 @pytest.mark.parametrize('door', DOORS)
 def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     made = DOORS[door](opened)
     apart = {
-        'make_simulator': lambda: sway.make_simulator(opened.tree, opened.species, model='branch'),
-        'prepare': lambda: sway.make_simulator(
+        'make_simulator': lambda: make_simulator(opened.tree, opened.species, model='branch'),
+        'prepare': lambda: make_simulator(
             prepare(opened.tree, opened.species, model='branch')
         ),
-        'simulate': lambda: sway.simulate(opened, WIND, model='branch'),
-        'Scene': lambda: sway.Scene(
-            [sway.PlacedTree('one', opened.tree, species=opened.species)]
+        'Scene': lambda: Scene(
+            [PlacedTree('one', opened.tree, species=opened.species)]
         ).simulator(model='branch'),
     }[door]()
-    if door == 'simulate':
-        np.testing.assert_array_equal(made.tips, apart.tips)
-        return
     for each in (made, apart):
         each.step((5.0, 0.0, 0.0), 1.0 / 60.0)
     np.testing.assert_array_equal(made.place(), apart.place())
 
 
 @pytest.mark.parametrize('door', DOORS)
-@pytest.mark.parametrize('wrong', ['benjamina', None, 3.0, sway.Settings()])
+@pytest.mark.parametrize('wrong', ['benjamina', None, 3.0, Settings()])
 def test_what_is_no_tree_is_refused_everywhere(door, wrong):
     kind = type(wrong).__name__
     with pytest.raises(ParameterError, match=f'tree: a {kind}, where a tree is expected; give'):
@@ -80,26 +86,19 @@ def test_what_are_no_settings_is_refused_everywhere(opened, door):
 
 
 def test_settings_in_the_place_of_the_species_are_refused(opened):
-    for door in (sway.make_simulator, prepare):
+    for door in (make_simulator, prepare):
         with pytest.raises(ParameterError, match=r'species: a Settings, .* as settings='):
-            door(opened, sway.Settings())
+            door(opened, Settings())
     with pytest.raises(ParameterError, match='species: a str, where a Species is expected'):
-        sway.PlacedTree('one', opened, species='oak')
+        PlacedTree('one', opened, species='oak')
 
 
 def test_a_species_in_the_place_of_its_key_is_refused(opened):
-    for door in (sway.species_named, lambda key: sway.grow(key, 5.0, rng=None)):
+    for door in (species_named, lambda key: grow(key, 5.0, rng=None)):
         with pytest.raises(SpeciesError, match=r"a Species, where the name .*'oak'"):
             door(opened.species)
 
 
 def test_a_forest_asks_for_placed_trees(opened):
-    with pytest.raises(ParameterError, match=r'trees\[0\]: a TreeFile, where a PlacedTree is'):
-        sway.Scene([opened])
-
-
-def test_an_opened_tree_is_calibrated_and_written(opened, tmp_path):
-    assert sway.calibrate(opened, None, 5.0).species.key == 'oak'
-    sway.write_tree(tmp_path / 'tree.yaml', opened)
-    again = sway.open_tree(tmp_path / 'tree.yaml')
-    assert again.species.modulus == opened.species.modulus
+    with pytest.raises(ParameterError, match=r'trees\[0\]: a Grown, where a PlacedTree is'):
+        Scene([opened])

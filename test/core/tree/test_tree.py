@@ -7,10 +7,10 @@ from __future__ import annotations
 from dataclasses import replace
 import math
 
+from drawn_trees import branch_order
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.tree.building import tree_from_segments
 

@@ -20,10 +20,10 @@ from tree_sway.core.setup import make_model
 from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree_state import digest_of
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.models import model_file
 from tree_sway.files.models.model_file import read_model, VERSION
-from tree_sway.files.models.model_writer import write_model
+from tree_sway.files.models.model_writer import write_model, write_native_model
 from tree_sway.files.trees.source import open_scene, open_tree
 
 
@@ -203,3 +203,13 @@ def test_numbers_that_no_tree_has_are_refused_with_a_right_digest(fork, tmp_path
     write_model(tmp_path / 'a.npz', replace(model, **{name: great}))
     with pytest.raises(FormatError, match=f"'{name}': a number that no tree has"):
         read_model(tmp_path / 'a.npz')
+
+
+def test_a_model_without_a_table_has_no_native_file(fork, tmp_path):
+    with pytest.raises(ParameterError, match='has no table'):
+        write_native_model(tmp_path / 'x.sway', make_simulator(fork(), model='branch').models[0])
+
+
+def test_a_tree_is_no_model_to_write(fork, tmp_path):
+    with pytest.raises(ParameterError, match='model'):
+        write_model(tmp_path / 'tree.npz', fork())

@@ -6,15 +6,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tree_sway_lab.kinds.kinds import kind_called
-from tree_sway_lab.validation.truth import FINE, SETTINGS, true_frequencies, WOOD
 
-from tree_sway.core.setup import reduced_tree
-from tree_sway.core.setup.beams import branch_model
 from tree_sway.core.setup.beams.beam import Attachments, BranchBeam, RotationField
 from tree_sway.core.setup.beams.bent_by_weight import bent_by_weight
 from tree_sway.core.setup.beams.subtree_sums import SubtreeSums
-from tree_sway.core.setup.reductions import TreeReductions
 
 LENGTH, DIAMETER, SHEAR_RATIO = 2.0, 0.02, 1.0 / 14.0
 SECOND_MOMENT = np.pi / 64.0 * DIAMETER**4
@@ -67,18 +62,3 @@ def test_a_level_rod_gives_way_sideways_at_the_critical_load():
 def test_a_rod_that_its_weight_buckles_keeps_the_shape_of_the_load():
     weight = SECOND_MOMENT * (1.6 / LENGTH) ** 2
     assert further((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), weight) == 1.0
-
-
-def test_hanging_twigs_swing_as_fast_as_when_every_segment_is_solved(monkeypatch):
-    tree = kind_called('birch')
-    true = true_frequencies(tree, 12, FINE)
-    # Plain twigs: a further pair would help.
-    monkeypatch.setattr(reduced_tree, 'STRUNG', 0.0)
-
-    def largest():
-        found = TreeReductions(tree, WOOD, SETTINGS).natural_frequencies(12)
-        return np.abs(found / true - 1.0).max()
-
-    assert largest() < 0.004
-    monkeypatch.setattr(branch_model, 'bent_by_weight', lambda *given: given[3])
-    assert largest() > 0.015

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from drawn_trees import crown
 import numpy as np
 import pytest
-from tree_sway_lab.example_trees import forked_tree
 
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.branch_model import TreeBeams
+from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
 
 
@@ -82,7 +84,7 @@ def test_the_model_does_not_depend_on_the_place_of_the_tree(fork):
 
 
 def test_what_is_enriched():
-    tree = forked_tree(0.5, 0.6)
+    tree = crown((3, 3, 3))
     beams = TreeBeams(tree, 900.0)
     carriers = {0, *tree.branch_parent[1:].tolist()}
     needed = beams.enriched('needed')
@@ -97,9 +99,9 @@ def test_what_is_enriched():
 
 def test_a_long_limb_needs_shapes_though_what_it_carries_is_bare():
     """Limbs of twigs alone swayed 3 to 5 % too often as long as their order decided."""
-    tree = _limbs_of_twigs()
+    tree, wood = _limbs_of_twigs(), species_named('broadleaf')
     found = {
-        choice: make_simulator(tree, model='full', enrich=choice).frequencies(6)
+        choice: TreeReductions(tree, wood, Settings(enrich=choice)).natural_frequencies(6)
         for choice in ('stem', 'needed', 'all')
     }
     gap = {choice: np.abs(found[choice] / found['all'] - 1.0).max() for choice in found}

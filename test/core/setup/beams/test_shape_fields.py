@@ -12,10 +12,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
-from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.model.records import MAX_COORDINATES, ROOMS
-from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.beam import energies, RotationField
 from tree_sway.core.setup.beams.branch_model import TreeBeams
 from tree_sway.core.setup.beams.field_counts import (
@@ -27,8 +25,6 @@ from tree_sway.core.setup.beams.field_counts import (
 from tree_sway.core.setup.beams.shape_fields import across
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.modes import natural_modes
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.species.species import Species
 from tree_sway.core.tree.building import tree_from_segments
 
 
@@ -104,17 +100,6 @@ def test_a_small_tree_of_many_segments_has_more_of_them():
         subtrees=True, enriched=frozenset(range(SMALL_TREE + 1))
     )
     assert all(2 * ENRICHED_PAIRS <= len(model.fields) <= ROOMS[1] for model in larger)
-
-
-@pytest.mark.parametrize('n_limbs', [2, 4, 8, 16])
-def test_limbs_that_swing_apart_have_the_frequencies_of_every_segment(n_limbs):
-    tree = stem_with_limbs(n_limbs)
-    truth = ArticulatedTree(
-        tree, 8e9, 900.0, gravity=9.81, subdivisions=2, twist_ratio=2.0 / 14.0
-    ).linear_modes(8)[0]
-    wood = Species('w', 'w', 8e9, 900.0, damping_bare=0.05, shear_ratio=1.0 / 14.0)
-    found = TreeReductions(tree, wood, Settings()).natural_frequencies(8)
-    assert found == pytest.approx(truth, rel=0.01)
 
 
 def test_further_fields_are_orthogonal_in_energy(fork):

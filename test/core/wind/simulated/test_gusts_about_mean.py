@@ -21,7 +21,7 @@ def gusts_of(mean, interval=600.0, gust=None, seed=0):
     return made
 
 
-@pytest.mark.parametrize('speed', [0.5, 3.0, 8.0, 25.0])
+@pytest.mark.parametrize('speed', [0.5, 25.0])
 def test_the_mean_over_hours_is_that_of_the_station(speed):
     wind = blown(gusts_of([speed, 0.0, 0.0]), 3000.0)
     assert wind.mean(axis=0) == pytest.approx([speed, 0.0, 0.0], abs=0.05 * speed)
@@ -34,7 +34,7 @@ def test_the_deviation_without_a_gust_is_that_of_iec():
     assert wind.std(axis=0)[0] == pytest.approx(iec, rel=0.15)
 
 
-@pytest.mark.parametrize('gust', [10.0, 14.0, 20.0])
+@pytest.mark.parametrize('gust', [10.0, 20.0])
 def test_the_largest_three_seconds_are_those_of_the_gust_on_average(gust):
     wind = blown(gusts_of(WESTERLY, 600.0, gust), 3000.0)[:, 0]
     smooth = np.convolve(wind, np.full(30, 1.0 / 30.0), 'same')

@@ -37,12 +37,12 @@ def _damping(name: str, speed: float, *, in_leaf: bool, crests: int) -> float:
     return float(decrement / (2.0 * np.pi))
 
 
-@pytest.mark.parametrize('speed', [3.0, 10.0])
+@pytest.mark.parametrize('speed', [3.0, pytest.param(10.0, marks=pytest.mark.long)])
 def test_a_fir_in_needles_that_is_let_go_is_damped_as_measured(speed: float) -> None:
     assert 0.08 <= _damping('douglas_fir', speed, in_leaf=True, crests=2) <= 0.12
 
 
-@pytest.mark.parametrize('name', ['maple', 'beech'])
+@pytest.mark.parametrize('name', ['maple', pytest.param('beech', marks=pytest.mark.long)])
 def test_leaves_damp_a_broadleaf_as_much_more_as_measured(name: str) -> None:
     in_leaf, bare = (_damping(name, 10.0, in_leaf=leaves, crests=5) for leaves in (True, False))
     ratio = in_leaf / bare
