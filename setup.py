@@ -337,6 +337,7 @@ setup(
             *(f'{node} = {PACKAGE}.nodes.executables:{node}' for node in NODES),
             f'tree-sway = {LIBRARY}.commands.cli:main',
         ],
+        f'{PACKAGE}.solver': [f'motion = {PACKAGE}.motion.annex:MotionAnnex'],
         'tree_sway.commands': [f'ros = {PACKAGE}.commands.table:COMMANDS'],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',

@@ -27,10 +27,11 @@ from tree_sway.simulation.rig import PlacedMotion, simulate  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sway_watch import SwayChange  # noqa: E402
 from tree_sway.twin.tree_fit import TreeFit  # noqa: E402
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
+from tree_sway_ros.motion.imu_intake import ImuIntake, places_of  # noqa: E402
 from tree_sway_ros.nodes.recorded_imu import RecordedImu  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
+from tree_sway_ros.solver.sample_wait import UNHEARD  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
 
 

@@ -17,15 +17,13 @@ from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.one_publisher import OnePublisher
+from tree_sway_ros.solver.sample_wait import UNHEARD
 from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
 
 _TYPE, _SHOWN = 'sensor_msgs/Imu', 5
-
-UNHEARD = -1
-"""In place of the stamp of a topic's newest sample, before any: no stamp is negative."""
 
 
 def places_of(text: str) -> dict[str, str]:
