@@ -24,8 +24,8 @@ atexit.register(lambda: print(*sys.modules))
 """As if the folder were deleted; at the end the modules are told."""
 
 MODULE = """
-from tree_sway_ros.process.topics import Topic
-from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.process import Topic
+from tree_sway_ros.reports import OK, Status
 from tree_sway_ros.solver import SolverAnnex
 
 
