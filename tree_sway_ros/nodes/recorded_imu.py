@@ -85,7 +85,6 @@ class RecordedImu:
         for number, record in enumerate(self._records):
             after = record.times_after(self._epoch)
             kept = np.flatnonzero((after >= wind[0]) & (after <= wind[-1]))
-            kept = kept[np.argsort(after[kept], kind='stable')]
             times.append(after[kept])
             sources.append(np.full(len(kept), number))
             samples.append(kept)
