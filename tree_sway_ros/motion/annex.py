@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 import time
 
-from tree_sway.core.scene import Run, Scene
+from tree_sway.core.scene import Scene
 from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, inside, ParameterError
 from tree_sway.files.motion import TreeHistory
@@ -15,11 +14,9 @@ from tree_sway.files.trees import LearnedFile
 from tree_sway.twin import observed_scene, ObservedTree
 from tree_sway.worker import submit_beside
 from tree_sway_ros.motion.imu_intake import ImuIntake, places_of
-from tree_sway_ros.reports.diagnostics import Status
-from tree_sway_ros.solver.annex import SolverAnnex
 
 
-class MotionAnnex(SolverAnnex):
+class MotionAnnex(ImuIntake):
     """Sensors of `imu`, and the files of `learn` and `history`."""
 
     _history: TreeHistory | None = None
@@ -41,7 +38,7 @@ class MotionAnnex(SolverAnnex):
                 file = LearnedFile(values['learn'], scene.trees[0], settings.in_leaf)
             self._learned = file
             scene = scene.of_species(file.opened.species)
-        self._twin = observed_scene(
+        self.twin = observed_scene(
             scene,
             settings,
             at=places,
@@ -50,31 +47,15 @@ class MotionAnnex(SolverAnnex):
             submit=submit_beside,
         )
         if self._learned is not None:
-            self._twin.learned_before = self._learned.opened.learned
-        return self._twin
-
-    def begin(self, run: Run, arrived: Callable[[], object]) -> None:
-        """Subscribe to the sensors."""
-        self._intake = ImuIntake(self.node, run, self._twin, arrived)
-
-    def before_step(self, felt: float) -> None:
-        """Note the time at which sensors are read."""
-        self._twin.set_time(felt)
-
-    def lacking(self, end: int, delay: float) -> Iterable[tuple[str, int]]:
-        """Tell of which sensors a step averages samples that have not arrived."""
-        return self._intake.lacking(end, delay)
-
-    def statuses(self) -> list[Status]:
-        """Report each sensor."""
-        return self._intake.statuses()
+            self.twin.learned_before = self._learned.opened.learned
+        return self.twin
 
     def keep(self) -> None:
         """Write what the sensors have told about the tree, if anything is new."""
         try:
             if self._learned is not None:
-                self._learned.keep(self._twin)
+                self._learned.keep(self.twin)
             if self._history is not None:
-                self._history.note(self._twin, time.monotonic())
+                self._history.note(self.twin, time.monotonic())
         except FormatError as error:
             self.node.get_logger().warning(str(error))

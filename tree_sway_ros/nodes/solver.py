@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 import time
 from typing import Any
 
+from tree_sway.core.run import Tuning
 from tree_sway.core.scene import Run, Scene, set_cost_scale, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.wind import WindAverage, WindIntake
-from tree_sway.errors import LONGEST_NOTE, shown
+from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
@@ -20,7 +22,7 @@ from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.solver import (
     annexes_of,
     answer_questions,
-    LiveChanges,
+    Demand,
     offer_services,
     SampleWait,
     scene_of,
@@ -40,6 +42,9 @@ _LEAF_CLUSTERS = 1000
 _KEPT_EVERY = 5.0
 """Interval [s] at which annexes write what is to be kept."""
 
+_LIVE = frozenset(each.name for each in fields(Tuning))
+"""Parameters that change the trees while they sway."""
+
 
 class SolverNode(TreeSwayNode):
     """
@@ -49,7 +54,7 @@ class SolverNode(TreeSwayNode):
     """
 
     _hears_wind = False
-    _changes: LiveChanges | None = None
+    _demand: Demand | None = None
 
     def configure(self) -> None:
         """Open the tree, and reduce it."""
@@ -99,9 +104,10 @@ class SolverNode(TreeSwayNode):
             starting=self._starting,
         )
         self._samples = SampleWait(self, self._lacking)
-        self._changes = LiveChanges(self, self._run, self.refusals)
+        self._tuned: dict[str, float] = {}
+        self._demand = Demand(self, self._run, self.refusals)
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
-        self._changes.set_demand()
+        self._demand.set()
         self.simulator.reset()  # on the requested model
 
     def _make_interfaces(self, source: Scene, settings: Settings) -> None:
@@ -132,16 +138,30 @@ class SolverNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a change that is impossible while the trees sway."""
-        if self._changes is not None and self.is_active:
-            self._changes.check(values)
+        if not self.is_active:
+            return
+        changes = {k: v for k, v in values.items() if k in _LIVE and v != self.values[k]}
+        if changes.get('damping_ratio') == 0.0:
+            raise ParameterError(
+                "the species' own damping while the tree sways",
+                where='damping_ratio',
+                cure='give the ratio itself; 0 is for the start',
+            )
+        if changes:
+            # Beside those accepted before, which may still wait for the next step.
+            self.simulator.check_tuning(**self._tuned | changes)
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Apply new values before the next step."""
-        if self._changes is None:
-            return
-        if self.is_active:
-            self._changes.tune(values)
-        self._changes.request_demand()
+        changes = {name: values[name] for name in _LIVE & {*values}}
+        if changes and self.is_active:
+            self._tuned |= changes
+            self._run.request(
+                lambda: self.simulator.tune(**changes),
+                lambda why: self.refusals.note('change', why),
+            )
+        if self._demand is not None:
+            self._demand.request()
 
     def note_failure(self, error: Exception) -> None:
         """Continue from rest, as the state within a step is invalid."""

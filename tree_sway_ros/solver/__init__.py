@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from tree_sway_ros.solver.annex import annexes_of as annexes_of
     from tree_sway_ros.solver.annex import simulator_by as simulator_by
     from tree_sway_ros.solver.annex import SolverAnnex as SolverAnnex
+    from tree_sway_ros.solver.demand import Demand as Demand
     from tree_sway_ros.solver.hands import take_pushes_and_pulls as take_pushes_and_pulls
-    from tree_sway_ros.solver.live_changes import LiveChanges as LiveChanges
     from tree_sway_ros.solver.opening import scene_of as scene_of
     from tree_sway_ros.solver.opening import settings_of as settings_of
     from tree_sway_ros.solver.questions import answer_questions as answer_questions
