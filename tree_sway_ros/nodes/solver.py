@@ -206,9 +206,7 @@ class SolverNode(TreeSwayNode):
 
     def _statuses(self) -> list[Status]:
         wind = self.publishers_of(self._topic, 'geometry_msgs/Vector3Stamped')
-        poses = self.publishers_of(
-            self.resolve_topic_name(SEGMENT_POSES.name), 'geometry_msgs/PoseArray'
-        )
+        poses = self.publishers_of(SEGMENT_POSES.name, 'geometry_msgs/PoseArray')
         replay = self.clock_rate.rate if self.is_simulated else None
         statuses = self._sway_report.statuses(
             self._run, self.pacer, self.stream.frames, replay, wind, poses

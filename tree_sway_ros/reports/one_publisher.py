@@ -7,8 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 import math
 
-from tree_sway_ros.reports.sequence_gaps import number_of
-
 _PERIODS = 3.0
 _LEAST = 1.0
 """Silence after which a publisher gives way: a number of its periods, and no less in [s]."""
@@ -36,15 +34,15 @@ class OnePublisher:
         Parameters
         ----------
         info
-            Information of rclpy on a message.
+            Information of rclpy on a message; middleware may give no numbers.
         count
             Function that counts the publishers; called where the number is not the next one.
         now
             Time of arrival in [s], on a clock that does not jump.
 
         """
-        number = number_of(info)
-        if not number:
+        number = info.get('publication_sequence_number')
+        if not isinstance(number, int) or number <= 0:
             return True
         is_next = self._last is not None and number == self._last + 1
         is_live = now - self._at <= max(_LEAST, _PERIODS * self._period)

@@ -23,9 +23,9 @@ class SequenceGaps:
         self._publishers = 1
 
     def note(self, info: Mapping[str, object]) -> None:
-        """Note the information of rclpy on a message."""
-        number = number_of(info)
-        if not number:
+        """Note the information of rclpy on a message; middleware may give no numbers."""
+        number = info.get('publication_sequence_number')
+        if not isinstance(number, int) or number <= 0:
             return
         if self._last is not None and number > self._last:
             self._pending += number - self._last - 1
@@ -42,9 +42,3 @@ class SequenceGaps:
             return 0
         self.lost += pending
         return pending
-
-
-def number_of(info: Mapping[str, object]) -> int:
-    """Return the number that its publisher gave a message; 0 of a middleware without numbers."""
-    number = info.get('publication_sequence_number')
-    return number if isinstance(number, int) and number > 0 else 0
