@@ -349,6 +349,7 @@ setup(
             f'forest = {LIBRARY}.forest.commands.on_the_page:RiskOnThePage',
             f'twin = {LIBRARY}.twin.commands.on_the_page:SensorsOnThePage',
         ],
+        f'{PACKAGE}.solver': [f'motion = {PACKAGE}.motion.annex:MotionAnnex'],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],

@@ -21,7 +21,7 @@ from launch_ros.actions import Node
 import yaml
 
 from tree_sway.errors import ParameterError
-from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.parameters import ANNEXES, NODE_PARAMETERS
 
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
@@ -44,8 +44,7 @@ OF_PARAMETERS = {
     'solver_rate': ('solver', 'rate'),
     'wind_delay': ('solver', 'wind_delay'),
     'pose': ('solver', 'pose'),
-    'imu': ('solver', 'imu'),
-    'learn': ('solver', 'learn'),
+    **{each.name: ('solver', each.name) for table in ANNEXES.values() for each in table},
     'mean_speed': ('anemometer', 'mean_speed'),
     'sensor_address': ('sensor', 'address'),
     'wind_file': ('player', 'file'),

@@ -132,6 +132,30 @@ def test_a_house_is_entered_by_its_face() -> None:
     assert not wrong, '\n'.join(wrong)
 
 
+def test_the_laboratory_enters_the_nodes_by_the_faces_of_their_rooms() -> None:
+    wrong = [
+        f'{path}:{line} imports {module}'
+        for path in LAB.rglob('*.py')
+        for line, module, _ in imports_of(path)
+        if module.startswith('tree_sway_ros.')
+        and module.count('.') > 1
+        and 'commands' not in module
+    ]
+    assert not wrong, '\n'.join(wrong)
+
+
+def test_nodes_know_no_annex_by_name() -> None:
+    """Those of the solver register by entry points; the folder of one may be taken away."""
+    wrong = [
+        f'{path}:{line} imports {module}'
+        for path in NODES.rglob('*.py')
+        for line, module, _ in imports_of(path)
+        if path.parent != NODES / 'motion'
+        and module.startswith(('tree_sway.twin', 'tree_sway_ros.motion'))
+    ]
+    assert not wrong, '\n'.join(wrong)
+
+
 def test_a_face_is_small_and_every_name_on_it_is_there() -> None:
     wrong = []
     for module, names in faces().items():
@@ -210,7 +234,8 @@ def test_no_import_cycle() -> None:
     """A name of a face is one of the module that it is in."""
     homes = {
         (name_of(path), alias.name): node.module
-        for path in LIBRARY.rglob('__init__.py')
+        for path in FILES
+        if path.name == '__init__.py'
         for node in import_nodes(path)
         if node.col_offset and isinstance(node, ast.ImportFrom)
         for alias in node.names

@@ -27,10 +27,11 @@ from tree_sway.simulation.rig import PlacedMotion, simulate  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sway_watch import SwayChange  # noqa: E402
 from tree_sway.twin.tree_fit import TreeFit  # noqa: E402
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD  # noqa: E402
+from tree_sway_ros.motion.imu_intake import ImuIntake, places_of  # noqa: E402
 from tree_sway_ros.nodes.recorded_imu import RecordedImu  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
+from tree_sway_ros.solver.sample_wait import UNHEARD  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
 
 
@@ -163,11 +164,18 @@ class IntakeNode:
         return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=BEGIN))
 
 
+def intake_of(twin, node=None, run=None, arrived=lambda: None):
+    intake = ImuIntake(node or IntakeNode())
+    intake.twin = twin
+    intake.begin(run or Run(twin, 60.0), arrived)
+    return intake
+
+
 def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
     arrived = []
     node, run = IntakeNode(), Run(twin, 60.0)
-    intake = ImuIntake(node, run, twin, arrived=lambda: arrived.append(True))
+    intake = intake_of(twin, node, run, lambda: arrived.append(True))
     assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', UNHEARD)]
     node.receive(imu(BEGIN * 1e-9), {})
     assert arrived
@@ -181,13 +189,13 @@ def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():
 
 def test_a_topic_that_nobody_publishes_is_not_waited_for():
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
-    intake = ImuIntake(IntakeNode(publishers=0), Run(twin, 60.0), twin, arrived=lambda: None)
+    intake = intake_of(twin, IntakeNode(publishers=0))
     assert not list(intake.lacking(BEGIN, 0.0))
 
 
 def test_a_status_has_what_was_learned(monkeypatch):
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
-    intake = ImuIntake(IntakeNode(), Run(twin, 60.0), twin, arrived=lambda: None)
+    intake = intake_of(twin)
     (status,) = intake.statuses()
     assert 'first frequency [Hz]' not in status.values
     as_made = float(twin.frequencies(1)[0])
@@ -204,7 +212,7 @@ def test_a_status_says_how_sure_the_motion_is():
         builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0, has_band=True
     )
     run = Run(twin, 60.0)
-    intake = ImuIntake(IntakeNode(), run, twin, arrived=lambda: None)
+    intake = intake_of(twin, run=run)
     for k in range(120):
         run.offer(BEGIN + k * PERIOD, (4.0, 0.0, 0.0), BEGIN + k * PERIOD)
         run.advance(BEGIN + k * PERIOD)
@@ -218,7 +226,7 @@ def test_a_status_says_how_sure_the_motion_is():
 
 def test_a_status_warns_of_a_tree_that_sways_differently(monkeypatch):
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
-    intake = ImuIntake(IntakeNode(), Run(twin, 60.0), twin, arrived=lambda: None)
+    intake = intake_of(twin)
     (track,) = twin.observer.tracks
     monkeypatch.setattr(track.native, 'in_use', 1)
     (watch,) = twin.observer._fit.watches
@@ -269,7 +277,7 @@ def test_messages_move_a_tree_as_a_recording_does():
         stepped=lambda end, mean: tips.append(twin.tip_displacement.copy()),
     )  # fmt: skip
     node = IntakeNode()
-    ImuIntake(node, run, twin, arrived=lambda: None)
+    intake_of(twin, node, run)
     for stamp, force, rate in zip(motion.time, motion.acceleration, motion.rate, strict=True):
         message = imu(BEGIN * 1e-9 + stamp)
         for vector, values in (

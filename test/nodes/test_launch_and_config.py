@@ -52,6 +52,11 @@ def start(launch_file, monkeypatch, **given):
     return {each.node_executable: each for each in actions if hasattr(each, 'node_executable')}
 
 
+def test_parameters_of_annexes_are_arguments(launch_file, overrides_of):
+    assert {'imu', 'learn', 'history'} <= {name for name, _, _ in launch_file.ARGUMENTS}
+    assert overrides_of('solver', imu='tree/imu@3.2') == {'imu': 'tree/imu@3.2'}
+
+
 @pytest.mark.parametrize(
     ('source', 'executables'),
     [

@@ -9,8 +9,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.nodes import solver  # noqa: E402
 from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.solver import sample_wait  # noqa: E402
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
     stamp_to_ns,
@@ -79,10 +79,10 @@ def test_wind_whose_publisher_is_yet_to_be_found_is_waited_for(
     compose, observer, tree_file, monkeypatch
 ):
     """However long that takes: for its first sample the solver waits from then on."""
-    passed, steady = [0.0], solver.time.monotonic
+    passed, steady = [0.0], sample_wait.time.monotonic
     later = {'monotonic': lambda: steady() + passed[0]}
-    monkeypatch.setattr(solver, 'time', SimpleNamespace(**{**vars(time), **later}))
-    monkeypatch.setattr(solver, '_PATIENCE', 1e3)
+    monkeypatch.setattr(sample_wait, 'time', SimpleNamespace(**{**vars(time), **later}))
+    monkeypatch.setattr(sample_wait, '_PATIENCE', 1e3)
     world = World(compose, observer, tree_file)
     observer.until(lambda: world.set(START) or world.frames, 'the first frame')
     world.run(0.3)
@@ -129,7 +129,7 @@ def test_a_clock_set_back_resets_and_goes_on_within_two_periods(world, observer)
 
 def test_a_clock_set_back_ends_the_wait_for_samples_of_before(world, observer, monkeypatch):
     """As at the end of a record that ``ros2 bag play --loop --clock`` plays."""
-    monkeypatch.setattr(solver, '_PATIENCE', 1e3)
+    monkeypatch.setattr(sample_wait, '_PATIENCE', 1e3)
     world.run(1.0, wind=(8.0, 0.0, 0.0))
     world.run(0.5)
     world.set(START - 500 * 10**9)

@@ -79,21 +79,14 @@ class RecordedImu:
 
         Samples of before the wind and after it are left out.
         """
-        times: list[Floats] = [wind]
-        sources = [np.full(len(wind), -1)]
-        samples: list[Ints] = [np.arange(len(wind))]
+        rows = [(wind, np.full(len(wind), -1), np.arange(len(wind)))]
         for number, record in enumerate(self._records):
             after = record.times_after(self._epoch)
             kept = np.flatnonzero((after >= wind[0]) & (after <= wind[-1]))
-            kept = kept[np.argsort(after[kept], kind='stable')]
-            times.append(after[kept])
-            sources.append(np.full(len(kept), number))
-            samples.append(kept)
-        time = np.concatenate(times)
+            rows.append((after[kept], np.full(len(kept), number), kept))
+        time, source, sample = map(np.concatenate, zip(*rows, strict=True))
         order = np.argsort(time, kind='stable')
-        return JoinedRows(
-            time[order], np.concatenate(sources)[order], np.concatenate(samples)[order]
-        )
+        return JoinedRows(time[order], source[order], sample[order])
 
     def message(self, source: int, sample: int, stamp: int) -> Any:
         """Make the message of a sample with a stamp in [ns]."""

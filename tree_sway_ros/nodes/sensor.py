@@ -6,8 +6,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
-
 from tree_sway.files.wind import Velocity
 from tree_sway.live import InstrumentLines, LiveWind, open_source
 from tree_sway_ros.process.node import TreeSwayNode
@@ -47,7 +45,7 @@ class SensorNode(TreeSwayNode):
             silence=self.values['silence'] if is_of_lines else None,
         )
         self.on_change(self.values.subset())
-        self.create_timer(_GUSTS_EVERY, self._blow, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_steady_timer(_GUSTS_EVERY, self._blow)
         self.report_with(self.values['address'], self._report)
 
     def activate(self) -> None:
@@ -96,12 +94,13 @@ class SensorNode(TreeSwayNode):
             **{f'refused: {cause}': count for cause, count in sorted(wind.refused.items())},
         }
         if not wind.accepted or not link.is_up:
-            return [Status('link', WARN, wind.problem or f'no link: {link.failure}', values)]
-        if is_fault(sum(refused.values()), sum(refused.values()) + recent['']):
+            text = wind.problem or f'no link: {link.failure}'
+        elif is_fault(sum(refused.values()), sum(refused.values()) + recent['']):
             text = f'{reading}; {self._messages} refused: {listed(refused)}'
-            return [Status('link', WARN, text, values)]
-        if wind.state == 'stale':
-            return [Status('link', WARN, f'{reading}; none for {wind.age:.0f} s', values)]
-        if problem := wind.every_other.problem:
-            return [Status('link', WARN, f'{reading}; {problem}', values)]
-        return [Status('link', OK, reading, values)]
+        elif wind.state == 'stale':
+            text = f'{reading}; none for {wind.age:.0f} s'
+        elif problem := wind.every_other.problem:
+            text = f'{reading}; {problem}'
+        else:
+            return [Status('link', OK, reading, values)]
+        return [Status('link', WARN, text, values)]

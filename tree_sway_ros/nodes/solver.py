@@ -6,51 +6,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
-import math
-import threading
 import time
 from typing import Any
 
-from geometry_msgs.msg import Vector3Stamped
-from rclpy.clock import Clock, ClockType
-from scipy.spatial.transform import Rotation
-from std_srvs.srv import SetBool, Trigger
-
 from tree_sway.core.run import Tuning
-from tree_sway.core.scene import (
-    Run,
-    Scene,
-    set_cost_scale,
-    set_demand,
-    shard_of,
-    Simulator,
-    wind_at,
-)
+from tree_sway.core.scene import Run, Scene, set_cost_scale, Simulator
 from tree_sway.core.settings import Settings
-from tree_sway.core.setup import LEAVES
-from tree_sway.core.species import species_named
-from tree_sway.core.wind import WindAverage, WindIntake, WindProfile
-from tree_sway.errors import FormatError, inside, LONGEST_NOTE, ParameterError, shown
-from tree_sway.files.motion import TreeHistory
-from tree_sway.files.trees import LearnedFile, open_scene
-from tree_sway.stream import ControlPanel, Refused
-from tree_sway.twin import observed_scene, ObservedTree
-from tree_sway.worker import submit_beside
-from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of, UNHEARD
-from tree_sway_ros.nodes.state_publisher import StatePublisher
+from tree_sway.core.wind import WindAverage, WindIntake
+from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import (
-    CAMERA,
-    PULL,
-    PUSH,
-    SEGMENT_POSES,
-    WIND_AT,
-    WIND_FILTERED,
-    WIND_THERE,
-)
+from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.refusals import Refusals
 from tree_sway_ros.reports.sway_report import SwayReport
+from tree_sway_ros.solver import (
+    annexes_of,
+    answer_questions,
+    Demand,
+    offer_services,
+    SampleWait,
+    scene_of,
+    settings_of,
+    simulator_by,
+    StatePublisher,
+    take_pushes_and_pulls,
+    UNHEARD,
+)
 from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
 from tree_sway_ros.wire.wind_messages import wind_from_message
@@ -58,48 +39,34 @@ from tree_sway_ros.wire.wind_messages import wind_from_message
 _LEAF_CLUSTERS = 1000
 """Clusters of leaves in `tree_description`, of a tree in leaf."""
 
-_FARTHEST_CAMERA = 1e6
-"""Distance along each axis [m]."""
-
-_STRONGEST_PUSH = 1e5
-"""Largest force of a push [N]."""
-_PUSH_LASTS = 0.5
-"""Time [s] after which a push ends if it is not repeated."""
-
-_PATIENCE, _PATIENCE_AT_FIRST = 3.0, 10.0
-"""
-Times [s] of the machine for which a replay waits for a sample or a publisher, and from when a
-publisher is found for its first sample.
-
-"""
-
 _KEPT_EVERY = 5.0
-"""Interval [s] at which what was learned is written, if it is new."""
-
-_STOP_CHECK = 0.05
-"""Interval [s] of checks whether the node is ended while it waits."""
+"""Interval [s] at which annexes write what is to be kept."""
 
 _LIVE = frozenset(each.name for each in fields(Tuning))
+"""Parameters that change the trees while they sway."""
 
 
 class SolverNode(TreeSwayNode):
     """
     Subscribes to `wind/filtered`; publishes poses, markers and state.
 
-    It answers questions for the wind at a place, and takes pushes, pulls and motion sensors.
+    What else it hears and answers is in `tree_sway_ros.solver`, each in a module of its own.
     """
 
     _hears_wind = False
+    _demand: Demand | None = None
 
     def configure(self) -> None:
         """Open the tree, and reduce it."""
         began = time.monotonic()
         log = self.get_logger().info
         log(f"opening tree '{shown(self.values['tree'])}'")
-        source = self._open()
+        source = scene_of(self.values)
+        settings = settings_of(self.values)
         log(f'reducing {source.tree.n_segments} segments')
-        self._make_run(source)
-        self._make_interfaces(source)
+        self.refusals = Refusals(('camera', 'push', 'pull', 'wind_at', 'change'))
+        self._make_run(source, settings)
+        self._make_interfaces(source, settings)
         for warning in source.warnings:
             self.get_logger().warning(shown(warning, LONGEST_NOTE))
         for note in source.notes:
@@ -115,60 +82,15 @@ class SolverNode(TreeSwayNode):
         if not self._hears_wind:  # a replay begins once there is a subscription
             self.subscription(WIND_FILTERED, self._receive)
             self._hears_wind = True
-        if self._learned is not None:
-            self.on_close(self._keep_learned)
+        for annex in self._annexes:
+            self.on_close(annex.keep)
         self.run_worker(self.pacer)
 
-    def _open(self) -> Scene:
-        """Open the trees that this node sways, where they stand."""
-        named = self.values['species']
-        source = open_scene(
-            self.values['tree'],
-            wood=lambda found: species_named(named) if named else found,
-            in_leaf=LEAVES[self.values['leaves']],
-            warn=False,
-        )
-        x, y, z, yaw = self.values['pose']
-        moved = source.moved(x=x, y=y, z=z, yaw=yaw)
-        return shard_of(moved, self.values['shard.index'], self.values['shard.count'])
-
-    def _settings(self) -> Settings:
-        """Return the settings of the model by the parameters."""
-        return Settings(
-            **self.values.subset('model', 'gravity'),
-            volume_stiffness=self.values['volume_rule.stiffness'],
-            volume_damping=self.values['volume_rule.damping'],
-            in_leaf=LEAVES[self.values['leaves']],
-            damping_ratio=self.values['damping_ratio'] or None,
-            profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
-        )
-
-    def _make_run(self, source: Scene) -> None:
+    def _make_run(self, source: Scene, settings: Settings) -> None:
         """Make the simulator and what steps it."""
-        self._camera: tuple[float, float, float] | None = None
-        self._tuned: dict[str, float] = {}
-        self._arrived = threading.Event()
-        self._missed: set[tuple[str, int]] = set()
-        places = places_of(self.values['imu'])
-        settings = self._settings()
-        self._learned: LearnedFile | None = None
-        self._history: TreeHistory | None = None
-        if self.values['history']:
-            with inside('history'):
-                self._history = TreeHistory(self.values['history'], list(places))
-        if self.values['learn']:
-            source = self._open_learned(source, places)
-        self.simulator: Simulator = (
-            observed_scene(
-                source,
-                settings,
-                at=places,
-                rate=self.values['rate'],
-                has_band=True,
-                submit=submit_beside,
-            )
-            if places
-            else source.simulator(settings, **self.values.subset('tolerance'))
+        self._annexes = annexes_of(self)
+        self.simulator: Simulator = simulator_by(
+            self._annexes, source, settings, **self.values.subset('tolerance')
         )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values.subset('stiffness_factor'))
@@ -181,159 +103,44 @@ class SolverNode(TreeSwayNode):
             timer=time.perf_counter,
             starting=self._starting,
         )
-        if self._learned is not None and isinstance(self.simulator, ObservedTree):
-            self.simulator.learned_before = self._learned.opened.learned
+        self._samples = SampleWait(self, self._lacking)
+        self._tuned: dict[str, float] = {}
+        self._demand = Demand(self, self._run, self.refusals)
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
-        self._set_demand()
+        self._demand.set()
         self.simulator.reset()  # on the requested model
 
-    def _open_learned(self, source: Scene, places: Mapping[str, str]) -> Scene:
-        """Return the tree with the wood that was learned before; what is learned is kept."""
-        if not places:
-            what = 'no motion sensor to learn from'
-            raise ParameterError(what, where='learn', cure='give imu, as tree/imu@3.2')
-        with inside('learn'):
-            file = LearnedFile(
-                self.values['learn'], source.trees[0], LEAVES[self.values['leaves']]
-            )
-        self._learned = file
-        return source.of_species(file.opened.species)
-
-    def _keep_learned(self) -> None:
-        """Write what the sensors have told about the tree, if anything is new."""
-        if not isinstance(self.simulator, ObservedTree):
-            return
-        try:
-            if self._learned is not None:
-                self._learned.keep(self.simulator)
-            if self._history is not None:
-                self._history.note(self.simulator, time.monotonic())
-        except FormatError as error:
-            self.get_logger().warning(str(error))
-
-    def _make_interfaces(self, source: Scene) -> None:
+    def _make_interfaces(self, source: Scene, settings: Settings) -> None:
         """Make publishers, subscriptions, services and the report."""
-        self.refusals = Refusals(('camera', 'push', 'pull', 'wind_at', 'change'))
         self._sway_report = SwayReport()
-        leaves = source.leaves(LEAVES[self.values['leaves']], _LEAF_CLUSTERS)
+        leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._topic = self.resolve_topic_name(WIND_FILTERED.name)
         self._hears_wind = False
-        self.subscription(CAMERA, self._see)
-        self._imu: ImuIntake | None = None
-        if isinstance(self.simulator, ObservedTree):
-            self._imu = ImuIntake(self, self._run, self.simulator, self._arrived.set)
-        if self._learned is not None or self._history is not None:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self.create_timer(_KEPT_EVERY, self._keep_learned, clock=steady)
-        self._hands = ControlPanel(pull=self._pull)
-        self.subscription(PUSH, self._take_push)
-        self.subscription(PULL, self._take_pull)
-        self._wind_there = self.publisher(WIND_THERE)
-        self.subscription(WIND_AT, self._answer)
-        self.create_service(Trigger, '~/reset', self._reset)
-        self.create_service(SetBool, '~/pause', self._pause)
+        take_pushes_and_pulls(self, self._run, self.stream.tree_frames, self.refusals)
+        answer_questions(self, self.simulator, self.refusals)
+        offer_services(self, self._run)
+        for annex in self._annexes:
+            annex.begin(self._run, self._samples.note_arrival)
+            self.create_steady_timer(_KEPT_EVERY, annex.keep)
         self._warnings = source.warnings
         self.report_with(source.tree.name, self._statuses)
 
-    def _starting(self, felt: float) -> None:
-        """Note the time [s] of the wind of the next step, at which sensors are read."""
-        if isinstance(self.simulator, ObservedTree):
-            self.simulator.set_time(felt)
-
     def _receive(self, message: Any, info: Mapping[str, Any]) -> None:
+        """Offer a sample of the wind to the steps."""
         self._sway_report.gaps.note(info)
         sample = wind_from_message(message)
         arrival = int(self.get_clock().now().nanoseconds)
         components = (sample.u, sample.v, sample.w)
         self._run.offer(sample.stamp, components, arrival, **self.stamp_limits)
-        self._arrived.set()
-
-    def _see(self, message: Any) -> None:
-        at = message.pose.position
-        camera = (at.x, at.y, at.z)
-        if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # false for NaN
-            self.refusals.note('camera', 'not finite or too far away')
-            return
-        self._camera = camera
-        self._request_demand()
-
-    def _answer(self, message: Any) -> None:
-        """Publish the wind at the place of a question, with its stamp."""
-        frame_id = message.header.frame_id
-        known = self.values['frame_id']
-        if frame_id not in ('', known):
-            self.refusals.note('wind_at', f"'{frame_id}' is not the frame of the poses, '{known}'")
-            return
-        at = message.point
-        try:
-            wind = wind_at(self.simulator, (at.x, at.y, at.z))
-        except ParameterError as error:
-            self.refusals.note('wind_at', str(error))
-            return
-        answer = Vector3Stamped(header=message.header)
-        answer.header.frame_id = known
-        answer.vector.x, answer.vector.y, answer.vector.z = wind.tolist()
-        self._wind_there.publish(answer)
-
-    def _row(self, frame_id: str, request: str) -> int | None:
-        """Return the row of the segment with a frame; without one the request is refused."""
-        frames = self.stream.tree_frames
-        row = frames.row(frame_id)
-        if row is None:
-            why = f"'{frame_id}' is the frame of no segment: one is '{frames.example}'"
-            self.refusals.note(request, why)
-        return row
-
-    def _take_push(self, message: Any) -> None:
-        segment = self._row(message.header.frame_id, 'push')
-        force = message.wrench.force
-        components = (force.x, force.y, force.z)
-        if segment is None:
-            return
-        if not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
-            self.refusals.note('push', f'not finite or above {_STRONGEST_PUSH:g} N')
-        else:
-            self.stream.tree_frames.show(segment)
-            self._run.request(
-                lambda: self._push(segment, components),
-                lambda why: self.refusals.note('push', why),
-            )
-
-    def _push(self, segment: int, components: tuple[float, float, float]) -> None:
-        """Push at the origin of a segment's frame, by a force [N] in its axes."""
-        axes = Rotation.from_quat(self.simulator.place()[segment, 3:])
-        self.simulator.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
-
-    def _take_pull(self, message: Any) -> None:
-        parts = message.joint_names, message.transforms, message.wrench
-        if len({*map(len, parts)}) > 1:
-            self.refusals.note('pull', 'not one of transforms and wrench for each of joint_names')
-            return
-        for frame_id, wanted, spring in zip(*parts, strict=True):
-            if (segment := self._row(frame_id, 'pull')) is None:
-                continue
-            at = wanted.translation
-            pull = {'segment': segment, 'to': [at.x, at.y, at.z], 'stiffness': spring.force.x}
-            why = self._hands.pull(pull, lambda why: self.refusals.note('pull', why))
-            if why is not None:
-                self.refusals.note('pull', why)
-
-    def _pull(
-        self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
-    ) -> None:
-        self._run.pull(segment, to, stiffness, refused)
+        self._samples.note_arrival()
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a change that is impossible while the trees sway."""
         if not self.is_active:
             return
-        changes = {
-            k: v
-            for k, v in values.items()
-            if k in Tuning.__dataclass_fields__ and v != self.values[k]
-        }
+        changes = {k: v for k, v in values.items() if k in _LIVE and v != self.values[k]}
         if changes.get('damping_ratio') == 0.0:
             raise ParameterError(
                 "the species' own damping while the tree sways",
@@ -353,19 +160,8 @@ class SolverNode(TreeSwayNode):
                 lambda: self.simulator.tune(**changes),
                 lambda why: self.refusals.note('change', why),
             )
-        self._request_demand()
-
-    def _request_demand(self) -> None:
-        """Ask for the demand of the model ``auto`` to be set before the next step."""
-        if self.values['model'] == 'auto':
-            self._run.request(self._set_demand, lambda why: self.refusals.note('change', why))
-
-    def _set_demand(self) -> None:
-        set_demand(
-            self.simulator.simulators,
-            camera=self._camera,
-            **self.values.subset('tolerance', 'tolerance_angle', 'budget'),
-        )
+        if self._demand is not None:
+            self._demand.request()
 
     def note_failure(self, error: Exception) -> None:
         """Continue from rest, as the state within a step is invalid."""
@@ -379,41 +175,10 @@ class SolverNode(TreeSwayNode):
             for later in range(tick.periods - 1, -1, -1):
                 to = tick.time - later * self.pacer.period
                 if not tick.restarted:  # before the record begins its clock stands
-                    self._await_samples(to)
+                    self._samples.wait(to)
                 self._frame(to, 1, may_join=False)
         else:
             self._frame(tick.time, tick.periods, may_join=True)
-
-    def _await_samples(self, to: int) -> None:
-        """Wait for the samples that act before a time in [ns], once for each that is lost."""
-        end = time.monotonic() + _PATIENCE
-        found: set[str] = set()
-        clock = self.get_clock()
-        while not self.pacer.is_stopping and clock.now().nanoseconds >= to:  # or was set back
-            self._arrived.clear()
-            lacking = set(self._lacking(to))
-            if lacking <= self._missed:
-                return
-            unheard = {topic for topic, newest in lacking - self._missed if newest == UNHEARD}
-            published = {topic for topic in unheard if self.count_publishers(topic)}
-            if published - found:
-                found |= published
-                end = time.monotonic() + _PATIENCE_AT_FIRST
-            if (left := end - time.monotonic()) <= 0.0:
-                self._missed = lacking
-                return
-            self._arrived.wait(min(left, _STOP_CHECK))
-
-    def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
-        """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
-        delay = self.values['wind_delay']
-        newest = self._run.newest
-        if newest is None:
-            yield self._topic, UNHEARD
-        elif self._run.lacks_wind(to, delay=delay):
-            yield self._topic, newest
-        if self._imu is not None:
-            yield from self._imu.lacking(to, delay)
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish due messages."""
@@ -423,23 +188,25 @@ class SolverNode(TreeSwayNode):
         self.stream.publish(self.simulator, index, now, self.values['publish_every'])
         self._state.publish(index, now, self._run)
 
-    def _reset(self, _request: Any, response: Any) -> Any:
-        self._run.request(self.simulator.reset)
-        response.success = True
-        response.message = 'at rest'
-        return response
+    def _starting(self, felt: float) -> None:
+        """Prepare annexes for a step whose wind was measured at a time in [s]."""
+        for annex in self._annexes:
+            annex.before_step(felt)
 
-    def _pause(self, request: Any, response: Any) -> Any:
-        self._run.is_paused = bool(request.data)
-        response.success = True
-        response.message = 'paused' if request.data else 'running'
-        return response
+    def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
+        """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
+        delay = self.values['wind_delay']
+        newest = self._run.newest
+        if newest is None:
+            yield self._topic, UNHEARD
+        elif self._run.lacks_wind(to, delay=delay):
+            yield self._topic, newest
+        for annex in self._annexes:
+            yield from annex.lacking(to, delay)
 
     def _statuses(self) -> list[Status]:
         wind = self.publishers_of(self._topic, 'geometry_msgs/Vector3Stamped')
-        poses = self.publishers_of(
-            self.resolve_topic_name(SEGMENT_POSES.name), 'geometry_msgs/PoseArray'
-        )
+        poses = self.publishers_of(SEGMENT_POSES.name, 'geometry_msgs/PoseArray')
         replay = self.clock_rate.rate if self.is_simulated else None
         statuses = self._sway_report.statuses(
             self._run, self.pacer, self.stream.frames, replay, wind, poses
@@ -447,4 +214,6 @@ class SolverNode(TreeSwayNode):
         statuses += self.refusals.statuses()
         level, text = (WARN, '; '.join(self._warnings)) if self._warnings else (OK, 'as stated')
         statuses.append(Status('tree', level, shown(text, LONGEST_NOTE), {}))
-        return statuses if self._imu is None else [*statuses, *self._imu.statuses()]
+        for annex in self._annexes:
+            statuses += annex.statuses()
+        return statuses

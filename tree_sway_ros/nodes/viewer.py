@@ -11,9 +11,8 @@ import time
 from typing import Any
 
 from geometry_msgs.msg import Transform, Vector3, Wrench
-from rcl_interfaces.msg import Parameter as ParameterMessage
-from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import MultiDOFJointState
 from std_srvs.srv import SetBool, Trigger
 
@@ -182,8 +181,8 @@ class ViewerNode(TreeSwayNode):
         elif name == 'pause':
             self._ask(self._pause, SetBool.Request(data=bool(value)))
         else:
-            number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
-            request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
+            number = Parameter(name, value=float(value)).to_parameter_msg()
+            request = SetParameters.Request(parameters=[number])
             self._ask(self._setters[_LIVE[name][0]], request)
 
     def _pull(

@@ -5,3 +5,13 @@ Parameters of nodes: one table each, from which declaration, checks and document
 
 After a refusal the old value stays. The meaning of a parameter is in the module that uses it.
 """
+
+from typing import TYPE_CHECKING
+
+from tree_sway.faces import face
+
+if TYPE_CHECKING:
+    from tree_sway_ros.parameters.annexes import ANNEXES as ANNEXES
+    from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS as NODE_PARAMETERS
+else:
+    __getattr__, __dir__, __all__ = face(__name__)

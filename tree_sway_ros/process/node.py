@@ -27,7 +27,7 @@ from tree_sway_ros.timing.clock_rate import ClockRate
 from tree_sway_ros.timing.pacer import Pacer, Tick
 
 REPORT_PERIOD = 1.0
-"""Interval of reports [s] of wall time, also while simulated time is paused."""
+"""Interval of reports [s] of wall time."""
 
 _REPLAY_LIMITS = {'lead': LONGEST_TRANSPORT, 'lag': 5 * LONGEST_TRANSPORT}
 """
@@ -184,6 +184,11 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Start a timer, with the guard around the callback."""
         return super().create_timer(period, self.guard.wrapped(callback), *more, **named)
 
+    def create_steady_timer(self, period: float, callback: Any) -> None:
+        """Start a timer of a period [s] of wall time, also while simulated time is paused."""
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(period, callback, clock=steady)
+
     def publisher(self, topic: Topic, kind: Any = None, *, is_replay: bool | None = None) -> Any:
         """
         Make a publisher of a topic of the table, of a kind where a parameter chooses it.
@@ -271,8 +276,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self._collect = collect
         profile = qos_profile(DIAGNOSTICS)
         self._diagnostics = self.create_publisher(DiagnosticArray, DIAGNOSTICS.name, profile)
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(REPORT_PERIOD, self.report, clock=steady)
+        self.create_steady_timer(REPORT_PERIOD, self.report)
 
     def report(self) -> None:
         """Publish one report, with the failures of callbacks."""

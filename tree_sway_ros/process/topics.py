@@ -37,26 +37,28 @@ class Topic:
 
 
 _TABLE = yaml.safe_load(Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8'))
-_BY_NAME = {name: Topic(name, **keys) for name, keys in _TABLE.items()}
-TOPICS = tuple(_BY_NAME.values())
+TOPICS = tuple(Topic(name, **keys) for name, keys in _TABLE.items())
 
-WIND = _BY_NAME['wind']
-WIND_FILTERED = _BY_NAME['wind/filtered']
-FORCE_PLANE = _BY_NAME['wind/force_plane']
-SEGMENT_POSES = _BY_NAME['segment_poses']
-MARKERS = _BY_NAME['markers']
-TREE_DESCRIPTION = _BY_NAME['tree_description']
-TREE_STATE = _BY_NAME['tree_state']
-CAMERA = _BY_NAME['camera']
-IMU = _BY_NAME['imu']
-PUSH = _BY_NAME['~/push']
-PULL = _BY_NAME['~/pull']
-WIND_AT = _BY_NAME['~/wind_at']
-WIND_THERE = _BY_NAME['~/wind_there']
-DIAGNOSTICS = _BY_NAME['/diagnostics']
-CLOCK = _BY_NAME['/clock']
-TF = _BY_NAME['/tf']
-TF_STATIC = _BY_NAME['/tf_static']
+# In the order of the file.
+(
+    WIND,
+    WIND_FILTERED,
+    FORCE_PLANE,
+    SEGMENT_POSES,
+    MARKERS,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+    CAMERA,
+    IMU,
+    PUSH,
+    PULL,
+    WIND_AT,
+    WIND_THERE,
+    DIAGNOSTICS,
+    CLOCK,
+    TF,
+    TF_STATIC,
+) = TOPICS
 
 
 def qos_profile(topic: Topic, *, is_input: bool = False, is_replay: bool = False) -> Any:

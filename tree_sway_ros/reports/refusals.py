@@ -24,23 +24,20 @@ class Refusals:
 
     def __init__(self, kinds: Sequence[str]) -> None:
         self._lock = threading.Lock()
-        self._counts = dict.fromkeys(kinds, 0)
-        self._reasons = dict.fromkeys(kinds, '')
+        self._refused = dict.fromkeys(kinds, (0, ''))
 
     def note(self, kind: str, why: str) -> None:
         """Count a refused message of a kind."""
         with self._lock:
-            self._counts[kind] += 1
-            self._reasons[kind] = why
+            self._refused[kind] = self._refused[kind][0] + 1, why
 
     def statuses(self) -> list[Status]:
         """Report each kind: how many were refused, and why the last one was."""
         with self._lock:
-            counts = dict(self._counts)
-            reasons = dict(self._reasons)
+            refused = dict(self._refused)
         return [
-            Status(kind, WARN, f'{count} refused: {reasons[kind]}', {'refused': count})
+            Status(kind, WARN, f'{count} refused: {why}', {'refused': count})
             if count
             else Status(kind, OK, 'none refused', {'refused': 0})
-            for kind, count in counts.items()
+            for kind, (count, why) in refused.items()
         ]

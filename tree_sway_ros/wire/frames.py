@@ -90,34 +90,23 @@ class BufferedFrames:
         return Rotation.from_quat((q.x, q.y, q.z, q.w)).as_matrix()
 
 
-class HeardFrames:
+class HeardFrames(Frames):
     """Known frames, of the messages of tf2."""
 
     def __init__(self, node: Any) -> None:
-        self._frames = Frames()
+        super().__init__()
         for topic in (TF, TF_STATIC):
-            node.subscription(topic, lambda heard: self._frames.take(heard.transforms))
-
-    def rotation(self, frame: str, base: str) -> Floats | None:
-        """Rotation (3, 3) of vectors of a frame into a second one; None if not connected."""
-        return self._frames.rotation(frame, base)
+            node.subscription(topic, lambda heard: self.take(heard.transforms))
 
 
-class NoFrames:
-    """Known frames where tf2 is not installed."""
-
-    def rotation(self, _frame: str, _base: str) -> None:
-        """Return None."""
-
-
-def listen(node: Any) -> BufferedFrames | HeardFrames | NoFrames:
-    """Begin to listen to frames, by the best that is installed."""
+def listen(node: Any) -> BufferedFrames | Frames:
+    """Begin to listen to frames, by the best that is installed; without tf2 none is known."""
     for kind in (BufferedFrames, HeardFrames):
         try:
             return kind(node)
         except ImportError:
             continue
-    return NoFrames()
+    return Frames()
 
 
 class FrameListener:
@@ -134,7 +123,7 @@ class FrameListener:
         self.is_lacking = False
         self.is_waiting = False
         self._latest = -math.inf
-        if isinstance(self._frames, NoFrames):
+        if type(self._frames) is Frames:
             self._until = 0.0
             self._lack = 'tf2_msgs is not installed'
 

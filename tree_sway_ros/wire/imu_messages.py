@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from sensor_msgs.msg import Imu
 
-_SECOND = 1_000_000_000
+from tree_sway_ros.wire.wind_messages import fill_stamp, stamp_to_ns
 
 
 class ImuSample(NamedTuple):
@@ -36,7 +36,6 @@ class ImuSample(NamedTuple):
 
 def motion_from_message(message: Any) -> ImuSample:
     """Return the motion of a message."""
-    stamp = message.header.stamp
     turn = message.orientation
     parts = (
         (message.linear_acceleration, message.linear_acceleration_covariance),
@@ -50,7 +49,7 @@ def motion_from_message(message: Any) -> ImuSample:
     quaternion = (turn.x, turn.y, turn.z, turn.w)
     is_turned = stated[0] != -1.0 and any(quaternion)
     return ImuSample(
-        stamp.sec * _SECOND + stamp.nanosec,
+        stamp_to_ns(message.header.stamp),
         vectors[0],
         vectors[1],
         quaternion if is_turned else None,
@@ -66,7 +65,7 @@ def imu_message(
 ) -> Any:
     """Make a message of a stamp [ns]; covariances of what is None begin with -1, others are 0."""
     message = Imu()
-    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, _SECOND)
+    fill_stamp(message.header.stamp, stamp)
     for values, part, covariance, names in (
         (acceleration, message.linear_acceleration, message.linear_acceleration_covariance, 'xyz'),
         (rate, message.angular_velocity, message.angular_velocity_covariance, 'xyz'),

@@ -71,9 +71,7 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
     """Write a wind message of any of the four types."""
     message = message_class()
     vector = _VECTORS[message_class](message)
-    vector.x = float(sample.u)
-    vector.y = float(sample.v)
-    vector.z = float(sample.w)
+    vector.x, vector.y, vector.z = map(float, sample[2:])
     if hasattr(message, 'header'):
         fill_stamp(message.header.stamp, sample.stamp)
         message.header.frame_id = sample.frame_id

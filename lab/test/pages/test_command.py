@@ -22,8 +22,8 @@ from tree_sway_lab.pages.command import (  # noqa: E402
 from tree_sway.commands import cli  # noqa: E402
 from tree_sway.core.species.species import species_keys  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
-from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS  # noqa: E402
-from tree_sway_ros.process.topics import TOPICS  # noqa: E402
+from tree_sway_ros.parameters import NODE_PARAMETERS  # noqa: E402
+from tree_sway_ros.process import TOPICS  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 MARK = 'before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n'

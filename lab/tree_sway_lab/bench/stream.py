@@ -75,7 +75,7 @@ def time_stream(
     import rclpy
     from rclpy.qos import QoSProfile
 
-    from tree_sway_ros.wire.cdr import pose_array_template
+    from tree_sway_ros.wire import pose_array_template
 
     template = pose_array_template(n_poses, 'map')
     rclpy.init()

@@ -31,8 +31,8 @@ from tree_sway_lab.commands import COMMANDS as LAB_COMMANDS
 from tree_sway_lab.pages.notebooks import notebook, with_outputs
 from tree_sway_lab.pages.published_drawing import published_drawing
 from tree_sway_lab.pages.rooms import rooms_drawing
-from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.process.topics import TOPICS
+from tree_sway_ros.parameters import NODE_PARAMETERS
+from tree_sway_ros.process import TOPICS
 
 PAGES = ('README.md', 'doc/models.md', 'doc/reference.md', 'doc/sway_model.md', 'doc/trees.md')
 """Pages with tables."""

@@ -28,7 +28,7 @@ from tree_sway.files.trees import open_scene
 from tree_sway.stream import StreamClient
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile
+from tree_sway_ros.process import DIAGNOSTICS, message_class, qos_profile
 
 _WARM, _WARM_SHARE = 600.0, 0.2
 """Time at the beginning whose growth is start and not leak [s]; its largest share of a run."""

@@ -6,6 +6,7 @@ pytest.importorskip('rclpy')
 
 from rclpy.qos import ReliabilityPolicy  # noqa: E402, I100
 
+from tree_sway_ros.process import topics  # noqa: E402
 from tree_sway_ros.process.topics import (
     CLOCK,
     DIAGNOSTICS,
@@ -20,6 +21,12 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
+
+
+@pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
+def test_each_has_the_constant_of_its_name(topic):
+    name = topic.name.removeprefix('~').lstrip('/').replace('/', '_').upper()
+    assert getattr(topics, name.replace('WIND_FORCE', 'FORCE')) is topic
 
 
 def test_names_are_relative_but_those_that_ros_fixes():

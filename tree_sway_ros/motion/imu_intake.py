@@ -13,19 +13,16 @@ from typing import Any
 from tree_sway.core.scene import Run
 from tree_sway.errors import ParameterError
 from tree_sway.twin import ObservedTree, sensor_reports
-from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.one_publisher import OnePublisher
+from tree_sway_ros.solver import SolverAnnex, UNHEARD
 from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
 
 _TYPE, _SHOWN = 'sensor_msgs/Imu', 5
-
-UNHEARD = -1
-"""In place of the stamp of a topic's newest sample, before any: no stamp is negative."""
 
 
 def places_of(text: str) -> dict[str, str]:
@@ -46,49 +43,40 @@ def places_of(text: str) -> dict[str, str]:
     return found
 
 
-class ImuIntake:
+class ImuIntake(SolverAnnex):
     """
-    Subscriptions of the sensors of an observed tree.
+    Subscriptions of the sensors of an observed tree, which who makes it sets.
 
     Samples are handed to the thread of the steps, so that no callback waits for a step.
-
-    Parameters
-    ----------
-    node
-        The node that subscribes.
-    run
-        Runtime that steps the tree.
-    twin
-        The tree.
-    arrived
-        Function called after each sample.
-
     """
 
-    def __init__(
-        self, node: TreeSwayNode, run: Run, twin: ObservedTree, arrived: Callable[[], object]
-    ) -> None:
-        self._node = node
+    twin: ObservedTree
+
+    def begin(self, run: Run, arrived: Callable[[], object]) -> None:
+        """Subscribe to each sensor."""
         self._run = run
-        self._twin = twin
         self._arrived = arrived
         self._clocks_apart: dict[str, tuple[int, float]] = {}
         self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}
-        self._followed = {topic: OnePublisher() for topic in twin.sensors}
-        for topic in twin.sensors:
-            node.subscription(replace(IMU, name=topic), self._callback_of(topic))
+        self._followed = {topic: OnePublisher() for topic in self.twin.sensors}
+        for topic in self.twin.sensors:
+            self.node.subscription(replace(IMU, name=topic), self._callback_of(topic))
+
+    def before_step(self, felt: float) -> None:
+        """Note the time at which sensors are read."""
+        self.twin.set_time(felt)
 
     def _callback_of(self, topic: str) -> Any:
-        publishers = partial(self._node.count_publishers, topic)
+        publishers = partial(self.node.count_publishers, topic)
 
         def receive(message: Any, info: Mapping[str, object]) -> None:
             if not self._followed[topic].admits(info, publishers, time.monotonic()):
                 return
             sample = motion_from_message(message)
-            now = int(self._node.get_clock().now().nanoseconds)
+            now = int(self.node.get_clock().now().nanoseconds)
             stamp = sample.stamp or now
-            limits = self._node.stamp_limits
+            limits = self.node.stamp_limits
             if not -_APART - limits['lag'] <= stamp - now <= _APART + limits['lead']:
                 count, _ = self._clocks_apart.get(topic, (0, 0.0))
                 self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
@@ -100,32 +88,17 @@ class ImuIntake:
         return receive
 
     def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
-        """
-        Tell which sensors have not yet sent what a step reads of them.
-
-        Parameters
-        ----------
-        end
-            End of the step in [ns].
-        delay
-            Delay of the wind in [s], as for `Run.advance`.
-
-        Yields
-        ------
-        tuple[str, int]
-            Topic, and the stamp of its newest sample in [ns].
-
-        """
+        """Tell which sensors have not yet sent what a step reads of them."""
         # A step averages the samples within half a period about its time.
         read = end - round(1e9 * self._run.behind(delay)) + self._run.period // 2
-        for topic in self._twin.sensors:
+        for topic in self.twin.sensors:
             newest = self._newest.get(topic, UNHEARD)
-            if newest <= read and (newest != UNHEARD or self._node.count_publishers(topic)):
+            if newest <= read and (newest != UNHEARD or self.node.count_publishers(topic)):
                 yield topic, newest
 
     def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:
         """Offer a sample, in the thread of the steps."""
-        sensor = self._twin.sensors[topic]
+        sensor = self.twin.sensors[topic]
         sensor.stated_noise = sample.noise
         sensor.offer(
             stamp * 1e-9,
@@ -134,9 +107,9 @@ class ImuIntake:
             orientation=sample.orientation,
         )
 
-    def _learned(self) -> dict[str, float]:
+    def _learned_values(self) -> dict[str, float]:
         """Values of what the sensors have told about the tree; none before the first fit."""
-        learned = self._twin.learned
+        learned = self.twin.learned
         if learned is None:
             return {}
         return {
@@ -149,8 +122,8 @@ class ImuIntake:
 
     def _find_band(self) -> None:
         """Find how sure the motion is, in the thread of the steps."""
-        if self._twin.members is not None:
-            low, high = self._twin.sway_band().tolist()
+        if self.twin.members is not None:
+            low, high = self.twin.sway_band().tolist()
             self._band = {
                 'highest tip of 80 % of trees, from [m]': round(low, 4),
                 'highest tip of 80 % of trees, to [m]': round(high, 4),
@@ -160,13 +133,13 @@ class ImuIntake:
         """Report each sensor: in use or why not, and its counts."""
         found = []
         self._run.request(self._find_band)
-        for each in sensor_reports(self._twin):
+        for each in sensor_reports(self.twin):
             problem = each.problem
             counts = each.counts
             others = self._followed[each.name].refused
             apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
-                'place': self._twin.at[each.name],
+                'place': self.twin.at[each.name],
                 'rate [Hz]': round(each.rate, 1),
                 'residual over its expected size': round(each.residual, 2),
                 'accepted': counts.accepted,
@@ -176,9 +149,9 @@ class ImuIntake:
                 'silent': counts.silent,
                 'disagreed': counts.disagreed,
                 'late [s]': round(each.late, 4),
-                'share of the motion that the wind explains': round(self._twin.explained, 3),
+                'share of the motion that the wind explains': round(self.twin.explained, 3),
                 **self._band,
-                **self._learned(),
+                **self._learned_values(),
             }
             if apart and not counts.accepted:
                 problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
@@ -191,8 +164,8 @@ class ImuIntake:
                 values['frequencies over those before'] = round(each.change.ratio, 3)
                 values['their error by chance and wind'] = round(each.change.error, 3)
             faults = [problem] if problem else []
-            if self._node.count_publishers(each.name) > 1:
-                names = sorted(self._node.publishers_of(each.name, _TYPE))
+            if self.node.count_publishers(each.name) > 1:
+                names = sorted(self.node.publishers_of(each.name, _TYPE))
                 faults.append(
                     f'{len(names)} publishers: {", ".join(names[:_SHOWN])}; one is followed, '
                     f'{others} samples of others were refused'

@@ -15,7 +15,7 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.files.trees.source import open_tree
-from tree_sway_ros.nodes.state_publisher import StatePublisher
+from tree_sway_ros.solver import StatePublisher
 
 SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 60.0

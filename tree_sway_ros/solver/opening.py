@@ -1,0 +1,39 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The trees that a solver sways, where they stand, and the settings of their model."""
+
+from __future__ import annotations
+
+from tree_sway.core.scene import Scene, shard_of
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import LEAVES
+from tree_sway.core.species import species_named
+from tree_sway.core.wind import WindProfile
+from tree_sway.files.trees import open_scene
+from tree_sway_ros.parameters.declaration import ParameterValues
+
+
+def scene_of(values: ParameterValues) -> Scene:
+    """Open the trees that parameters name."""
+    named = values['species']
+    source = open_scene(
+        values['tree'],
+        wood=lambda found: species_named(named) if named else found,
+        in_leaf=LEAVES[values['leaves']],
+        warn=False,
+    )
+    x, y, z, yaw = values['pose']
+    moved = source.moved(x=x, y=y, z=z, yaw=yaw)
+    return shard_of(moved, values['shard.index'], values['shard.count'])
+
+
+def settings_of(values: ParameterValues) -> Settings:
+    """Return the settings of the model by the parameters."""
+    return Settings(
+        **values.subset('model', 'gravity'),
+        volume_stiffness=values['volume_rule.stiffness'],
+        volume_damping=values['volume_rule.damping'],
+        in_leaf=LEAVES[values['leaves']],
+        damping_ratio=values['damping_ratio'] or None,
+        profile=WindProfile(values['profile'], values['anemometer_height']),
+    )
