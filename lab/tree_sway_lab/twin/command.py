@@ -29,10 +29,19 @@ import argparse
 from dataclasses import replace
 import sys
 
+import numpy as np
+
 from tree_sway.commands.ending import Ending
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.twin.sensor_advice import advised_places
-from tree_sway_lab.twin.gusty_truth import gusty_motion, kinds_of, Outside
+from tree_sway_lab.twin.gusty_truth import (
+    gusty_motion,
+    kinds_of,
+    known_tree,
+    mast_of,
+    Outside,
+    told_wind,
+)
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sway_comparison import BANDS
@@ -57,6 +66,7 @@ _HEAD = (
     'us/step',
     'us 99 %',
     'us beside',
+    *(f'to {high:g} f1' for _, high in BANDS),
     'notes',
 )
 CUTOFFS = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03)
@@ -192,6 +202,17 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             passed = [squared_score(true, share * frequency) for share in CUTOFFS]
             best = min(passed, key=lambda score: score.error)
             scores.setdefault('U^2', []).append(best)
+            distance, bearing = mast_of(outside)
+            apart = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+            for motion in ('expected', 'sample'):
+                far = make_simulator(tree, species, in_leaf=in_leaf, motion=motion, **apart)
+                scores.setdefault(motion, []).append(plain_score(far, true))
+            true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
+            told = true._replace(wind=told_wind(tree, outside, true.wind))
+            scores.setdefault('bound', []).append(plain_score(true_one, told))
+            for motion in ('expected', 'sample'):
+                far = known_tree(tree, species, outside, in_leaf=in_leaf, motion=motion, **apart)
+                scores.setdefault(f'{motion} (known tree)', []).append(plain_score(far, true))
         known.reset()
         scores.setdefault('model', []).append(plain_score(known, true))
         for count in arguments.sensors:
@@ -223,6 +244,7 @@ def _print(name: str, sensors: str, score: Score) -> None:
         f'{score.cost:.0f}',
         f'{score.worst:.0f}',
         f'{score.beside:.0f}',
+        *(f'{each:.2f}' for each in score.bands or [np.nan] * len(BANDS)),
     ]
     print(','.join([*row, '; '.join(score.notes)]))
     sys.stdout.flush()
