@@ -187,6 +187,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
+        apart: dict[str, float] = {}
         if arguments.easy:
             true = true_motion(tree, species, places, each, in_leaf=in_leaf, model=model)
             scores.setdefault('U^2', []).append(squared_score(true, frequency))
@@ -203,16 +204,16 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             best = min(passed, key=lambda score: score.error)
             scores.setdefault('U^2', []).append(best)
             distance, bearing = mast_of(outside)
-            apart = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
-            for motion in ('expected', 'sample'):
-                far = make_simulator(tree, species, in_leaf=in_leaf, motion=motion, **apart)
-                scores.setdefault(motion, []).append(plain_score(far, true))
+            apart |= {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+            for gusts in ('expected', 'sample'):
+                far = make_simulator(tree, species, in_leaf=in_leaf, gusts=gusts, **apart)
+                scores.setdefault(gusts, []).append(plain_score(far, true))
             true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
             told = true._replace(wind=told_wind(tree, outside, true.wind))
             scores.setdefault('bound', []).append(plain_score(true_one, told))
-            for motion in ('expected', 'sample'):
-                far = known_tree(tree, species, outside, in_leaf=in_leaf, motion=motion, **apart)
-                scores.setdefault(f'{motion} (known tree)', []).append(plain_score(far, true))
+            for gusts in ('expected', 'sample'):
+                far = known_tree(tree, species, outside, in_leaf=in_leaf, gusts=gusts, **apart)
+                scores.setdefault(f'{gusts} (known tree)', []).append(plain_score(far, true))
         known.reset()
         scores.setdefault('model', []).append(plain_score(known, true))
         for count in arguments.sensors:
@@ -226,6 +227,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 has_band=not arguments.without_band,
                 known=each if arguments.known else None,
                 upwind=each.upwind if arguments.tell_upwind else 0.0,
+                **apart,
             )
             scores.setdefault(str(count), []).append(score)
     for sensors, found in scores.items():

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 import time
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
@@ -148,11 +149,12 @@ def twin_score(
     has_band: bool = True,
     upwind: float = 0.0,
     known: Circumstances | None = None,
+    **changes: Any,
 ) -> Score:
     """
     Score a tree that sensors correct, told how far upwind the anemometer is [m].
 
-    With what is ``known`` of the true tree, its wood and damping are the model's.
+    Further settings are those of `ObservedTree`. With what is ``known`` of the true tree, its wood and damping are the model's.
     """
     damping_ratio = None
     if known is not None:
@@ -170,6 +172,7 @@ def twin_score(
         has_band=has_band,
         upwind=upwind,
         submit=submit_beside,
+        **changes,
     )
     rng = np.random.default_rng(seed)
     for name in places:
