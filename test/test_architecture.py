@@ -41,7 +41,7 @@ STOREYS = {
 }  # fmt: skip
 #: Rooms with a face of their own.
 WINGS = {
-    'core.wind.simulated', 'files.export', 'files.models', 'files.motion', 'files.recording',
+    'core.wind.gusts', 'core.wind.simulated', 'files.export', 'files.models', 'files.motion', 'files.recording',
     'files.scenes', 'files.trees', 'files.wind',
 }  # fmt: skip
 LARGEST_FACE = 25

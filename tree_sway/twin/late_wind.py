@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.wind import follow_mean, WindHistory
+from tree_sway.core.wind.gusts import follow_mean, WindHistory
 
 LONGEST_WAY = 15.0
 """Longest time in [s] by which gusts may be later than at the anemometer."""

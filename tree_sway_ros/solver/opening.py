@@ -30,7 +30,7 @@ def scene_of(values: ParameterValues) -> Scene:
 def settings_of(values: ParameterValues) -> Settings:
     """Return the settings of the model by the parameters."""
     return Settings(
-        **values.subset('model', 'gravity'),
+        **values.subset('model', 'gravity', 'anemometer_distance', 'gusts'),
         volume_stiffness=values['volume_rule.stiffness'],
         volume_damping=values['volume_rule.damping'],
         in_leaf=LEAVES[values['leaves']],

@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.validation.response_slopes import response_slopes, slope_above
 from tree_sway_lab.validation.sections.slopes import FLATTEST, SEEDS, STEEPEST
 
-from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
+from tree_sway.core.wind.gusts.crown_wind import USUAL_COHERENCE
 
 RATE = 30.0
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 import time
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
@@ -20,6 +21,7 @@ from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import LATE_STEPS, ObservedTree
 from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
+from tree_sway_lab.twin.sway_comparison import compare_sway
 from tree_sway_lab.twin.true_tree import Circumstances, DT, TrueMotion
 
 FAULTY = SimulatedSensor(
@@ -64,6 +66,8 @@ class Score:
         CPU time of these in [us] per step, over the whole record.
     notes
         Notes of the sensors.
+    bands
+        Power of the tips over that of the true ones in each of `BANDS` [-].
 
     """
 
@@ -77,13 +81,16 @@ class Score:
     worst: float
     beside: float = 0.0
     notes: tuple[str, ...] = ()
+    bands: tuple[float, ...] = ()
 
 
 def mean_score(scores: Sequence[Score]) -> Score:
     """Return the mean of scores; the notes are those of all."""
-    names = [each.name for each in fields(Score) if each.name != 'notes']
+    names = [each.name for each in fields(Score) if each.name not in ('notes', 'bands')]
     means = {name: float(np.mean([getattr(each, name) for each in scores])) for name in names}
-    return Score(**means, notes=tuple(note for each in scores for note in each.notes))
+    bands = np.exp(np.mean([np.log(each.bands) for each in scores], axis=0))
+    notes = tuple(note for each in scores for note in each.notes)
+    return Score(**means, notes=notes, bands=tuple(np.atleast_1d(bands).tolist()))
 
 
 def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
@@ -97,7 +104,12 @@ def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
         spent[k] = time.thread_time_ns() - began
         tips[k] = tips_of_poses(tree, sim.place(block))
     error, roughness, stem = _compared(tips, true.tips, 0)
-    return Score(error, roughness, error, roughness, stem, np.nan, *_costs(spent))
+    first = round(_TRUSTED * len(tips))
+    flat = [each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips)]
+    bands = compare_sway(*flat, 1.0 / DT, float(sim.frequencies(1)[0])).bands
+    return Score(
+        error, roughness, error, roughness, stem, np.nan, *_costs(spent), bands=bands
+    )  # fmt: skip
 
 
 def _costs(spent: Floats) -> tuple[float, float]:
@@ -136,11 +148,12 @@ def twin_score(
     has_band: bool = True,
     upwind: float = 0.0,
     known: Circumstances | None = None,
+    **changes: Any,
 ) -> Score:
     """
     Score a tree that sensors correct, told how far upwind the anemometer is [m].
 
-    With what is ``known`` of the true tree, its wood and damping are the model's.
+    Further settings are those of `ObservedTree`. With what is ``known`` of the true tree, its wood and damping are the model's.
     """
     damping_ratio = None
     if known is not None:
@@ -158,6 +171,7 @@ def twin_score(
         has_band=has_band,
         upwind=upwind,
         submit=submit_beside,
+        **changes,
     )
     rng = np.random.default_rng(seed)
     for name in places:

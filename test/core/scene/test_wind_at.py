@@ -12,7 +12,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.gust_travel import GustHistory
+from tree_sway.core.wind.gusts.gust_travel import GustHistory
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.model import SwayModel, WIDTH
-from tree_sway.core.wind import CrownWind
+from tree_sway.core.wind.gusts import CrownWind
 
 
 class CrownGusts:

@@ -22,7 +22,7 @@ from tree_sway.core.oscillators import propagator
 from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
 from tree_sway.core.scene.placement_records import own_step
 from tree_sway.core.scene.table_export import arrays_of_table
-from tree_sway.core.wind import GustHistory
+from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import ParameterError
 
 _SLOWEST = 0.3

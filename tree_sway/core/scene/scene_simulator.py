@@ -45,7 +45,8 @@ from tree_sway.core.tree_state import (
     TreeState,
     values_of,
 )
-from tree_sway.core.wind import GustHistory, is_wind
+from tree_sway.core.wind import is_wind
+from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import inside, ParameterError
 
 if TYPE_CHECKING:

@@ -24,15 +24,9 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.climate import WindClimate as WindClimate
     from tree_sway.core.wind.convention import velocity_of_bearing as velocity_of_bearing
     from tree_sway.core.wind.convention import WindConvention as WindConvention
-    from tree_sway.core.wind.crown_wind import CrownWind as CrownWind
-    from tree_sway.core.wind.crown_wind import DECAY as DECAY
-    from tree_sway.core.wind.crown_wind import delays_of as delays_of
-    from tree_sway.core.wind.crown_wind import N_DELAYS as N_DELAYS
-    from tree_sway.core.wind.crown_wind import USUAL_COHERENCE as USUAL_COHERENCE
     from tree_sway.core.wind.gate import GateCounts as GateCounts
     from tree_sway.core.wind.gate import LONGEST_TRANSPORT as LONGEST_TRANSPORT
     from tree_sway.core.wind.gate import WindGate as WindGate
-    from tree_sway.core.wind.gust_travel import GustHistory as GustHistory
     from tree_sway.core.wind.height_profile import WindProfile as WindProfile
     from tree_sway.core.wind.intake import GoodWind as GoodWind
     from tree_sway.core.wind.intake import WindIntake as WindIntake
@@ -41,7 +35,5 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.limits import is_wind as is_wind
     from tree_sway.core.wind.limits import shorter_than as shorter_than
     from tree_sway.core.wind.sensor_timing import SensorTiming as SensorTiming
-    from tree_sway.core.wind.wind_history import follow_mean as follow_mean
-    from tree_sway.core.wind.wind_history import WindHistory as WindHistory
 else:
     __getattr__, __dir__, __all__ = face(__name__)

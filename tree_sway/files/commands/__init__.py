@@ -25,8 +25,12 @@ if TYPE_CHECKING:
     from tree_sway.files.commands.arguments import write_tree_file as write_tree_file
     from tree_sway.files.commands.moments import at_moments as at_moments
     from tree_sway.files.commands.moments import frame_times as frame_times
+    from tree_sway.files.commands.wind_arguments import (
+        add_distance_arguments as add_distance_arguments,
+    )
     from tree_sway.files.commands.wind_arguments import add_sway_arguments as add_sway_arguments
     from tree_sway.files.commands.wind_arguments import add_wind_arguments as add_wind_arguments
+    from tree_sway.files.commands.wind_arguments import distance_settings as distance_settings
     from tree_sway.files.commands.wind_arguments import opened_record as opened_record
     from tree_sway.files.commands.wind_arguments import opened_wind as opened_wind
     from tree_sway.files.commands.wind_arguments import refuse_unused_wind as refuse_unused_wind

@@ -24,8 +24,10 @@ from tree_sway.core.species import species_named
 from tree_sway.core.tree import rooted
 from tree_sway.errors import ParameterError
 from tree_sway.files.commands import (
+    add_distance_arguments,
     add_sway_arguments,
     chosen_leaves,
+    distance_settings,
     opened_scene,
     opened_wind,
     refuse_unused_wind,
@@ -62,6 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
+    add_distance_arguments(parser, 'sample')
     for each in additions('show'):
         each.add_arguments(parser)
     add_page_arguments(parser)
@@ -168,7 +171,8 @@ def build_scene(
     in_leaf = chosen_leaves(arguments)
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
-    settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    far = distance_settings(arguments) if is_first and count == 1 else {}
+    settings = Settings(damping_ratio=damping, in_leaf=in_leaf, **far)
     for each in added if is_first else ():
         simulator = each.simulator(scene, settings, choices)
         if simulator is not None:

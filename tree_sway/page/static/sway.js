@@ -146,7 +146,7 @@ class Gusts {
       this._wind.at, dt, this.felt.at);
   }
 
-  /** Continue from the last minute of a server, `GustHistory.recent` of tree_sway/core/wind/gust_travel.py.
+  /** Continue from the last minute of a server, `GustHistory.recent` of tree_sway/core/wind/gusts/gust_travel.py.
    * @param {Recent} recent */
   goOn({ mean, delay, wind }) {
     this._history.values.fill(0);

@@ -15,12 +15,14 @@ from tree_sway.commands import waiting
 from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.commands import (
+    add_distance_arguments,
     add_leaves_argument,
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
     add_wind_arguments,
     chosen_leaves,
+    distance_settings,
     opened_record,
     opened_tree,
     output_path,
@@ -52,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser)
     add_wind_arguments(parser)
     add_sensor_argument(parser)
+    add_distance_arguments(parser, 'expected')
     add_exposure_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
@@ -102,7 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(ground), motion=motion,
-            band=arguments.band,
+            band=arguments.band, **distance_settings(arguments),
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from tree_sway.core.settings import Settings
-from tree_sway.core.wind import USUAL_COHERENCE
+from tree_sway.core.wind.gusts import USUAL_COHERENCE
 from tree_sway_lab.validation.gust_response import (
     CLEAR_PEAK,
     gust_response,

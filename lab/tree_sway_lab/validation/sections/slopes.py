@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from tree_sway.core.wind import USUAL_COHERENCE
+from tree_sway.core.wind.gusts import USUAL_COHERENCE
 from tree_sway_lab.validation.response_slopes import response_slopes, Slopes, SPECIES
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 

@@ -16,7 +16,8 @@ from tree_sway.core.settings import USUAL
 from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind import USUAL_COHERENCE, WindClimate
+from tree_sway.core.wind import WindClimate
+from tree_sway.core.wind.gusts import USUAL_COHERENCE
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees import open_tree
 from tree_sway.growth import BUILTIN_TREES

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, refuse_time_step, three_numbers, within
-from tree_sway.core.wind.wind_history import follow_mean, WindHistory
+from tree_sway.core.wind.gusts.wind_history import follow_mean, WindHistory
 from tree_sway.errors import ParameterError
 
 SLOWEST_GUST = 0.5

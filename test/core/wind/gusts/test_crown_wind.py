@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.wind.crown_wind import (
+from tree_sway.core.wind.gusts.crown_wind import (
     crown_delays,
     CrownWind,
     LONGEST_DELAY,

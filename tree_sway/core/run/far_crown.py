@@ -1,0 +1,83 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The winds of the parts of a crown apart from its anemometer, and where a step reads them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.wind.gusts import FarWind, N_DELAYS, parts_of
+
+if TYPE_CHECKING:
+    from tree_sway.core.model import SwayModel
+    from tree_sway.core.run.bank import Bank
+    from tree_sway.core.run.crown_gusts import CrownGusts
+    from tree_sway.core.settings import Settings
+    from tree_sway.core.tree import Tree
+
+
+_SIZE = 0.65
+"""
+Size of a part over the root mean square distance from its middle [-].
+
+It is half the mean distance of two places in it: a part moves most at its end.
+"""
+
+
+class FarCrown:
+    """The wind of a crown; that of its parts is written where the step of the model reads it."""
+
+    def __init__(
+        self, model: SwayModel, bank: Bank, gusts: CrownGusts | None, settings: Settings
+    ) -> None:
+        """Start without wind; observed trees, whose models have one wind, draw what may be too."""
+        branches = bank.branches
+        is_sample = settings.gusts == 'sample' and settings is model.settings
+        is_drawn = is_sample or settings is not model.settings
+        tree = model.tree
+        wood = parts_of(tree)
+        load = wood.share
+        if model.has_limbs:
+            load = np.bincount(model.limb_delay, branches['area'], N_DELAYS)
+        places, size = self._places(tree, wood.of_branch[tree.branch_of_segment])
+        self.wind = FarWind(
+            places,
+            size,
+            load / load.sum(),
+            settings.anemometer_distance,
+            settings.anemometer_bearing,
+            int(settings.gust_seed) if is_drawn else None,
+            is_sample=is_sample,
+        )
+        self._apart = self._read_by_step(bank, gusts)
+
+    def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
+        """Add the wind of a step at the anemometer [m/s]; return that of the crown."""
+        east, north, up = self.wind.push(x, y, z, dt, self._apart).tolist()
+        return east, north, up
+
+    @staticmethod
+    def _places(tree: Tree, part: Ints) -> tuple[Floats, Floats]:
+        """Middle of each part from the highest point [m], (g, 3), and its size [m], (g,)."""
+        area = tree.length * (tree.base_diameter + tree.tip_diameter)
+        total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
+        centre = 0.5 * (tree.start + tree.end)
+        middle = np.stack([np.bincount(part, area * x, N_DELAYS) / total for x in centre.T], axis=1)
+        square = np.square(centre - middle[part]).sum(axis=1)
+        radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
+        return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius
+
+    @staticmethod
+    def _read_by_step(bank: Bank, gusts: CrownGusts | None) -> Floats:
+        """Winds of the parts less that of the crown, (parts, 3), where the model has them."""
+        stand = getattr(bank.oscillators, 'stand', None)
+        if gusts is not None:
+            memory = gusts.wind.memory()[0]
+        elif stand is not None and stand.states.history.size:
+            memory = stand.states.history[bank.oscillators.number]
+        else:
+            memory = np.zeros(3 * N_DELAYS)
+        return np.asarray(memory[-3 * N_DELAYS :].reshape(N_DELAYS, 3))
