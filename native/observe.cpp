@@ -36,8 +36,9 @@ constexpr int64_t SPARE = 2;
 // disagrees and below which it agrees, and the time after which it is trusted again [s].
 constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN = 5.0;
 
-// Largest square that counts: after a knock a sensor is to be followed again in half a minute.
-constexpr double LARGEST = 1e4;
+// Largest square that counts, that of the largest innovation which corrects: one spike in a hundred
+// samples is no reason to disagree, and after a knock a sensor is to be followed again.
+constexpr double LARGEST = CLIPPED * CLIPPED;
 
 // to += factor * values, whose loop has no order: sums run over rows, not along them.
 void add_row(int64_t count, double factor, const double *values, double *__restrict to) {
