@@ -4,7 +4,7 @@
 One sensor over time: first its mounting is found, then it is in use while it agrees.
 
 Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
-the model has in the wind alone. From then on its mounting is found again after 1.4 times as long,
+the model has in the wind alone. From then on its mounting is found again after 1.2 times as long,
 and so on, from all motion of the last ten minutes.
 """
 
@@ -34,7 +34,7 @@ from tree_sway.twin.wind_lag import find_lag
 LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
-_LATER, _MEMORY = 1.4, 600.0
+_LATER, _MEMORY = 1.2, 600.0
 _ABSENT_AFTER = 1.0
 _KNOCKED = 5.0
 _COMPARED, _LEAST_COMPARED = 8.0, 3.0
@@ -198,7 +198,7 @@ class SensorTrack:
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.newest, excess=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
+            newest=sensor.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
         self.fitted_motion = self.watched_motion = self._moved[:2]
@@ -293,7 +293,7 @@ class SensorTrack:
         self.alignment = None
         native.in_use = native.is_mounted = native.is_refused = native.count = 0
         native.is_awaited = 1
-        native.excess = 1.0
+        native.excess = native.usual = 1.0
         self._next_fit = round(LEARNING / self._dt)
         return True
 
