@@ -70,15 +70,12 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
         A text of another form, an unknown branch or segment, or a height above the stem.
 
     """
-    text, is_told, bearing = str(where).strip().partition(' facing ')
+    text, is_told, bearing = str(where).strip().partition(' facing')
     if is_told:
-        facing = math.radians(90.0 - within('facing', bearing, -360.0, 360.0, 'degrees'))
-        return place_on(tree, text)._replace(facing=facing)
+        bearing_to = within('facing', _number(bearing), -360.0, 360.0, 'degrees')
+        return place_on(tree, text)._replace(facing=math.radians(90.0 - bearing_to))
     name, colon, number = text.rpartition(':')
-    try:
-        value = float(number)
-    except ValueError:
-        value = math.nan
+    value = _number(number)
     if not math.isfinite(value):
         cure = "give a height on the stem in m, as '3.2', or a branch and a share, as 'b12:0.5'"
         raise ParameterError(f"'{text[:40]}' is no place on a tree", where='at', cure=cure)
@@ -99,6 +96,13 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
     ends = np.cumsum(tree.length[first:last])
     return _along(int(first), ends, value * float(ends[-1]))
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def _on_stem(tree: Tree, height: float) -> SensorPlace:
