@@ -107,6 +107,7 @@ Crown crown_of(double *memory) {
 
 void push_crown(const Crown &crown, double spread, double coherence, const double wind[3],
                 double dt) {
+  if (spread <= 0.0) return;
   remember(crown.history, 2.0 * LONGEST_DELAY / (HISTORY - 4), wind, dt);
   follow_mean(crown.mean, wind, dt, AVERAGING);
   const double speed =

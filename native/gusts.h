@@ -46,7 +46,8 @@ constexpr int64_t CROWN = 2 + 4 * HISTORY + 3 + 5 * DELAYS;
 Crown crown_of(double *memory);
 
 // Add a step in a wind; `spread` [m] is the longest delay times the wind speed, `coherence` the
-// share of the wind that reaches the whole crown at once.
+// share of the wind that reaches the whole crown at once. Without a spread the winds of the limbs
+// are those that were written.
 void push_crown(const Crown &crown, double spread, double coherence, const double wind[3],
                 double dt);
 

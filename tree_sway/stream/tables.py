@@ -24,7 +24,7 @@ def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
     """
     for kind in kinds:
         model = kind.simulator
-        if model.settings.crown_coherence < 1.0:
+        if model.settings.has_limb_winds:
             what = 'a crown whose limbs meet gusts one after another has no table to solve it by'
             return ParameterError(what, where='crown_coherence', cure='set it to 1')
         if isinstance(model.banks[0].oscillators, TableOscillators):

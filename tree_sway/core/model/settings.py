@@ -13,6 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, refuse_other_kind, within
+from tree_sway.core.wind.far_wind import MOTIONS
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
@@ -42,6 +43,9 @@ _RANGES = {
     'damping_ratio': (0.0, 1e3, '', False),
     'gravity': (0.0, 1e3, 'm/s^2', False),
     'crown_coherence': (0.0, 1.0, '', False),
+    'anemometer_distance': (0.0, 1000.0, 'm', False),
+    'anemometer_bearing': (-1e3, 1e3, 'rad', False),
+    'motion_seed': (0, 2**31, '', False),
     'root_stiffness': (0.0, math.inf, 'N m/rad', True),
     'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
 }
@@ -75,6 +79,17 @@ class Settings:
     crown_coherence
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
         after its own delay (`crown_wind`). 1 is one wind for the whole crown.
+    anemometer_distance
+        Distance in [m] from the tree to the anemometer, which is as high as the tree: farther away,
+        less of a gust is the same (`far_wind`). 0 for one wind at both. It takes the place of
+        `crown_coherence`.
+    anemometer_bearing
+        Where the anemometer stands from the tree, clockwise from north in [rad]; None if unknown.
+    motion
+        Wind of a tree apart from its anemometer: the one ``expected``, which has the least error
+        and is smooth; a ``sample``, one that may be, as rough as the real one; or ``measured``.
+    motion_seed
+        Seed of a sample: two sites with the same one see the same gusts.
     enrich
         Branches with further shapes and twists, on all models but ``branch``: ``none``, the
         ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.
@@ -97,6 +112,10 @@ class Settings:
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
     crown_coherence: float = 1.0
+    anemometer_distance: float = 0.0
+    anemometer_bearing: float | None = None
+    motion: str = 'expected'
+    motion_seed: int = 0
     enrich: str = 'needed'
     root_stiffness: float | None = None
     leaf_mass: Floats | None = None
@@ -112,6 +131,7 @@ class Settings:
             if value is not None or known[name].default is not None:
                 within(name, value, low, high, unit, above=above)
         one_of('enrich', self.enrich, ENRICHED)
+        one_of('motion', self.motion, MOTIONS)
         one_of('in_leaf', self.in_leaf, (True, False, None))
         refuse_other_kind('profile', self.profile, WindProfile, 'give WindProfile(...)')
         if self.volume_stiffness and self.model != 'branch':
@@ -124,6 +144,16 @@ class Settings:
             raise ParameterError(
                 'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
             )
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the tree stands apart from its anemometer (`far_wind`)."""
+        return self.anemometer_distance > 0.0 and self.motion != 'measured'
+
+    @property
+    def has_limb_winds(self) -> bool:
+        """Whether parts of the crown have winds of their own."""
+        return self.crown_coherence < 1.0 or self.is_far
 
     def __repr__(self) -> str:
         """Return the model and the fields that are not the default on one line."""

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from tree_sway.core.model.tree_state import TreeState
     from tree_sway.core.run.clamp_watch import ClampWatch
     from tree_sway.core.run.crown_gusts import CrownGusts
+    from tree_sway.core.run.far_crown import FarCrown
     from tree_sway.core.run.pushes import Spring, Touch
     from tree_sway.core.run.tuning import LiveTuning, Tuning
     from tree_sway.core.wind.gust_travel import GustHistory
@@ -98,6 +99,11 @@ class SwaySimulator:
             from tree_sway.core.run.crown_gusts import CrownGusts
 
             self._gusts = CrownGusts(prepared, self._bank.oscillators)
+        self._far: FarCrown | None = None
+        if self.settings.is_far:
+            from tree_sway.core.run.far_crown import FarCrown
+
+            self._far = FarCrown(prepared, self._bank, self._gusts)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan
@@ -210,7 +216,8 @@ class SwaySimulator:
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
-        return self._wind, *self._bank.oscillators.memory(), *crown
+        far = () if self._far is None else self._far.wind.memory()
+        return self._wind, *self._bank.oscillators.memory(), *crown, *far
 
     def state(self) -> TreeState:
         """Return a copy of the state."""
@@ -289,6 +296,8 @@ class SwaySimulator:
             status = WIND_REFUSED
             counts.refused += 1
             x, y, z = stored.tolist()
+        if self._far is not None:
+            x, y, z = self._far.push(x, y, z, dt)
         if self._gusts is not None:
             self._gusts.push(x, y, z, dt)
         outcome = self._advance(x, y, z)
@@ -470,6 +479,8 @@ class SwaySimulator:
         self._bank.oscillators.reset()
         if self._gusts is not None:
             self._gusts.wind.reset()
+        if self._far is not None:
+            self._far.wind.reset()
         self._touch = self._watch = None
         self._dt = math.nan
         self._wind[:] = 0.0

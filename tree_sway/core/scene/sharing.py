@@ -56,7 +56,7 @@ def sharing_of(scene: PlacedTrees, settings: Settings) -> Sharing:
     models = [settings.model if each.model is None else each.model for each in scene.trees]
     counts = np.array([each if isinstance(each, int) else -1 for each in models])
     # The winds of limbs differ from tree to tree.
-    is_shared = (counts >= 0) & (settings.crown_coherence >= 1.0)
+    is_shared = (counts >= 0) & (not settings.has_limb_winds)
     kinds = np.unique(scene.kind_numbers[is_shared])
     tables = np.where(is_shared, np.searchsorted(kinds, scene.kind_numbers), -1)
     return Sharing(is_shared, counts, kinds, tables)

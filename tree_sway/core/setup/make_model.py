@@ -36,7 +36,7 @@ from tree_sway.core.setup.stream_basis import (
     WEIGHTS,
 )
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
-from tree_sway.core.wind.crown_wind import delays_of, N_DELAYS
+from tree_sway.core.wind.crown_wind import delays_of, N_DELAYS, parts_of
 
 
 def make_model(reductions: TreeReductions, settings: Settings) -> SwayModel:
@@ -209,9 +209,10 @@ def _limbs(
     reductions: TreeReductions, reduced: ReducedTree, order: Ints, shapes: Floats | None
 ) -> dict[str, Any]:
     """Delays with which gusts reach the limbs, and the load on each of them on shapes (N, m)."""
-    if not reductions.settings.crown_coherence < 1.0:
+    if not reductions.settings.has_limb_winds:
         return {}
-    delays = delays_of(reductions.tree, reductions.leaf_load_area)
+    of = parts_of if reductions.settings.is_far else delays_of
+    delays = of(reductions.tree, reductions.leaf_load_area)
     of_piece = delays.of_branch[reduced.branch]
     found: dict[str, Any] = {
         'limb_delay': of_piece[order],

@@ -69,12 +69,30 @@ class CrownDelays(NamedTuple):
 
 def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
     """Assign delays to the branches of a tree, with leaves equivalent to areas (b,) of wood."""
+    return crown_delays(tree.branch_parent, *_loads(tree, leaf_area))
+
+
+def _loads(tree: Tree, leaf_area: Floats) -> tuple[Floats, Floats]:
+    """Centre (b, 3) in [m] and load (b,) of each branch."""
     first = tree.branch_first[:-1]
     area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
     wood = np.add.reduceat(area, first)
     centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return crown_delays(tree.branch_parent, centre, wood + leaf_area)
+    return centre, wood + leaf_area
+
+
+def parts_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
+    """Part the branches of a tree by their places, with leaves as above; parts have no delays."""
+    centre, load = _loads(tree, leaf_area)
+    middle = centre[np.unique(np.linspace(0, len(centre) - 1, N_DELAYS).astype(np.intp))]
+    for _ in range(20):
+        nearest = np.linalg.norm(centre[:, None] - middle, axis=2).argmin(axis=1)
+        share = np.bincount(nearest, load, len(middle))
+        moved = [np.bincount(nearest, load * x, len(middle)) for x in centre.T]
+        middle = np.where(share > 0.0, moved / np.maximum(share, 1e-12), middle.T).T
+    share = np.bincount(nearest, load, N_DELAYS)
+    return CrownDelays(nearest, share / max(float(share.sum()), 1e-12), 0.0)
 
 
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:

@@ -1,0 +1,225 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind of a crown that stands apart from its anemometer: the expected one, or a sample.
+
+Two places share gusts of wavenumber k [1/m] by the root coherence of Davenport (1961, Quarterly
+Journal of the Royal Meteorological Society 87, 194-211), and the one downwind has them later by
+the way x along the wind (Taylor 1938)::
+
+    G(k) = exp(-k |(3 x, 10 y, 10 z)|) exp(-2 pi i k x)
+
+Everything is a law of the wavenumber, so that the run of the wind [m] takes the place of time and
+nothing depends on the wind speed. The expected wind of a limb, given that of the anemometer up to
+now, is its mean and a sum of low-passed deviations from it, of the lengths `LENGTHS`. Their
+weights have the least error in turbulence of Kaimal's spectrum S::
+
+    integral S(k) |G(k) - sum_j w_j / (1 + 2 pi i k L_j)|^2 dk
+
+the projection of Wiener's causal filter (1949, Extrapolation, Interpolation, and Smoothing of
+Stationary Time Series) on these stages; five of them are within 1 % of its error. What it does not
+know still loads the tree: where the wind is the expected one, its missing variance is added to the
+square of the speed, as E[U^2] = E[U]^2 + var U.
+
+A sample adds what may be: a drawn field, whose limbs share gusts by the same law and whose spectrum
+is ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
+turbulence, and follows the measured one as far as that tells.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.wind.simulated.turbulence import Turbulence
+
+DECAYS = np.array([3.0, 10.0, 10.0])
+"""Davenport's C along the wind, across it and up [-]."""
+
+LENGTHS = np.array([1.0, 4.0, 16.0, 64.0, 256.0])
+"""Lengths of the low-passes [m]."""
+
+MOTIONS = ('expected', 'sample', 'measured')
+"""Winds of a tree apart from its anemometer: least error, one that may be, or as measured."""
+
+_WITHIN = 9.0
+"""
+Davenport's C among the parts of a crown, all directions alike [-]: 10, and 7 along the wind, where
+travel (2 pi) tells gusts apart too.
+"""
+
+_WAVENUMBERS = np.geomspace(1e-4, 2.0, 300)
+_DIRECTIONS = 36
+_AVERAGED = 600.0
+_SLOWEST = 0.5
+_SAMPLES, _SPACING = 1 << 14, 0.25
+_HEIGHT = 10.0
+"""Height in [m] whose turbulence has the lengths of the spectrum: a usual anemometer's."""
+
+
+class FarWind:
+    """
+    The wind of the parts of a crown.
+
+    Parameters
+    ----------
+    places
+        Places of the parts from the highest point of the tree [m], east, north, up, (g, 3).
+    share
+        Share of each in the load [-], (g,).
+    distance
+        Distance of the anemometer in [m], as high as the highest point.
+    bearing
+        Where it stands from the tree, clockwise from north in [rad]; None if that is not known.
+    seed
+        Seed of the sample; None for the expected wind.
+
+    """
+
+    def __init__(
+        self,
+        places: Floats,
+        share: Floats,
+        distance: float,
+        bearing: float | None = None,
+        seed: int | None = None,
+    ) -> None:
+        self._share = share
+        self._weights = _weights(places, distance, bearing)
+        self._memory = np.zeros((len(LENGTHS) + 4, 3))
+        self._passed = self._memory[: len(LENGTHS)]
+        self._mean, self._variance, self._told, self._run = self._memory[len(LENGTHS) :]
+        self._apart = np.zeros((len(share), 3))
+        self._rest: Floats | None = None
+        if seed is not None:
+            self._rest = _drawn_rest(places, self._weights, seed)
+
+    def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
+        """
+        Add the wind [m/s] of a step of dt [s] at the anemometer; return that of the crown, (3,).
+
+        What the wind of each part is beside it is written to `apart`, (g, 3).
+        """
+        memory = self._run
+        wind = (x, y, z)
+        memory[1] = min(memory[1] + dt, max(_AVERAGED, dt))
+        share = dt / memory[1]
+        mean = self._mean
+        mean += share * (wind - mean)
+        east, north, _ = mean.tolist()
+        speed = max(math.hypot(east, north), _SLOWEST)
+        memory[0] += speed * dt
+        beyond = wind - mean
+        self._variance += share * (beyond * beyond - self._variance)
+        keep = np.maximum(-np.expm1(-speed * dt / LENGTHS), min(share, 1.0))
+        passed = self._passed
+        passed += keep[:, None] * (wind - passed)
+        found = self._weights_in(east, north) @ (passed - mean)
+        told = self._share @ found
+        if self._rest is None:
+            self._told += share * (told * told - self._told)
+            lost = np.maximum(self._variance - self._told, 0.0)
+            found += mean
+            square = np.einsum('gi,gi->g', found, found)
+            # All of u, half of v and w: 0.8 of u and v, as v has 0.64 of the variance of u.
+            more = float(0.8 * (lost[0] + lost[1]) + 0.5 * lost[2])
+            found *= np.sqrt(1.0 + more / np.maximum(square, more + 1e-9))[:, None]
+        else:
+            found += mean
+            found += self._drawn(float(memory[0])) @ self._turned(east, north)
+        whole = self._share @ found
+        np.subtract(found, whole, out=apart)
+        return np.asarray(whole)
+
+    def _weights_in(self, east: float, north: float) -> Floats:
+        """Weights of each part in a mean wind [m/s], (g, k)."""
+        if len(self._weights) == 1:
+            return self._weights[0]
+        at = math.atan2(north, east) / (2.0 * math.pi) % 1.0 * _DIRECTIONS
+        first = int(at)
+        low = self._weights[first % _DIRECTIONS]
+        high = self._weights[(first + 1) % _DIRECTIONS]
+        return np.asarray(low + (at - first) * (high - low))
+
+    def _drawn(self, run: float) -> Floats:
+        """Drawn wind of each part at a run of the wind [m], over its deviations, (g, 3)."""
+        assert self._rest is not None
+        at = run / _SPACING
+        first = int(at)
+        low = self._rest[first % _SAMPLES]
+        return np.asarray(low + (at - first) * (self._rest[(first + 1) % _SAMPLES] - low))
+
+    def _turned(self, east: float, north: float) -> Floats:
+        """Wind per drawn one along the mean wind, across it and up, (3, 3)."""
+        level = math.hypot(east, north)
+        c, s = (east / level, north / level) if level > 0.0 else (1.0, 0.0)
+        xx, yy, zz = self._variance.tolist()
+        along = math.sqrt(c * c * xx + s * s * yy)
+        across = math.sqrt(s * s * xx + c * c * yy)
+        return np.array(
+            [
+                [along * c, along * s, 0.0],
+                [-across * s, across * c, 0.0],
+                [0.0, 0.0, math.sqrt(zz)],
+            ]
+        )
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state."""
+        return (self._memory,)
+
+    def reset(self) -> None:
+        """Forget the wind."""
+        self._memory[:] = 0.0
+
+
+def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
+    """Weights of the low-passes in winds from every direction, or in all alike, (d, g, k)."""
+    spectrum = Turbulence(1.0, _HEIGHT, 1.0).spectrum(_WAVENUMBERS)[:, 0] * _WAVENUMBERS
+    stages = 1.0 / (1.0 + 2j * np.pi * _WAVENUMBERS[:, None] * LENGTHS)
+    weighed = stages.conj().T * spectrum
+    square = (weighed @ stages).real
+    return np.array(
+        [np.linalg.solve(square, (weighed @ each).real).T
+         for each in _coherences(places, distance, bearing, _WAVENUMBERS)]
+    )  # fmt: skip
+
+
+def _coherences(
+    places: Floats, distance: float, bearing: float | None, wavenumbers: Floats
+) -> list[Floats]:
+    """Complex coherence G of places and anemometer, (k, g), in each direction of the wind."""
+    to_mast = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    found = []
+    for angle in to_mast:  # of the wind, from east to north
+        seen = angle if bearing is None else 0.5 * np.pi - bearing
+        mast = distance * np.array([math.cos(seen), math.sin(seen), 0.0])
+        c, s = (1.0, 0.0) if bearing is None else (math.cos(angle), math.sin(angle))
+        away = places - mast
+        x, y = away[:, 0] * c + away[:, 1] * s, away[:, 1] * c - away[:, 0] * s
+        apart = np.linalg.norm(np.stack([x, y, away[:, 2]], axis=1) * DECAYS, axis=1)
+        found.append(np.exp(-wavenumbers[:, None] * (apart + 2j * np.pi * x)))
+    return [np.mean(found, axis=0)] if bearing is None else found
+
+
+def _drawn_rest(places: Floats, weights: Floats, seed: int) -> Floats:
+    """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
+    count = len(places)
+    wavenumbers = np.arange(1, _SAMPLES // 2) / (_SAMPLES * _SPACING)
+    stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
+    told = np.mean([np.square(np.abs(stages @ each.T)) for each in weights], axis=0)
+    missing = np.sqrt(np.maximum(1.0 - told, 0.0))
+    apart = np.linalg.norm(places[:, None] - places, axis=2)
+    shared = np.exp(-_WITHIN * wavenumbers[:, None, None] * apart) + 1e-9 * np.eye(count)
+    root = np.linalg.cholesky(shared)
+    spectra = Turbulence(1.0, _HEIGHT, 1.0).spectrum(wavenumbers)
+    amplitudes = _SAMPLES * np.sqrt(0.5 * spectra / spectra.sum(axis=0))
+    phases = np.exp(2j * np.pi * np.random.default_rng(seed).random((3, len(wavenumbers), count)))
+    rest = np.empty((_SAMPLES, count, 3), dtype=np.float32)
+    for axis, phase in enumerate(phases):
+        lines = np.zeros((_SAMPLES // 2 + 1, count), dtype=np.complex128)
+        lines[1:-1] = np.einsum('kij,kj->ki', root, phase) * missing * amplitudes[:, axis, None]
+        rest[..., axis] = np.fft.irfft(lines, _SAMPLES, axis=0)
+    return rest
