@@ -34,10 +34,19 @@ from itertools import product
 import math
 import sys
 
+import numpy as np
+
 from tree_sway.commands.ending import Ending
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.twin.sensor_advice import advised_places
-from tree_sway_lab.twin.gusty_truth import gusty_motion, kinds_of, Outside
+from tree_sway_lab.twin.gusty_truth import (
+    gusty_motion,
+    kinds_of,
+    known_tree,
+    mast_of,
+    Outside,
+    told_wind,
+)
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sensor_faults import FAULTS
@@ -66,6 +75,7 @@ _HEAD = (
     'sensor r',
     'found at s',
     'left at s',
+    *(f'to {high:g} f1' for _, high in BANDS),
     'notes',
 )
 CUTOFFS = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03)
@@ -208,9 +218,19 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             passed = [squared_score(true, share * frequency) for share in CUTOFFS]
             best = min(passed, key=lambda score: score.error)
             scores.setdefault('U^2', []).append(best)
+            distance, bearing = mast_of(outside)
+            apart = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+            for motion in ('expected', 'sample'):
+                far = make_simulator(tree, species, in_leaf=in_leaf, motion=motion, **apart)
+                scores.setdefault(motion, []).append(plain_score(far, true))
+            true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
+            told = true._replace(wind=told_wind(tree, outside, true.wind))
+            scores.setdefault('bound', []).append(plain_score(true_one, told))
+            for motion in ('expected', 'sample'):
+                far = known_tree(tree, species, outside, in_leaf=in_leaf, motion=motion, **apart)
+                scores.setdefault(f'{motion} (known tree)', []).append(plain_score(far, true))
         known.reset()
         scores.setdefault('model', []).append(plain_score(known, true))
-        apart = 0.0 if arguments.easy else math.hypot(*arguments.mast)
         for count, fault in product(arguments.sensors, arguments.fault):
             score = twin_score(
                 tree,
@@ -223,7 +243,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 known=each if arguments.known else None,
                 upwind=each.upwind if arguments.tell_upwind else 0.0,
                 fault=fault,
-                apart=apart,
+                apart=0.0 if arguments.easy else math.hypot(*arguments.mast),
             )
             named = str(count) if fault == 'none' else f'{count} {fault}'
             scores.setdefault(named, []).append(score)
@@ -246,6 +266,7 @@ def _print(name: str, sensors: str, score: Score) -> None:
         f'{score.at:.3f}',
         f'{score.found:.0f}',
         f'{score.told:.1f}',
+        *(f'{each:.2f}' for each in score.bands or [np.nan] * len(BANDS)),
     ]
     print(','.join([*row, '; '.join(score.notes)]))
     sys.stdout.flush()

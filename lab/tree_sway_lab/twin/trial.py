@@ -23,6 +23,7 @@ from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.sensor_faults import FAULTS
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
+from tree_sway_lab.twin.sway_comparison import compare_sway
 from tree_sway_lab.twin.true_tree import Circumstances, DT, pose_at, TrueMotion
 
 FAULTY = SimulatedSensor(
@@ -72,6 +73,8 @@ class Score:
         Times in [s] at which the first sensor was in use first, and out of use first after that.
     notes
         Notes of the sensors.
+    bands
+        Power of the tips over that of the true ones in each of `BANDS` [-].
 
     """
 
@@ -88,13 +91,16 @@ class Score:
     found: float = np.nan
     told: float = np.nan
     notes: tuple[str, ...] = ()
+    bands: tuple[float, ...] = ()
 
 
 def mean_score(scores: Sequence[Score]) -> Score:
     """Return the mean of scores; the notes are those of all."""
-    names = [each.name for each in fields(Score) if each.name != 'notes']
+    names = [each.name for each in fields(Score) if each.name not in ('notes', 'bands')]
     means = {name: float(np.mean([getattr(each, name) for each in scores])) for name in names}
-    return Score(**means, notes=tuple(note for each in scores for note in each.notes))
+    bands = np.exp(np.mean([np.log(each.bands) for each in scores], axis=0))
+    notes = tuple(note for each in scores for note in each.notes)
+    return Score(**means, notes=notes, bands=tuple(np.atleast_1d(bands).tolist()))
 
 
 def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
@@ -108,7 +114,12 @@ def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
         spent[k] = time.thread_time_ns() - began
         tips[k] = tips_of_poses(tree, sim.place(block))
     error, roughness, stem = _compared(tips, true.tips, 0)
-    return Score(error, roughness, error, roughness, stem, np.nan, *_costs(spent))
+    first = round(_TRUSTED * len(tips))
+    flat = [each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips)]
+    bands = compare_sway(*flat, 1.0 / DT, float(sim.frequencies(1)[0])).bands
+    return Score(
+        error, roughness, error, roughness, stem, np.nan, *_costs(spent), bands=bands
+    )  # fmt: skip
 
 
 def _costs(spent: Floats) -> tuple[float, float]:

@@ -8,14 +8,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.crown_wind import N_DELAYS
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.wind.crown_wind import N_DELAYS, parts_of
 from tree_sway.core.wind.far_wind import FarWind
 
 if TYPE_CHECKING:
     from tree_sway.core.model.sway_model import SwayModel
     from tree_sway.core.run.bank import Bank
     from tree_sway.core.run.crown_gusts import CrownGusts
+    from tree_sway.core.tree.tree import Tree
+
+
+_SIZE = 0.65
+"""
+Size of a part over the root mean square distance from its middle [-].
+
+It is half the mean distance of two places in it: a part moves most at its end.
+"""
 
 
 class FarCrown:
@@ -25,13 +34,14 @@ class FarCrown:
         """Start without wind."""
         settings, branches = model.settings, bank.branches
         tree = model.tree
-        part = model.limb_delay if model.has_limbs else np.zeros(len(branches), dtype=np.int64)
-        load = np.bincount(part, branches['area'], N_DELAYS)
-        top = tree.end[int(np.argmax(tree.end[:, 2]))]
-        beside = (branches['centre'] - top).T
-        places = [np.bincount(part, branches['area'] * x, N_DELAYS) for x in beside]
+        wood = parts_of(tree)
+        load = wood.share
+        if model.has_limbs:
+            load = np.bincount(model.limb_delay, branches['area'], N_DELAYS)
+        places, size = self._places(tree, wood.of_branch[tree.branch_of_segment])
         self.wind = FarWind(
-            np.stack(places, axis=1) / np.maximum(load, 1e-12)[:, None],
+            places,
+            size,
             load / load.sum(),
             settings.anemometer_distance,
             settings.anemometer_bearing,
@@ -43,6 +53,17 @@ class FarCrown:
         """Add the wind of a step at the anemometer [m/s]; return that of the crown."""
         east, north, up = self.wind.push(x, y, z, dt, self._apart).tolist()
         return east, north, up
+
+    @staticmethod
+    def _places(tree: Tree, part: Ints) -> tuple[Floats, Floats]:
+        """Middle of each part from the highest point [m], (g, 3), and its size [m], (g,)."""
+        area = tree.length * (tree.base_diameter + tree.tip_diameter)
+        total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
+        centre = 0.5 * (tree.start + tree.end)
+        middle = np.stack([np.bincount(part, area * x, N_DELAYS) / total for x in centre.T], axis=1)
+        square = np.square(centre - middle[part]).sum(axis=1)
+        radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
+        return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius
 
     @staticmethod
     def _read_by_step(bank: Bank, gusts: CrownGusts | None) -> Floats:

@@ -72,7 +72,7 @@ def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
     return crown_delays(tree.branch_parent, *_loads(tree, leaf_area))
 
 
-def _loads(tree: Tree, leaf_area: Floats) -> tuple[Floats, Floats]:
+def _loads(tree: Tree, leaf_area: Floats | float) -> tuple[Floats, Floats]:
     """Centre (b, 3) in [m] and load (b,) of each branch."""
     first = tree.branch_first[:-1]
     area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
@@ -82,16 +82,16 @@ def _loads(tree: Tree, leaf_area: Floats) -> tuple[Floats, Floats]:
     return centre, wood + leaf_area
 
 
-def parts_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
-    """Part the branches of a tree by their places, with leaves as above; parts have no delays."""
-    centre, load = _loads(tree, leaf_area)
+def parts_of(tree: Tree, leaf_area: Floats | float = 0.0) -> CrownDelays:
+    """Part the branches of a tree by their places; leaves, as above, count in the share alone."""
+    centre, wood = _loads(tree, 0.0)
     middle = centre[np.unique(np.linspace(0, len(centre) - 1, N_DELAYS).astype(np.intp))]
     for _ in range(20):
         nearest = np.linalg.norm(centre[:, None] - middle, axis=2).argmin(axis=1)
-        share = np.bincount(nearest, load, len(middle))
-        moved = [np.bincount(nearest, load * x, len(middle)) for x in centre.T]
+        share = np.bincount(nearest, wood, len(middle))
+        moved = [np.bincount(nearest, wood * x, len(middle)) for x in centre.T]
         middle = np.where(share > 0.0, moved / np.maximum(share, 1e-12), middle.T).T
-    share = np.bincount(nearest, load, N_DELAYS)
+    share = np.bincount(nearest, wood + leaf_area, N_DELAYS)
     return CrownDelays(nearest, share / max(float(share.sum()), 1e-12), 0.0)
 
 

@@ -67,6 +67,9 @@ class FarWind:
     ----------
     places
         Places of the parts from the highest point of the tree [m], east, north, up, (g, 3).
+    size
+        Size of each part [m], (g,): of gusts smaller than it, ``1 / (1 + C k size)`` of the power
+        acts on the part.
     share
         Share of each in the load [-], (g,).
     distance
@@ -81,6 +84,7 @@ class FarWind:
     def __init__(
         self,
         places: Floats,
+        size: Floats,
         share: Floats,
         distance: float,
         bearing: float | None = None,
@@ -94,7 +98,7 @@ class FarWind:
         self._apart = np.zeros((len(share), 3))
         self._rest: Floats | None = None
         if seed is not None:
-            self._rest = _drawn_rest(places, self._weights, seed)
+            self._rest = _drawn_rest(places, size, self._weights, seed)
 
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
@@ -204,13 +208,14 @@ def _coherences(
     return [np.mean(found, axis=0)] if bearing is None else found
 
 
-def _drawn_rest(places: Floats, weights: Floats, seed: int) -> Floats:
+def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Floats:
     """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
     count = len(places)
     wavenumbers = np.arange(1, _SAMPLES // 2) / (_SAMPLES * _SPACING)
     stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
     told = np.mean([np.square(np.abs(stages @ each.T)) for each in weights], axis=0)
-    missing = np.sqrt(np.maximum(1.0 - told, 0.0))
+    acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * size)
+    missing = np.sqrt(np.maximum(1.0 - told, 0.0) * acting)
     apart = np.linalg.norm(places[:, None] - places, axis=2)
     shared = np.exp(-_WITHIN * wavenumbers[:, None, None] * apart) + 1e-9 * np.eye(count)
     root = np.linalg.cholesky(shared)
