@@ -36,8 +36,14 @@ constexpr int64_t SPARE = 2;
 // disagrees and below which it agrees, and the time after which it is trusted again [s].
 constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN = 5.0;
 
-// Largest square that counts: after a knock a sensor is to be followed again in half a minute.
-constexpr double LARGEST = 1e4;
+// These are over what is usual of this sensor in this time of use [s]: a limb has more modes than the
+// filter, and gusts more force in one year than in another (Mehra 1972, IEEE Transactions on
+// Automatic Control 17, 693-698). Most that is usual.
+constexpr double USUAL_OVER = 60.0, MOST_USUAL = 6.0;
+
+// Largest square that counts: one spike in a hundred samples is no reason to disagree, and after a
+// knock a sensor is to be followed again in half a minute.
+constexpr double LARGEST = 400.0;
 
 // to += factor * values, whose loop has no order: sums run over rows, not along them.
 void add_row(int64_t count, double factor, const double *values, double *__restrict to) {
@@ -187,13 +193,16 @@ void sway_judge(sway_sensor *judged, double size) {
   sway_sensor &sensor = *judged;
   sensor.excess += sensor.dt / AVERAGED * (fmin(size, LARGEST) - sensor.excess);
   if (sensor.is_refused) {
-    sensor.agreed = sensor.excess < AGREES ? sensor.agreed + sensor.dt : 0.0;
+    sensor.agreed = sensor.excess < AGREES * sensor.usual ? sensor.agreed + sensor.dt : 0.0;
     if (sensor.agreed > TRUSTED_AGAIN) sensor.is_refused = 0;
-  } else if (sensor.excess > DISAGREES) {
+  } else if (sensor.excess > DISAGREES * sensor.usual) {
     sensor.is_refused = 1;
     sensor.in_use = 0;
     sensor.agreed = 0.0;
     sensor.disagreements++;
+  } else {
+    const double usual = fmin(fmax(sensor.excess, 1.0), MOST_USUAL);
+    sensor.usual += sensor.dt / USUAL_OVER * (usual - sensor.usual);
   }
   if (!sensor.is_refused && sensor.is_mounted) sensor.in_use = 1;
 }

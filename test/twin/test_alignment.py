@@ -226,3 +226,82 @@ def test_the_smallest_turn_leads_from_one_direction_to_the_other() -> None:
         np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
         moved = turn @ a / np.linalg.norm(a)
         np.testing.assert_allclose(moved, b / np.linalg.norm(b), atol=1e-6)
+
+
+SLOW = 8 * 60
+"""Steps of 8 s."""
+
+
+def beside_a_mast(seed: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return leans of a tree and of its model, which share slow gusts only, (n, 9)."""
+    rng = np.random.default_rng(seed)
+    n = round(seconds * 60)
+    frequency = np.fft.rfftfreq(n, 1.0 / 60.0)[:, None]
+    size = np.minimum(1.0, 0.05 / np.maximum(frequency, 0.02))
+    size = size * [1.0, 0.4] / np.abs(1.0 - np.square(frequency) + 0.1j * frequency)
+    shared = np.exp(-7.7 * frequency)
+    waves = rng.normal(size=(4, len(frequency), 2)) @ [1.0, 1.0j]
+    tree = waves[0:2].T
+    model = shared * tree + np.sqrt(1.0 - shared**2) * waves[2:4].T
+    found = []
+    for each in (tree, model):
+        tilt = np.fft.irfft(size * each, n, axis=0)
+        rows = np.zeros((n, 9))
+        rows[:, 3:5] = np.gradient(tilt, 1.0 / 60.0, axis=0)
+        rows[:, 6:8] = tilt
+        rows[:, 0], rows[:, 1] = -GRAVITY * tilt[:, 1], GRAVITY * tilt[:, 0]
+        found.append(rows * 0.01 / tilt.std())
+    return found[0], found[1]
+
+
+def measured_there(tree: np.ndarray, mount: Rotation) -> np.ndarray:
+    values = tree + [0.0, 0.0, GRAVITY, *[0.0] * 6]
+    for rows in (slice(0, 3), slice(3, 6)):
+        values[:, rows] = mount.inv().apply(values[:, rows])
+    values[:, 6:] = np.nan
+    return values
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_the_lean_tells_an_azimuth_where_the_sway_is_that_of_other_gusts(mount: Rotation) -> None:
+    errors = []
+    for seed in range(12):
+        tree, model = beside_a_mast(seed, 240.0)
+        found = align(measured_there(tree, mount), model, model, window=SLOW)
+        error = (Rotation.from_matrix(found.turn) * mount.inv()).as_rotvec()[2]
+        errors.append(error / found.azimuth_error)
+        assert not found.problem
+        assert not found.notes
+    assert np.sqrt(np.mean(np.square(errors))) < 2.0
+
+
+def test_an_azimuth_that_chance_leaves_open_is_not_used() -> None:
+    tree, _ = beside_a_mast(1, 120.0)
+    other, _ = beside_a_mast(2, 120.0)
+    found = align(measured_there(tree, MOUNTS[0]), other, other, window=SLOW)
+    assert found.azimuth_error > 0.35
+    assert 'too little to know which way it faces' in found.problem
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_a_sensor_that_is_told_which_way_it_faces_needs_no_likeness(mount: Rotation) -> None:
+    tree, _ = beside_a_mast(1, 60.0)
+    other, _ = beside_a_mast(2, 60.0)
+    axis = mount.as_matrix()[:, 2]
+    if abs(axis[2]) > 0.7:
+        axis = mount.as_matrix()[:, 1]
+    facing = float(np.arctan2(axis[1], axis[0]))
+    found = align(measured_there(tree, mount), other, other, window=SLOW, facing=facing)
+    assert not found.problem
+    error = Rotation.from_matrix(found.turn) * mount.inv()
+    assert np.degrees(error.magnitude()) < 2.0
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+def test_a_rate_tells_its_sign_whatever_the_wind(mount: Rotation) -> None:
+    tree, _ = beside_a_mast(1, 60.0)
+    other, _ = beside_a_mast(2, 60.0)
+    values = measured_there(tree, mount)
+    assert 'angular rate of the opposite sign' not in align(values, other, other, window=SLOW).notes
+    values[:, 3:6] *= -1.0
+    assert 'angular rate of the opposite sign' in align(values, other, other, window=SLOW).notes

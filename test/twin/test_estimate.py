@@ -23,7 +23,7 @@ class Sensors:
 
     def __init__(self) -> None:
         self.beyond, self.is_known = np.zeros((2, 9)), np.ones(2, dtype=np.bool_)
-        self.each = [NativeSensor(dt=DT, is_mounted=1, in_use=1, excess=1.0) for _ in range(2)]
+        self.each = [NativeSensor(dt=DT, is_mounted=1, in_use=1, excess=1.0, usual=1.0) for _ in range(2)]
         self.native = NativeReadings(
             sensors=2, sensor=np.array([each.at for each in self.each], dtype=np.int64),
             beyond=self.beyond, is_known=self.is_known,
@@ -60,7 +60,7 @@ def test_it_moves_by_its_law_and_is_corrected_by_limited_innovations(gains: Stea
         innovation[3:] *= is_there
         size = np.square(innovation / gains.deviation).reshape(2, 3).mean(axis=1)[1]
         largest = max(largest, size)
-        excess = 1.0 + DT / 2.0 * (min(size, 1e4) - 1.0) * is_there
+        excess = 1.0 + DT / 2.0 * (min(size, 400.0) - 1.0) * is_there
         assert sensors.each[1].excess == pytest.approx(excess)
         past[:-1] = past[1:]
         past[-1] = np.clip(innovation, -6.0 * gains.deviation, 6.0 * gains.deviation)

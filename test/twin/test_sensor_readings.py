@@ -112,14 +112,36 @@ def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:
                 return step * DT
         return seconds
 
-    assert judged(9.0, 60.0) == 60.0
-    # A running mean over 2 s goes from 9 to 16 of 30.
-    assert judged(30.0, 60.0) == pytest.approx(2.0 * np.log(21.0 / 14.0), abs=2 * DT)
+    assert judged(9.0, 1.0) == 1.0
+    track.native.excess = track.native.usual = 1.0
+    # A running mean over 2 s goes from 1 to 16 of 30, and what is usual has grown by then.
+    assert 2.0 * np.log(29.0 / 14.0) < judged(30.0, 60.0) < 2.0
     track.heed()
     assert track.sensor.counts.disagreed == 1
     assert track.native.count == -300
     # From 16 to 4 of 1, and 5 s more.
-    assert judged(1.0, 60.0) == pytest.approx(2.0 * np.log(15.0 / 3.0) + 5.0, abs=3 * DT)
+    assert judged(1.0, 60.0) == pytest.approx(2.0 * np.log(15.0 / 3.0) + 5.0, abs=0.1)
+
+
+def test_what_is_usual_of_a_sensor_is_no_disagreement() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.is_mounted = track.native.in_use = 1
+    for size in (*np.linspace(1.0, 10.0, 7200), *[50.0] * 3600):
+        track.judge(size)
+    assert track.in_use
+    for _ in range(600):
+        track.judge(1e6)
+    assert not track.in_use
+
+
+def test_one_spike_in_a_hundred_samples_is_no_disagreement() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.is_mounted = track.native.in_use = 1
+    for step in range(36000):
+        track.judge(1.0 if step % 100 else 1e6)
+    assert track.in_use
 
 
 def lateness_of(arrivals: list[tuple[float, float]], seconds: float) -> int:

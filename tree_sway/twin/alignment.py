@@ -5,12 +5,20 @@ How a sensor is mounted, found from gravity and from the sway itself.
 
 Gravity tells which way is up in the sensor's frame. The azimuth is that by which the sensor's
 motion resembles the motion of the model at its place most, in least squares (Wahba 1965, SIAM
-Review 7, 409). A sensor whose acceleration has no gravity is turned by the whole of that problem
-(Kabsch 1976, Acta Crystallographica A 32, 922-923), unless it has an orientation, which tells what
-is upright. The azimuth of an orientation is not believed: without a compass it is any, and steel
-turns a compass. Units follow from the size of gravity, and of the motion in comparison with the
-model's. So do the signs: some phones give the acceleration as that of gravity, and some frames are
-left-handed.
+Review 7, 409), unless it is told which way the sensor faces. A sensor whose acceleration has no
+gravity is turned by the whole of that problem (Kabsch 1976, Acta Crystallographica A 32, 922-923),
+unless it has an orientation, which tells what is upright. The azimuth of an orientation is not
+believed: without a compass it is any, and steel turns a compass.
+
+A mast some metres away knows the lean in slow gusts, and nothing of those that shake the crown.
+So both motions are averaged over some seconds, in which an acceleration is the lean. N averages
+whose correlation is r tell an azimuth with the error ``sqrt((1 - r^2) / (2 N r^2))`` of a phase
+(Bendat & Piersol 2010, *Random Data*, 9.2), and the sign s of r's rival by ``N ln (1 - r^2) / (1 -
+s^2)``, the logarithm of their likelihoods.
+
+Units follow from the size of gravity, and of the motion in comparison with the model's. So do the
+signs: some phones give the acceleration as that of gravity, and some frames are left-handed. A
+rate has the sign by which a lean changes as it says, whatever the wind.
 """
 
 from __future__ import annotations
@@ -26,8 +34,8 @@ from tree_sway.core.arrays import Floats
 GRAVITY = 9.80665
 """Standard gravity in [m/s^2]."""
 
-LEAST_LIKENESS = 0.25
-"""Correlation of sensor and model below which a sensor is taken as not on this tree."""
+_MOST_ERROR, _TOLD_ERROR = 0.35, 0.1
+"""Largest error of an azimuth with which a sensor is used, and that of one that is told [rad]."""
 
 TELLS_LITTLE = 'it tells little at this place in this wind: fix it higher or farther out on a limb'
 """What a sensor says where the tree hardly moves it."""
@@ -39,23 +47,21 @@ _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
 _WITHOUT = 'acceleration without gravity'
-_OPPOSITE = 0.1
-"""
-Likeness by which opposite signs must be better.
+_OPPOSITE = 6.0
+"""Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign."""
 
-Signs that are right are better by 0.16 to 0.43 on grown trees whose gusts meet limb after limb, of
-20 s and of 90 s.
-"""
 _SIGNS = {
-    'acceleration of the opposite sign': (-1.0, 1.0),
-    'angular rate of the opposite sign': (1.0, -1.0),
-    'all signs are opposite: its axes are reversed, or left-handed': (-1.0, -1.0),
+    (-1.0, 1.0): 'acceleration of the opposite sign',
+    (1.0, -1.0): 'angular rate of the opposite sign',
+    (-1.0, -1.0): 'all signs are opposite: its axes are reversed, or left-handed',
 }
 """Signs of acceleration and angular rate. A mirrored frame is a turned one, all axes reversed."""
 _TILTED = 0.1
 """Likeness by which tilted gravity must be better than none in a signal without its mean."""
 _UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
 """From north, east, down, or another frame whose third axis is down, to one with it up."""
+_UPRIGHT = 0.7
+"""Cosine of the angle to the vertical below which the z axis of a sensor tells where it faces."""
 _PER_DEGREE = math.pi / 180.0
 _MEDIAN_OF_SQUARE = 0.4549
 """Median of the square of a normal variable over its variance (chi-squared, one degree)."""
@@ -76,6 +82,8 @@ class Alignment:
         Whether the acceleration has gravity in it.
     likeness
         Correlation of its motion with the model's in wind alone [-].
+    azimuth_error
+        Standard deviation of its azimuth [rad].
     noise
         Standard deviation of its noise: acceleration, rate, rotation, (3,).
     problem
@@ -90,6 +98,7 @@ class Alignment:
     has_gravity: bool
     likeness: float
     noise: Floats
+    azimuth_error: float = 0.0
     problem: str = ''
     notes: tuple[str, ...] = field(default_factory=tuple)
 
@@ -113,6 +122,7 @@ def align(
     without: Floats,
     reference: Floats | None = None,
     window: int = 1,
+    facing: float | None = None,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -130,38 +140,47 @@ def align(
         Orientation from which the rotations are counted, x y z w, in any frame with an upright
         axis; None without.
     window
-        Number of steps over which motions are averaged before they are compared: the model knows
-        the sway of the tree, not the gusts of a limb, which are faster.
+        Number of steps over which motions are averaged before they are compared.
+    facing
+        Azimuth to which its z axis points, or its y axis where that is upright, from east to
+        north in [rad]; None if it is not told.
 
     """
     raw, sensed = sensed, averaged(sensed, window)
     notes = list[str]()
     finite = np.isfinite(sensed).all(axis=0).reshape(3, 3)
     measures: NDArray[np.bool_] = np.all(finite, axis=1)
-    scale = np.ones(2)
+    given, scale = measures.copy(), np.ones(2)
     has_gravity, problem = True, ''
     if measures[0]:
         scale[0], has_gravity, problem = _gravity_of(sensed[:, :3], notes)
     if measures[0] and has_gravity:
-        measures[2] = False  # gravity tells what is upright
+        measures[1:] = False  # gravity tells what is upright, and the lean
     model = averaged(with_gravity if has_gravity else without, window)
-    if measures[1]:
+    if given[1]:
         scale[1] = _rate_unit(sensed[:, 3:6], model[:, 3:6], notes)
-    found = first = _mounted(sensed, model, measures, scale, reference, has_gravity=has_gravity)
-    least, opposite = first.likeness + _OPPOSITE, ''
-    for note, signs in _SIGNS.items():
-        if least >= 1.0 or not measures[:2][np.array(signs) < 0.0].all():
-            continue
-        other = _mounted(
-            sensed, model, measures, scale * signs, reference, has_gravity=has_gravity
+
+    def mounted(model: Floats, signs: tuple[float, float]) -> Alignment:
+        return _mounted(
+            sensed, model, measures, scale * signs, reference, facing, has_gravity=has_gravity
         )
-        if other.likeness > max(least, found.likeness):
-            found, opposite = other, note
-    if opposite:
-        notes.append(opposite)
+
+    signs = 1.0, 1.0
+    found = mounted(model, signs)
+    count = max(len(raw) / window, 2.0)
+    if measures[0]:
+        opposite = mounted(model, (-1.0, 1.0))
+        ratio = (1.0 - found.likeness**2) / max(1.0 - opposite.likeness**2, 1e-12)
+        if count * math.log(max(ratio, 1e-12)) > _OPPOSITE:
+            signs, found = (-1.0, 1.0), opposite
+    if given[:2].all() and _is_against(found.motion(raw)):
+        signs = signs[0], -1.0
+        found = mounted(model, signs)
+    if signs in _SIGNS:
+        notes.append(_SIGNS[signs])
     if measures[0] and not has_gravity:
         felt = averaged(with_gravity, window)
-        tilted = _mounted(sensed, felt, measures, found.scale, reference, has_gravity=False)
+        tilted = mounted(felt, signs)
         if tilted.likeness > found.likeness + _TILTED:
             notes.remove(_WITHOUT)
             notes.append('acceleration without its mean, but with the gravity of tilts')
@@ -170,14 +189,14 @@ def align(
             has_gravity = True
             model = felt
     scale = found.scale
-    turn = found.turn
-    moved = found.motion(sensed)
-    likeness, ratio = _likeness(moved, model, measures)
+    likeness, ratio = _likeness(found.motion(sensed), model, measures)
     if not problem and measures[0] and not has_gravity and ratio < 1.0 / 3.0:
         notes.append('acceleration in g, without gravity')
         scale[0] *= GRAVITY
-        moved = found.motion(sensed)
-        likeness, ratio = _likeness(moved, model, measures)
+        likeness, ratio = _likeness(found.motion(sensed), model, measures)
+    error = _TOLD_ERROR
+    if facing is None or not has_gravity:
+        error = _azimuth_error(likeness, count)
     if not problem and _is_below_noise(model, measures, window):
         problem = TELLS_LITTLE
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
@@ -185,13 +204,35 @@ def align(
             f'it moves {ratio:.2g} times as much as the tree does there in this wind: check that '
             'it is on this tree, at this place, in m/s^2 and rad/s'
         )
-    if not problem and likeness < LEAST_LIKENESS:
+    if not problem and error > _MOST_ERROR:
         problem = (
-            f'its motion resembles that of the tree by {likeness:.2f} only: check place, clock '
-            'and wind, or wait for more wind'
+            f'its motion resembles that of the tree by {likeness:.2f} only, too little to know '
+            'which way it faces: wait for more wind or tell it, check place and clock'
         )
     noise = noise_of(found.motion(raw))
-    return Alignment(turn, scale, has_gravity, likeness, noise, problem, tuple(notes))
+    return replace(
+        found, has_gravity=has_gravity, likeness=likeness, noise=noise, azimuth_error=error,
+        problem=problem, notes=tuple(notes),
+    )  # fmt: skip
+
+
+def _azimuth_error(likeness: float, count: float) -> float:
+    """Error of an azimuth [rad] by the correlation of a number of averages, less its bias."""
+    square = (count * likeness**2 - 1.0) / (count - 1.0)
+    if likeness <= 0.0 or square <= 0.0:
+        return math.pi
+    return math.sqrt(max(1.0 - square, 0.0) / (2.0 * count * square))
+
+
+def _is_against(moved: Floats) -> bool:
+    """
+    Whether an angular rate turns against the lean that the acceleration tells, (n, 9).
+
+    Turned by theta, a sensor feels ``g z x theta``, and the sway of a tree, which leans the way
+    that it is bent, adds to it.
+    """
+    change = np.gradient(moved[:, :2], axis=0)
+    return float((change[:, 1] * moved[:, 3] - change[:, 0] * moved[:, 4]).sum()) < 0.0
 
 
 def _mounted(
@@ -200,6 +241,7 @@ def _mounted(
     measures: NDArray[np.bool_],
     scale: Floats,
     reference: Floats | None,
+    facing: float | None,
     *,
     has_gravity: bool,
 ) -> Alignment:
@@ -217,13 +259,28 @@ def _mounted(
     elif measures[0] and has_gravity:
         felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
         upright = turn_onto(scaled[:, :3].mean(axis=0), felt)
-        turns = [_azimuth(scaled, model, upright, measures) @ upright]
+        if facing is None:
+            turns = [_azimuth(scaled, model, upright, measures) @ upright]
+        else:
+            turns = [_about_up(facing - _faced(upright)) @ upright]
     elif measures[:2].any():
         turns = [_whole_turn(scaled, model, measures)]
     found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
     likeness = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
     best = int(np.argmax(likeness))
     return replace(found[best], likeness=likeness[best])
+
+
+def _faced(turn: Floats) -> float:
+    """Azimuth to which the z axis of a turned sensor points, or its y axis, in [rad]."""
+    axis = turn[:, 2] if abs(turn[2, 2]) < _UPRIGHT else turn[:, 1]
+    return math.atan2(axis[1], axis[0])
+
+
+def _about_up(angle: float) -> Floats:
+    """Rotation about the vertical, (3, 3)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def averaged(rows: Floats, window: int) -> Floats:
@@ -277,9 +334,7 @@ def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.b
         along += float((upright[:, :2] * wanted[:, :2]).sum()) / size
         turned = upright[:, 0] * wanted[:, 1] - upright[:, 1] * wanted[:, 0]
         across += float(turned.sum()) / size
-    angle = math.atan2(across, along)
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return _about_up(math.atan2(across, along))
 
 
 def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:

@@ -5,10 +5,13 @@ Model of the forces on a tree that the wind at one place does not explain.
 
 An anemometer measures one place, and limbs apart from each other meet gusts of their own. Two
 places r apart share gusts of a frequency f by the coherence ``exp(-C f r / U)``, C near 8
-(Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211). The wind of
-each limb therefore has an unknown part, correlated among limbs by that law at the first frequency
-of the tree. A further part covers the wood: a stiffness that is off by a share is a force of that
-share of the elastic force.
+(Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211): of those that
+shake a tree at its first frequency, a mast some metres away tells nothing. The wind of each limb
+is therefore unknown, correlated among limbs by that law at the first frequency of the tree.
+
+Its spectrum is that of gusts (Kaimal et al. 1972, same journal 98, 563-589), ``4 s^2 T / (1 + 6 f
+T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f t)^2)`` with t = 0.31 T
+is within 40 % of it from 0.05 to 2 Hz.
 """
 
 from __future__ import annotations
@@ -26,17 +29,14 @@ from tree_sway.core.wind.gusts import DECAY, N_DELAYS, parts_of
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
-TIME_CONSTANT = 0.6
-"""Time in [s] after which an unknown force has decayed to 1/e."""
-
-GUST = 0.15
+GUST = 0.3
 """Standard deviation of the unknown wind of a limb over the mean wind [-]."""
+
+_LENGTH = 60.0
+"""Integral length L of gusts in [m], that of IEC 61400-1 at 10 m."""
 
 _SHARED = 0.1
 """Variance of an unknown wind of the whole crown over that of a limb [-]."""
-
-WOOD = 0.2
-"""Standard deviation of the stiffness of wood within a species, over its mean [-]."""
 
 _LIFT = 0.3
 """Variance of the vertical unknown wind over that of the horizontal one [-]."""
@@ -55,23 +55,28 @@ class Disturbance:
     """
     Unknown forces on the first coordinates of a model in a mean wind.
 
-    ``covariance`` is of the modal forces, (m, m), ``gusts`` its part by unknown gusts, and
-    ``apart`` what it would be if each limb met gusts of its own that move each coordinate as much;
-    ``air_damping`` is the damping of each coordinate by the mean wind in [1/s], (m,), and
-    ``speed`` that wind in [m/s]; ``drag`` is the force on each coordinate of the model against the
-    rate of another in [1/s], (all, all). Of each limb, the stem first, ``limb_slopes`` are the
-    force on each coordinate per wind, (l, 3, m), and ``reach`` how far it is from the middle of
-    the crown over the farthest one, 0 for the stem, (l,).
+    ``covariance`` is of the modal forces, (m, m), and ``apart`` what it would be if each limb met
+    gusts of its own that move each coordinate as much; ``time_constant`` is the time in [s] after
+    which they have decayed to 1/e, ``air_damping`` the damping of each coordinate by the mean wind
+    in [1/s], (m,), and ``speed`` that wind in [m/s]; ``drag`` is the force on each coordinate of
+    the model against the rate of another in [1/s], (all, all). Of each limb, the stem first,
+    ``limb_slopes`` are the force on each coordinate per wind, (l, 3, m), and ``reach`` how far it
+    is from the middle of the crown over the farthest one, 0 for the stem, (l,).
     """
 
     covariance: Floats
-    gusts: Floats
     apart: Floats
+    time_constant: float
     air_damping: Floats
     speed: float
     drag: Floats
     limb_slopes: Floats
     reach: Floats
+
+
+def time_constant(speed: float) -> float:
+    """Time in [s] after which an unknown force has decayed to 1/e in a mean wind [m/s]."""
+    return 0.31 * _LENGTH / speed
 
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
@@ -95,22 +100,19 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
         )
         / np.maximum(load, 1e-12)[:, None]
     )
-    apart = np.linalg.norm(middle[:, None] - middle, axis=2)
+    between = np.linalg.norm(middle[:, None] - middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
-    shared = np.exp(-DECAY * frequency / max(speed, 1.0) * apart)
-    gust = GUST * speed
-    by_gusts = gust**2 * _forces_by(by_limb, _SHARED + shared)
-    own_gusts = _forces_by(by_limb, np.eye(n_limbs))
-    scale = np.sqrt(np.diag(by_gusts) / np.maximum(np.diag(own_gusts), 1e-300))
-    own_gusts *= np.outer(scale, scale)
-    of_whole = np.square(gust * by_limb.sum(axis=0)).sum(axis=0)
-    covariance, apart = by_gusts.copy(), own_gusts
-    for each in (covariance, apart):
-        _add_wood(each, of_whole, simulator, air_damping)
+    shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
+    covariance = np.square(GUST * speed) * _forces_by(by_limb, _SHARED + shared)
+    apart = _forces_by(by_limb, np.eye(n_limbs))
+    scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
+    apart *= np.outer(scale, scale)
     reach = np.linalg.norm(middle - load @ middle / load.sum(), axis=1)
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
-    return Disturbance(covariance, by_gusts, apart, air_damping, speed, drag, by_limb, reach)
+    return Disturbance(
+        covariance, apart, time_constant(speed), air_damping, speed, drag, by_limb, reach
+    )  # fmt: skip
 
 
 def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
@@ -157,23 +159,3 @@ def _limbs(simulator: SwaySimulator) -> Ints:
         if below > 0:
             limb[branch] = limb[below]
     return limb
-
-
-def _add_wood(
-    covariance: Floats, gusts: Floats, simulator: SwaySimulator, air_damping: Floats
-) -> None:
-    """
-    Add the force by which a wrong stiffness drives each coordinate, in place.
-
-    The variance of a coordinate under a force of variance q that decays at a rate a is ``q (a + c)
-    / (c k (a^2 + a c + k))``, c and k its damping and stiffness per mass.
-    """
-    tunable = simulator.banks[0].oscillators.tunable
-    count = len(covariance)
-    stiffness = tunable.stiffness[:count] / tunable.inertia
-    damping = tunable.damping[:count] / tunable.inertia + air_damping
-    rate = 1.0 / TIME_CONSTANT
-    force = np.diag(covariance) + gusts
-    variance = force * (rate + damping)
-    variance /= damping * stiffness * (rate * rate + rate * damping + stiffness)
-    covariance[np.diag_indices(count)] += np.square(WOOD * stiffness) * variance

@@ -28,7 +28,7 @@ from tree_sway.twin.steady_filter import (
 )
 from tree_sway.twin.unknown_motion import UnknownMotion
 
-NOISE = 3.5
+NOISE = 1.0
 """Noise for which gains are found, over the noise of the sensors."""
 
 _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4

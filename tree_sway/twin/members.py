@@ -43,7 +43,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.oscillators import held_propagator
 from tree_sway.core.wind.gusts import FarWind, N_DELAYS, SAMPLES, USUAL_COHERENCE
-from tree_sway.twin.disturbance import GUST, part_slopes, TIME_CONSTANT
+from tree_sway.twin.disturbance import GUST, part_slopes
 
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
@@ -182,9 +182,9 @@ class Members:
         self._step = step.reshape(2, 3, n, N_MEMBERS)
         self._stiff = stiffness
         self._damp = damping
-        values, vectors = np.linalg.eigh(unknown.gusts)
+        values, vectors = np.linalg.eigh(unknown.covariance)
         kept = values > 1e-4 * values[-1]
-        self._decay = math.exp(-self._dt / TIME_CONSTANT)
+        self._decay = math.exp(-self._dt / unknown.time_constant)
         driven = math.sqrt(1.0 - self._decay**2)
         self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
         self._noise = np.zeros((self._gusts.shape[1], N_MEMBERS))

@@ -40,9 +40,12 @@ QUANTITIES = ('acceleration', 'rate', 'orientation')
 _MOST_LEAD = 100
 """Most votes by which the quantities of a sensor lead."""
 
-_STILL = 1.0
+_STILL = 0.15
 _LEAST_STILL = 5
-"""Time [s] and number of equal samples after which a sensor is dead."""
+"""
+Time [s] and number of equal samples after which they are left out: a second of a dead sensor would
+throw the tree about.
+"""
 
 _APART = 20.0
 _LEAST_CHANGE = LEAST_NOISE.tolist()

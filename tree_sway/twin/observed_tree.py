@@ -140,7 +140,9 @@ class ObservedTree(SwaySimulator):
         **changes: Any,
     ) -> None:
         chosen = settings_with(settings, changes)
-        coherence = min(chosen.crown_coherence, USUAL_COHERENCE)
+        # Apart from its anemometer, the wind of a crown is the one expected there (`far_wind`).
+        usual = 1.0 if chosen.is_far else USUAL_COHERENCE
+        coherence = min(chosen.crown_coherence, usual)
         bare, wood = tree_and_species(tree, species)
         whole = replace(chosen, crown_coherence=1.0, anemometer_distance=0.0)
         reductions = TreeReductions(bare, wood, whole)

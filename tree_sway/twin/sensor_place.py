@@ -4,7 +4,8 @@
 Where a motion sensor sits on a tree, and how each coordinate of a model moves that place.
 
 A place is written as a height on the stem in [m] (``3.2``), as a branch and a share of its length
-(``b12:0.5``), or as a segment (``segment:431``).
+(``b12:0.5``), or as a segment (``segment:431``). The bearing to which the z axis of the sensor
+points, the back of a phone's being the tree, may follow: ``3.2 facing 120``.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import NamedTuple, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
 from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
 from tree_sway.errors import nearest, ParameterError
 
@@ -26,10 +28,16 @@ _TURN = 1e-4
 
 
 class SensorPlace(NamedTuple):
-    """A segment, and a share of its length from its root side."""
+    """
+    A segment, and a share of its length from its root side.
+
+    ``facing`` is the azimuth to which the z axis of the sensor points, or its y axis where that is
+    upright, from east to north in [rad]; None if it is not told.
+    """
 
     segment: int
     along: float
+    facing: float | None = None
 
 
 class PlaceMotion(NamedTuple):
@@ -52,7 +60,8 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     tree
         The tree.
     where
-        Height above the root node on the stem in [m], ``BRANCH:SHARE`` or ``segment:NUMBER``.
+        Height above the root node on the stem in [m], ``BRANCH:SHARE`` or ``segment:NUMBER``, with
+        the bearing to which the sensor faces behind it if that is known: ``3.2 facing 120``.
 
     Raises
     ------
@@ -60,12 +69,12 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
         A text of another form, an unknown branch or segment, or a height above the stem.
 
     """
-    text = str(where).strip()
+    text, is_told, bearing = str(where).strip().partition(' facing')
+    if is_told:
+        bearing_to = within('facing', _number(bearing), -360.0, 360.0, 'degrees')
+        return place_on(tree, text)._replace(facing=math.radians(90.0 - bearing_to))
     name, colon, number = text.rpartition(':')
-    try:
-        value = float(number)
-    except ValueError:
-        value = math.nan
+    value = _number(number)
     if not math.isfinite(value):
         cure = "give a height on the stem in m, as '3.2', or a branch and a share, as 'b12:0.5'"
         raise ParameterError(f"'{text[:40]}' is no place on a tree", where='at', cure=cure)
@@ -86,6 +95,13 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
     ends = np.cumsum(tree.length[first:last])
     return _along(int(first), ends, value * float(ends[-1]))
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def _on_stem(tree: Tree, height: float) -> SensorPlace:

@@ -4,7 +4,7 @@
 One sensor over time: first its mounting is found, then it is in use while it agrees.
 
 Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
-the model has in the wind alone. From then on its mounting is found again after 1.4 times as long,
+the model has in the wind alone. From then on its mounting is found again after 1.2 times as long,
 and so on, from all motion of the last ten minutes.
 """
 
@@ -33,11 +33,14 @@ from tree_sway.twin.wind_lag import find_lag
 LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
-_LATER, _MEMORY = 1.4, 600.0
+_LATER, _MEMORY = 1.2, 600.0
 _ABSENT_AFTER = 1.0
 _KNOCKED = 5.0
-_COMPARED = 1.0
-"""Periods of the first sway over which motions are averaged to find a mounting."""
+_COMPARED, _LEAST_COMPARED = 8.0, 3.0
+"""
+Time in [s], and periods of the first sway at least, over which motions are averaged to find a
+mounting: gusts of less are not those of a mast 10 m away.
+"""
 
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
@@ -83,6 +86,13 @@ NO_LAG = LagRange(0, 0, 1)
 """Range of a wind whose lag is not in question."""
 
 
+class Windows(NamedTuple):
+    """Steps in a period of the first sway, and steps over which mountings are compared."""
+
+    period: int
+    compared: int
+
+
 class FoundMounting(NamedTuple):
     """
     How a sensor is mounted, and its mean difference from the model then, (9,).
@@ -96,16 +106,17 @@ class FoundMounting(NamedTuple):
 
 
 def _mountings(
-    sensed: Floats, computed: Floats, reference: Floats | None, window: int, lags: LagRange
+    sensed: Floats, computed: Floats, sensor: MotionSensor, windows: Windows, lags: LagRange
 ) -> Iterator[FoundMounting]:
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-    found = align(sensed, upright, free, reference, window)
-    lag = _lag(sensed, upright, free, window, lags, has_gravity=found.has_gravity)
+    known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
+    found = align(sensed, upright, free, *known)
+    lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     if lag:
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, reference, window)
+        found = align(sensed, upright, free, *known)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
@@ -177,14 +188,16 @@ class SensorTrack:
         """Rows of a sample, (9,), of these."""
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
-        self._window = max(round(_COMPARED / (frequency * dt)), 1)
+        period = 1.0 / frequency
+        compared = max(_COMPARED, _LEAST_COMPARED * period)
+        self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1))
         self._next_fit = round(LEARNING / dt)
         self._quantities = sensor.quantities
         self._moved = np.zeros(9)
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.newest, excess=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
+            newest=sensor.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
         self.fitted_motion = self.watched_motion = self._moved[:2]
@@ -279,7 +292,7 @@ class SensorTrack:
         self.alignment = None
         native.in_use = native.is_mounted = native.is_refused = native.count = 0
         native.is_awaited = 1
-        native.excess = 1.0
+        native.excess = native.usual = 1.0
         self._next_fit = round(LEARNING / self._dt)
         return True
 
@@ -292,12 +305,12 @@ class SensorTrack:
         """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
-        return _mountings(sensed, computed.T.copy(), self.sensor.reference, self._window, lags)
+        return _mountings(sensed, computed.T.copy(), self.sensor, self._windows, lags)
 
     @property
     def window(self) -> int:
         """Steps in a period of the first sway."""
-        return self._window
+        return self._windows.period
 
     def _remembered(self) -> tuple[Floats, Floats]:
         """Copy the motion so far, the oldest first: samples (n, 9), rows of the model (n, 12)."""
@@ -318,9 +331,11 @@ class SensorTrack:
             self.native.count = kept
 
     def take(self, mounting: FoundMounting) -> None:
-        """Read the sensor by another mounting from now on."""
-        found = self.alignment = mounting.alignment
-        native = self.native
+        """Read the sensor by another mounting from now on, unless the one before is surer."""
+        found, native = mounting.alignment, self.native
+        if found.problem and native.is_mounted and not native.is_refused:
+            return
+        self.alignment = found
         native.is_awaited, native.is_mounted = 0, not found.problem
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:

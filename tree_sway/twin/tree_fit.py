@@ -50,13 +50,13 @@ _GUST_ERROR = 0.15
 _LEAST = 1e-4
 """Least variance of a pattern of static bends that counts, over the largest [-]."""
 
-_INDEPENDENT = 0.1
+_INDEPENDENT = 0.02
 """
 Independent values in an averaged periodogram over all.
 
 Hann windows that overlap by half have 0.6. The rest is for what the spectrum of a candidate lacks:
 with 0.6, fits missed the known stiffness of made-up trees by 2.4 of their stated errors (root mean
-square over 22 fits of six kinds of tree).
+square over 22 fits of six kinds of tree), and with 0.1 that of trees beside a mast by up to 7.
 """
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.disturbance import Disturbance, disturbance, TIME_CONSTANT
+from tree_sway.twin.disturbance import Disturbance, disturbance
 from tree_sway.twin.steady_filter import stationary_covariance, sway_law, SwayLaw
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class UnknownMotion:
         self.air_damping[:] = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
         self._law, self.apart = (
-            sway_law(self.stiffness, self.damped, each, TIME_CONSTANT, self._dt)
+            sway_law(self.stiffness, self.damped, each, found.time_constant, self._dt)
             for each in (found.covariance, found.apart)
         )
         self._variance = None

@@ -11,6 +11,9 @@ outdoors, as what shakes the crown is in the measured wind. Each row has one num
 of all tips and roughness, at once and smoothed, the correlation of the stem's tip, the share of
 the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
 and the time per step of the thread that finds gains, mountings and fits beside the steps.
+``sensor r`` is the correlation at the first sensor, then follow the times at which it was first
+in use, and first out of use after that. ``--fault`` adds faults of the sensors (`sensor_faults`),
+those that begin later from 90 s on. The model knows how far the mast is.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip (outdoors at the frequency that
@@ -27,6 +30,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
+from itertools import product
 import sys
 
 import numpy as np
@@ -44,6 +48,7 @@ from tree_sway_lab.twin.gusty_truth import (
 )
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
+from tree_sway_lab.twin.sensor_faults import FAULTS
 from tree_sway_lab.twin.sway_comparison import BANDS
 from tree_sway_lab.twin.trial import mean_score, plain_score, Score, squared_score, twin_score
 from tree_sway_lab.twin.true_tree import (
@@ -66,6 +71,9 @@ _HEAD = (
     'us/step',
     'us 99 %',
     'us beside',
+    'sensor r',
+    'found at s',
+    'left at s',
     *(f'to {high:g} f1' for _, high in BANDS),
     'notes',
 )
@@ -116,6 +124,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='the model knows --upwind where it has no sensor',
     )
     add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
+    add(
+        '--fault',
+        nargs='+',
+        default=['none'],
+        choices=tuple(FAULTS),
+        help='faults of the sensors, a row for each (%(default)s)',
+    )
     for name, what in (
         ('wood', 'modulus of the true tree over the model'),
         ('damping', 'damping ratio of the true tree over the model'),
@@ -216,7 +231,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 scores.setdefault(f'{gusts} (known tree)', []).append(plain_score(far, true))
         known.reset()
         scores.setdefault('model', []).append(plain_score(known, true))
-        for count in arguments.sensors:
+        for count, fault in product(arguments.sensors, arguments.fault):
             score = twin_score(
                 tree,
                 species,
@@ -228,8 +243,10 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 known=each if arguments.known else None,
                 upwind=each.upwind if arguments.tell_upwind else 0.0,
                 **apart,
+                fault=fault,
             )
-            scores.setdefault(str(count), []).append(score)
+            named = str(count) if fault == 'none' else f'{count} {fault}'
+            scores.setdefault(named, []).append(score)
     for sensors, found in scores.items():
         _print(name, sensors, mean_score(found))
 
@@ -246,6 +263,9 @@ def _print(name: str, sensors: str, score: Score) -> None:
         f'{score.cost:.0f}',
         f'{score.worst:.0f}',
         f'{score.beside:.0f}',
+        f'{score.at:.3f}',
+        f'{score.found:.0f}',
+        f'{score.told:.1f}',
         *(f'{each:.2f}' for each in score.bands or [np.nan] * len(BANDS)),
     ]
     print(','.join([*row, '; '.join(score.notes)]))

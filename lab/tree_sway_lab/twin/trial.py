@@ -18,11 +18,12 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
-from tree_sway.twin import LATE_STEPS, ObservedTree
+from tree_sway.twin import LATE_STEPS, ObservedTree, sensor_reports
 from tree_sway.worker import submit_beside
+from tree_sway_lab.twin.sensor_faults import FAULTS
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
-from tree_sway_lab.twin.true_tree import Circumstances, DT, TrueMotion
+from tree_sway_lab.twin.true_tree import Circumstances, DT, pose_at, TrueMotion
 
 FAULTY = SimulatedSensor(
     rate=25.0,
@@ -64,6 +65,11 @@ class Score:
         while scored; not what gains and fits take in a thread beside the steps.
     beside
         CPU time of these in [us] per step, over the whole record.
+    at
+        Correlation of the place of the first sensor with the true one, the smaller of both axes
+        [-]; not a number without a sensor.
+    found, told
+        Times in [s] at which the first sensor was in use first, and out of use first after that.
     notes
         Notes of the sensors.
     bands
@@ -80,6 +86,9 @@ class Score:
     cost: float
     worst: float
     beside: float = 0.0
+    at: float = np.nan
+    found: float = np.nan
+    told: float = np.nan
     notes: tuple[str, ...] = ()
     bands: tuple[float, ...] = ()
 
@@ -148,10 +157,11 @@ def twin_score(
     has_band: bool = True,
     upwind: float = 0.0,
     known: Circumstances | None = None,
+    fault: str = 'none',
     **changes: Any,
 ) -> Score:
     """
-    Score a tree that sensors correct, told how far upwind the anemometer is [m].
+    Score a tree that sensors correct, told how far upwind, or else apart, the anemometer is [m].
 
     Further settings are those of `ObservedTree`. With what is ``known`` of the true tree, its wood and damping are the model's.
     """
@@ -179,18 +189,23 @@ def twin_score(
         sensor = SimulatedSensor(mount=mount)
         if faulty:
             sensor = replace(FAULTY, mount=mount, lateness=rng.uniform(0.0, _LATEST))
-        motion = sensor.measured(true.poses[name], DT, rng)
+        motion = FAULTS[fault](sensor.measured(true.poses[name], DT, rng), rng)
         twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
     tips, smoothed = np.empty_like(true.tips), np.empty_like(true.tips)
     bands = np.full((len(tips), 2, *tips.shape[1:]), np.nan)
     spent = np.empty(len(tips))
+    first = next(iter(places), '')
+    place, in_use = np.zeros((len(tips), 3)), np.zeros(len(tips), dtype=np.bool_)
     both = time.process_time_ns() - time.thread_time_ns()
     for k, each in enumerate(true.wind):
         began = time.thread_time_ns()
         twin.step(each, DT)
         spent[k] = time.thread_time_ns() - began
         tips[k] = tips_of_poses(tree, twin.place(block))
+        if first:
+            in_use[k] = twin.observer.tracks[0].in_use
+            place[k] = pose_at(tree, block, twin.sensors[first].place)[:3]
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         if has_band:
             bands[k] = twin.band()
@@ -201,6 +216,16 @@ def twin_score(
         late = LATE_STEPS + twin.observer.late
         late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
+    at, found, told = np.nan, np.nan, np.nan
+    if first:
+        begin = round(_TRUSTED * len(tips))
+        at = _least_r(place[begin:], true.poses[first][begin:, :3])
+        counts = twin.sensors[first].counts
+        notes += [each for report in sensor_reports(twin) for each in report.notes]
+        notes += [f'{counts.refused} samples refused'] if counts.refused else []
+        found = float(np.argmax(in_use)) * DT if in_use.any() else np.inf
+        ended = ~in_use & np.logical_or.accumulate(in_use)
+        told = float(np.argmax(ended)) * DT if ended.any() else np.nan
     if twin.late_wind.delay:
         notes.append(f'gusts {twin.late_wind.delay:.1f} s late')
     if (fit := twin.observer.fit) is not None:
@@ -210,7 +235,7 @@ def twin_score(
     held = _held(tips, true.tips, bands) if has_band else np.nan
     return Score(
         error, roughness, late_error, late_roughness, stem, held, *_costs(spent), beside,
-        tuple(notes),
+        at, found, told, tuple(notes),
     )  # fmt: skip
 
 
@@ -224,8 +249,12 @@ def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, floa
     motion = wanted - wanted.mean(axis=0)
     error = float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
     second = [np.square(np.diff(each, 2, axis=0)).sum() for each in (found, wanted)]
-    stem = min(float(np.corrcoef(found[:, 0, axis], wanted[:, 0, axis])[0, 1]) for axis in (0, 1))
-    return error, float(np.sqrt(second[0] / second[1])), stem
+    return error, float(np.sqrt(second[0] / second[1])), _least_r(found[:, 0], wanted[:, 0])
+
+
+def _least_r(found: Floats, wanted: Floats) -> float:
+    """Correlation to east or north, the smaller one, of motions (n, 3)."""
+    return min(float(np.corrcoef(found[:, axis], wanted[:, axis])[0, 1]) for axis in (0, 1))
 
 
 def _held(tips: Floats, true: Floats, bands: Floats) -> float:

@@ -53,7 +53,7 @@ class NativeSensor(Structure):
     _fields_ = _fields(
         'ring mounting kept computed moved rows count is_mounted is_awaited in_use is_refused'
         ' silences disagreements',
-        'dt absent unheard newest apart excess agreed heard came lag',
+        'dt absent unheard newest apart excess usual agreed heard came lag',
     )
 
 
