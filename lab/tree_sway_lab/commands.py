@@ -49,7 +49,7 @@ COMMANDS: dict[str, Command] = {
     ),
     'twin': Command(
         'how far motion sensors bring the model to a tree that it does not know',
-        'twin straight --model 120 --seconds 60 --sensors 1',
+        'twin straight --seconds 60 --sensors 0 1',
         'tree_sway_lab.twin.command',
     ),
     'validate': Command(

@@ -53,7 +53,8 @@ class ArticulatedTree:
     tree
         The tree.
     modulus, density
-        Young's modulus in [Pa] and density in [kg/m^3] of the green wood.
+        Young's modulus in [Pa], also of each segment, (n,), and density in [kg/m^3] of the green
+        wood.
     damping_ratio
         Of each of the lowest `damped_modes` in [-]; above them the ratio grows with the frequency,
         as by dampers in proportion to the springs. Not used where `rayleigh` is given.
@@ -82,7 +83,7 @@ class ArticulatedTree:
     def __init__(
         self,
         tree: Tree,
-        modulus: float,
+        modulus: float | Floats,
         density: float,
         damping_ratio: float = 0.05,
         drag_coefficient: float = 1.2,
@@ -104,8 +105,9 @@ class ArticulatedTree:
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
         leaves = (self._along(leaf_mass), self._along(leaf_area))
+        moduli = np.repeat(np.broadcast_to(modulus, tree.n_segments), subdivisions)
         self.bodies = articulated_bodies(
-            cut, modulus, density, gravity, twist_ratio, *leaves, root_stiffness
+            cut, moduli, density, gravity, twist_ratio, *leaves, root_stiffness
         )
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))

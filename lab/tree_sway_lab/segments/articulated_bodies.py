@@ -62,7 +62,7 @@ class Bodies(NamedTuple):
 
 def articulated_bodies(
     tree: Tree,
-    modulus: float,
+    modulus: float | Floats,
     density: float,
     gravity: float,
     twist_ratio: float,
@@ -78,7 +78,7 @@ def articulated_bodies(
     tree
         The tree.
     modulus, density
-        Young's modulus in [Pa] and density in [kg/m^3].
+        Young's modulus in [Pa], also of each segment, (n,), and density in [kg/m^3].
     gravity
         In [m/s^2]; the springs are set to hold the rest shape against it.
     twist_ratio

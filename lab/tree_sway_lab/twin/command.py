@@ -3,14 +3,18 @@
 """
 ``tree-sway lab twin``: how far sensors bring the model to a tree of other wood, damping and gusts.
 
-The true tree is made up: the model with all coordinates, its wood softer by a fifth, its damping
-higher by half, gusts that reach it limb by limb. Each row has one number of sensors: dynamic error
+The true tree is made up: every segment a rigid body in a field of gusts, beside a mast, its wood,
+damping and drag drawn by the seed (`gusty_truth`). Without a tree there are six kinds. With
+``--easy`` it is the model with all coordinates, its wood softer by a fifth, its damping higher by
+half, and gusts that reach limb after limb with a copy of the measured wind: kinder than a tree
+outdoors, as what shakes the crown is in the measured wind. Each row has one number of sensors: dynamic error
 of all tips and roughness, at once and smoothed, the correlation of the stem's tip, the share of
 the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
 and the time per step of the thread that finds gains, mountings and fits beside the steps.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
-frequency of the model, with the gains that are best for each tip.
+frequency of the model, with the gains that are best for each tip (outdoors at the frequency that
+is best too).
 
 One tree of one wood tells little about a band: what the model errs in its lean stays for the whole
 record, so that a band of 80 % holds it always or never. ``--drawn`` draws wood, damping and drag
@@ -22,11 +26,13 @@ of several true trees from the spreads that the band assumes; the rows are means
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 import sys
 
 from tree_sway.commands import Ending
 from tree_sway.core.scene import make_simulator
 from tree_sway.twin import advised_places
+from tree_sway_lab.twin.gusty_truth import gusty_motion, kinds_of, Outside
 from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sway_comparison import BANDS
@@ -53,6 +59,9 @@ _HEAD = (
     'us beside',
     'notes',
 )
+CUTOFFS = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03)
+"""Frequencies over the first one at which the square of the wind is low-passed."""
+
 _RECORD_HEAD = (
     *('record', 'held out', 'quantity', 'motion', 'r', 'lag', 'error', 'rms'),
     *(f'to {high:g} f1' for _, high in BANDS),
@@ -65,9 +74,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         'tree',
         nargs='*',
-        default=['straight', 'spruce 8'],
         help='kind of the laboratory, or species, height and seed, as "oak 9 4"; or the folder of '
-        'a record of wind and motion, as tree-sway record writes it (%(default)s)',
+        'a record of wind and motion, as tree-sway record writes it; by default six kinds of --seed',
+    )
+    add('--easy', action='store_true', help='a truth that has the measured wind in its crown')
+    add(
+        '--mast',
+        type=float,
+        nargs=3,
+        default=Outside.mast,
+        metavar=('X', 'Y', 'Z'),
+        help='place of the anemometer from the top of the tree in [m], x along the wind, without '
+        '--easy (%(default)s)',
     )
     add('--in-leaf', action='store_true', help='in leaf; bare without it')
     add('--sensors', type=int, nargs='+', default=[0, 1, 2, 4], help='numbers (%(default)s)')
@@ -76,9 +94,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         default=0,
         help='number of true trees whose wood, damping and drag are drawn from their spreads '
-        '(one, of --wood and --damping)',
+        '(one; with --easy one of --wood and --damping)',
     )
-    add('--model', default='full', help='model of the true tree (%(default)s)')
+    add('--model', default='full', help='model of the true tree of --easy (%(default)s)')
     add('--without-band', action='store_true', help='us/step is that of the sensors alone')
     add('--advised', action='store_true', help='sensors where tree-sway info --sensors advises')
     add('--known', action='store_true', help='the model has the wood and damping of the true tree')
@@ -106,6 +124,8 @@ def run(arguments: argparse.Namespace) -> int:
     around = Circumstances(**{name: getattr(arguments, name) for name in names})
     records = [name for name in arguments.tree if is_tree_record(name)]
     made_up = [name for name in arguments.tree if name not in records]
+    if not arguments.tree:
+        made_up = ['straight', 'spruce 8'] if arguments.easy else kinds_of(around.seed)
     with Ending():
         if records:
             print(','.join(_RECORD_HEAD))
@@ -149,14 +169,30 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
         places = [each.at for each in advised]
     model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
     trees = [around]
-    if arguments.drawn:
+    if arguments.drawn and arguments.easy:
         trees = drawn(around, arguments.drawn, in_leaf=in_leaf)
+    elif not arguments.easy:
+        count = max(arguments.drawn, 1)
+        trees = [replace(around, seed=around.seed + k, upwind=0.0) for k in range(count)]
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
-        true = true_motion(tree, species, places, each, in_leaf=in_leaf, model=model)
+        if arguments.easy:
+            true = true_motion(tree, species, places, each, in_leaf=in_leaf, model=model)
+            scores.setdefault('U^2', []).append(squared_score(true, frequency))
+        else:
+            outside = Outside(
+                mast=tuple(arguments.mast),
+                speed=each.speed,
+                seconds=each.seconds,
+                seed=each.seed,
+            ).drawn(tree)
+            each = replace(each, wood=outside.wood, damping=outside.damping, drag=outside.drag)
+            true = gusty_motion(tree, species, places, outside, in_leaf=in_leaf)
+            passed = [squared_score(true, share * frequency) for share in CUTOFFS]
+            best = min(passed, key=lambda score: score.error)
+            scores.setdefault('U^2', []).append(best)
         known.reset()
-        scores.setdefault('U^2', []).append(squared_score(true, frequency))
         scores.setdefault('model', []).append(plain_score(known, true))
         for count in arguments.sensors:
             score = twin_score(

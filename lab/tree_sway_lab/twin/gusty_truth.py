@@ -1,0 +1,146 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The tree outside the window: every segment a rigid body, in a field of gusts, beside a mast.
+
+Nothing of it is the model's: its solver is that of `segments`, the gusts of its limbs are drawn
+from cross spectra (`gust_field`), the mast measures at its own place, and wood, damping and drag
+are drawn from what is published of trees of one species.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import tips_of_poses, Tree
+from tree_sway.twin import place_on
+from tree_sway_lab.segments.articulated import ArticulatedTree
+from tree_sway_lab.twin.gust_field import GustField, nearest_of, spread_points
+from tree_sway_lab.twin.true_tree import DT, pose_at, TrueMotion
+
+POINTS = 48
+"""Places of the crown that have gusts of their own."""
+
+_WOOD, _BRANCH, _DAMPING, _DRAG = 0.22, 0.15, 0.5, 0.25
+"""Log-deviations of wood among trees, and of branches within one, of damping and of drag."""
+
+_SUBSTEPS = 4
+_TWIST = 1.0 / 7.0
+
+KINDS = ('limbs2', 'poplar 10', 'crooked', 'crooked', 'leaning', 'oak 9')
+"""Two stems, a poplar, crooked trees of two habits, a tree that leans, and an oak."""
+
+
+def kinds_of(seed: int) -> list[str]:
+    """Return the six kinds of trees of a seed, as `tree_called` knows them."""
+    seeds = (seed, seed, 3 * seed, 3 * seed + 1, seed, seed)
+    return [f'{kind} {each}' for kind, each in zip(KINDS, seeds, strict=True)]
+
+
+@dataclass(frozen=True)
+class Outside:
+    """
+    What the model does not know of the tree outside.
+
+    Parameters
+    ----------
+    wood, branches, damping, drag
+        Modulus over the model's, also of each branch (b,), damping ratio and drag area [-].
+    mast
+        Place of the anemometer from the highest tip in [m], x along the wind, (3,).
+    speed, intensity, seconds
+        Mean wind in [m/s], deviation of u over it [-] and length of the record in [s].
+    seed
+        Seed of the gusts.
+    is_uniform
+        Whether the wind is the mast's everywhere.
+    points
+        Places of the crown that have gusts of their own.
+
+    """
+
+    wood: float = 1.0
+    branches: Floats | float = 1.0
+    damping: float = 1.0
+    drag: float = 1.0
+    mast: tuple[float, float, float] = (-12.0, 4.0, 0.0)
+    speed: float = 7.0
+    intensity: float = 0.3
+    seconds: float = 120.0
+    seed: int = 101
+    is_uniform: bool = False
+    points: int = POINTS
+
+    def drawn(self, tree: Tree) -> Outside:
+        """Draw the tree by the seed."""
+        rng = np.random.default_rng(self.seed)
+        wood, damping, drag = np.exp(np.array([_WOOD, _DAMPING, _DRAG]) * rng.normal(size=3))
+        branches = np.exp(_BRANCH * rng.normal(size=tree.n_branches))
+        return replace(
+            self, wood=float(wood), branches=branches, damping=float(damping), drag=float(drag)
+        )
+
+    def field(self, tree: Tree) -> tuple[GustField, Ints]:
+        """Return the gusts of mast, the first place, and crown; and the place of each segment."""
+        middle = 0.5 * (tree.start + tree.end)
+        area = tree.length * (tree.base_diameter + tree.tip_diameter)
+        points = spread_points(middle, area, self.points)
+        near = nearest_of(middle, points) + 1
+        places = np.vstack([top_of(tree) + self.mast, points])
+        return GustField(places, self.speed, self.intensity), near
+
+
+def top_of(tree: Tree) -> Floats:
+    """Highest tip in [m], (3,)."""
+    return np.asarray(tree.end[np.argmax(tree.end[:, 2])])
+
+
+def outside_tree(
+    tree: Tree, species: Species, outside: Outside, *, in_leaf: bool
+) -> ArticulatedTree:
+    """Make the tree outside, at rest."""
+    known = TreeReductions(tree, species, Settings(in_leaf=in_leaf))
+    law, leaves = known.drag_law, known.settings
+    moduli = outside.wood * species.modulus * np.broadcast_to(outside.branches, tree.n_branches)
+    return ArticulatedTree(
+        tree,
+        moduli[tree.branch_of_segment],
+        species.density,
+        min(outside.damping * known.damping_ratio, 1.0),
+        outside.drag * law.coefficient,
+        drag_exponent=law.exponent,
+        steady_drag=outside.drag * law.steady,
+        gravity=leaves.gravity,
+        twist_ratio=_TWIST,
+        leaf_mass=leaves.leaf_mass,
+        leaf_area=known.leaf_load_area,
+    )
+
+
+def gusty_motion(
+    tree: Tree, species: Species, places: Sequence[str], outside: Outside, *, in_leaf: bool
+) -> TrueMotion:
+    """Sway the tree outside: the mast's wind, its tips, and poses of places of sensors."""
+    true = outside_tree(tree, species, outside, in_leaf=in_leaf)
+    field, near = outside.field(tree)
+    gusts = field.record(outside.seconds, 1.0 / DT, np.random.default_rng(outside.seed + 1))
+    found = {name: place_on(tree, name) for name in places}
+    poses = {name: np.empty((len(gusts), 7)) for name in places}
+    tips = np.empty((len(gusts), tree.n_branches, 3))
+    block = np.empty((tree.n_segments, 7))
+    felt = np.zeros_like(near) if outside.is_uniform else near
+    for k, wind in enumerate(gusts):
+        for _ in range(_SUBSTEPS):
+            true.step(wind[felt], DT / _SUBSTEPS)
+        true.place(block)
+        tips[k] = tips_of_poses(tree, block)
+        for name, place in found.items():
+            poses[name][k] = pose_at(tree, block, place)
+    return TrueMotion(gusts[:, 0].copy(), tips, poses)
