@@ -20,7 +20,7 @@ from tree_sway.core.run import Outcome
 from tree_sway.twin.camera.limb_points import LimbPoints, matched_points
 from tree_sway.twin.camera.motion_filter import MotionFilter, TICK
 from tree_sway.twin.camera.pinhole import Camera
-from tree_sway.twin.disturbance import crown_slope, disturbance, TIME_CONSTANT
+from tree_sway.twin.disturbance import crown_slope, disturbance
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.steady_filter import stationary_covariance, sway_law, SwayLaw
 
@@ -33,8 +33,14 @@ _KEPT = 1.0
 _USUAL_WIND = 6.0
 """Mean wind in [m/s] that is taken where none is measured."""
 
-_UNTOLD = 0.5
-"""Standard deviation of the wind that nothing tells, over the mean wind [-]."""
+_UNTOLD = 0.7
+"""Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-]."""
+
+_LASTS = 1.5
+"""Time in [s] after which an unknown force has decayed to 1/e: the lean lasts, gusts do not."""
+
+_NEARER = 0.3
+"""Share of the way to the estimate that the tree goes in a step."""
 
 _FADE = 0.5
 """Time constant in [s] with which the correction fades without pictures."""
@@ -90,15 +96,13 @@ class FilmedTree(ObservedTree):
         """Return the law of what the model lacks, in the present mean wind."""
         n = self._n
         found = disturbance(self, self._speed, n)
-        covariance = found.covariance.copy()
-        if not self._has_wind:
-            whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
-            covariance += whole.T @ whole
+        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
+        covariance = found.covariance + whole.T @ whole
         tunable = self.banks[0].oscillators.tunable
         stiffness, damping = (
             np.array(each[:n]) / tunable.inertia for each in (tunable.stiffness, tunable.damping)
         )
-        return sway_law(stiffness, damping + found.air_damping, covariance, TIME_CONSTANT, TICK)
+        return sway_law(stiffness, damping + found.air_damping, covariance, _LASTS, TICK)
 
     def film(self, time: float, reference: int, image: ArrayLike) -> None:
         """
@@ -133,12 +137,18 @@ class FilmedTree(ObservedTree):
             self._look(*self._waiting.popleft())
         if self.now - self._seen_at < _LOST:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
-            self._filmed = self.filter.ahead(ticks)
+            self._calm(dt, self.filter.ahead(ticks))
         else:
             self._filmed *= np.exp(-dt / _FADE)
         eta[:n] += self._filmed[0]
         rate[:n] += self._filmed[1]
         return status
+
+    def _calm(self, dt: float, estimate: Floats) -> None:
+        """Move the correction on by its law, and nearer to the estimate: so noise is averaged."""
+        state = np.stack([*self._filmed, self.filter.state[2]])
+        self._filmed = self.filter.moved(state, round(dt / TICK))
+        self._filmed += _NEARER * (estimate - self._filmed)
 
     def _look(self, time: float, reference: int, image: Floats) -> None:
         """Follow the points of a picture."""

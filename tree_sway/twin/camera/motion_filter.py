@@ -28,7 +28,7 @@ _MOST_TICKS = 60
 _NOISE = 0.15
 """Least error of a point in pixels."""
 _FIRST_NOISE = 0.5
-_JOINED = 4.0
+_JOINED = 2.0
 """
 How many times the square of its error a point's variance is taken to be: its error is that of a
 shape that the model lacks, which lasts for several pictures.
@@ -96,8 +96,12 @@ class MotionFilter:
 
     def ahead(self, ticks: int) -> Floats:
         """Displacement and rate some ticks later, (2, n)."""
+        return self.moved(self.state, ticks)
+
+    def moved(self, state: Floats, ticks: int) -> Floats:
+        """Displacement and rate some ticks after a state (3, n), (2, n)."""
         step, _ = self._several(min(ticks, _MOST_TICKS))
-        return np.einsum('ijn,jn->in', step[:2], self.state)
+        return np.asarray(np.einsum('ijn,jn->in', step[:2], state))
 
     def begin(self, n_points: int) -> None:
         """Follow other points."""
