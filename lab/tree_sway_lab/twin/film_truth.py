@@ -21,6 +21,8 @@ FRAMES = 30
 """Pictures per second [Hz]."""
 
 SIZE = (1280, 720)
+_LIMBS = 4
+"""Stoutest limbs that are clicked too."""
 _SUBSTEPS = 4
 _CLICK = 1.5
 """Error of a click in pixels."""
@@ -73,15 +75,20 @@ def camera_before(tree: Tree, rng: np.random.Generator) -> Camera:
 
 
 def set_up(tree: Tree, camera: Camera, rng: np.random.Generator) -> FoundCamera:
-    """Find that camera as a person would: five clicks on the stem, bearing and distance."""
-    tops = np.maximum.accumulate(tree.end[: tree.branch_first[1], 2]) - tree.start[0, 2]
+    """Find that camera as a person would: clicks on stem and limbs, bearing and distance."""
+    names = tree.branch_names
+    limbs = np.flatnonzero(tree.branch_parent == 0)
+    first = tree.branch_first
+    stout = limbs[np.argsort(tree.base_diameter[first[limbs]])[::-1]][:_LIMBS].tolist()
+    shares = [(0, share) for share in (0.0, 0.25, 0.5, 0.75, 0.98)]
     clicks = []
-    for height in np.linspace(0.0, 0.98 * float(tops[-1]), 5):
-        place = place_on(tree, float(height))
+    for branch, share in shares + [(branch, 0.9) for branch in stout]:
+        where = f'{names[branch]}:{share}'
+        place = place_on(tree, where)
         along = tree.end[place.segment] - tree.start[place.segment]
         at = camera.project((tree.start[place.segment] + place.along * along)[None])[0]
         x, y = at + _CLICK * rng.normal(size=2)
-        clicks.append(Click(float(x), float(y), f'{height}'))
+        clicks.append(Click(float(x), float(y), where))
     toward = tree.start[0] - camera.position
     bearing = np.degrees(np.arctan2(toward[0], toward[1])) + 3.0 * rng.normal()
     distance = float(np.hypot(*toward[:2])) * (1.0 + 0.02 * rng.normal())
