@@ -39,7 +39,7 @@ STOREYS = {
 #: Rooms with a face of their own.
 WINGS = {
     'core.wind.simulated', 'files.export', 'files.models', 'files.motion', 'files.recording',
-    'files.scenes', 'files.trees', 'files.wind',
+    'files.scenes', 'files.trees', 'files.wind', 'twin.camera',
 }  # fmt: skip
 LARGEST_FACE = 25
 CORE_LIBRARIES = {'numpy', 'scipy', 'tree_sway'}

@@ -22,7 +22,8 @@ def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--motion', action='append', default=[], metavar='FILE',
         help='recording of a motion sensor on the real tree: CSV, or a bag with '
-        'sensor_msgs/Imu, of several as BAG?topic=/tree/imu; repeatable',
+        'sensor_msgs/Imu, of several as BAG?topic=/tree/imu; or a film, camera:FILE.mp4 '
+        '(doc/camera.md); repeatable',
     )  # fmt: skip
     add_place_argument(parser)
     add(
@@ -37,7 +38,8 @@ def add_place_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--at', action='append', default=[], metavar='PLACE',
         help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
-        'b12:0.5; once for each --motion',
+        'b12:0.5; of a camera the points that were clicked, or a file with them; once for each '
+        '--motion',
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from tree_sway.commands.arguments import (
     opened_tree,
     output_path,
 )
+from tree_sway.commands.camera_arguments import filmed_motion
 from tree_sway.commands.exposure import (
     add_exposure_arguments,
     chosen_exposure,
@@ -96,13 +97,14 @@ def run(arguments: argparse.Namespace) -> int:
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
     ground = float(tree_file.tree.start[0, 2])
     wind = _wind(arguments, exposure)
+    film = filmed_motion(arguments, tree_file.tree)
     motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
     with waiting('simulating'):
         record = simulate(
             tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
-            profile=exposure.profile(ground), motion=motion,
+            profile=exposure.profile(ground), motion=motion, film=film,
             band=arguments.band,
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import ends_of_poses, Tree
-from tree_sway.twin.camera import Camera
+from tree_sway.twin.camera import Camera, drawn_wood
 from tree_sway_lab.twin.film_truth import FRAMES, SIZE
 
 _FINER = 2
@@ -42,10 +42,8 @@ def pictures(
     leafy = rng.permutation(tips)[: len(tips) // 3]
     hang = rng.normal(size=(len(leafy), 2)) * 3.0
     for k, block in enumerate(poses.astype(np.float64)):
-        start, end = ends_of_poses(block, tree.length)
-        depth = camera.depth(0.5 * (start + end))
-        width = camera.focal * tree.base_diameter / depth
-        first, last = camera.project(start), camera.project(end)
+        ends = ends_of_poses(block, tree.length)
+        first, last, width, depth = drawn_wood(camera, *ends, tree.base_diameter)
         shift = round(1.2 * k)
         sky = 195.0 + 18.0 * np.clip(cloud[:, shift % (2 * wide) : shift % (2 * wide) + wide], -2.0, 2.0)
         canvas = np.where(mask, ground, sky).astype(np.float32)
@@ -59,7 +57,7 @@ def pictures(
             if width[s] > 3.0:
                 size = max(0.2 * width[s], 1.0) * _FINER
                 _disc(cv2, canvas, spot, size, bark[s] + light)
-        fluttered = camera.project(end[leafy]) + hang + 1.5 * rng.normal(size=hang.shape)
+        fluttered = last[leafy] + hang + 1.5 * rng.normal(size=hang.shape)
         for leaf in fluttered:
             _disc(cv2, canvas, leaf, 2.0 * _FINER, 95.0)
         bird = (k % (10 * FRAMES)) * 12.0 - 300.0

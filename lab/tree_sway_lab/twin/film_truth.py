@@ -12,7 +12,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import place_on
-from tree_sway.twin.camera import Camera, camera_of_clicks, Click, FoundCamera, Told
+from tree_sway.twin.camera import Camera, camera_of_clicks, Click, told_by
 from tree_sway.twin.camera.pinhole import looking
 from tree_sway_lab.twin.gusty_truth import outside_tree, Outside
 from tree_sway_lab.twin.true_tree import DT
@@ -74,7 +74,14 @@ def camera_before(tree: Tree, rng: np.random.Generator) -> Camera:
     return Camera(position, axes, focal, 0.5 * np.array(SIZE))
 
 
-def set_up(tree: Tree, camera: Camera, rng: np.random.Generator) -> FoundCamera:
+class SetUp(NamedTuple):
+    """The camera that was found, and the text by which a person tells it."""
+
+    camera: Camera
+    clicks: str
+
+
+def set_up(tree: Tree, camera: Camera, rng: np.random.Generator) -> SetUp:
     """Find that camera as a person would: clicks on stem and limbs, bearing and distance."""
     names = tree.branch_names
     limbs = np.flatnonzero(tree.branch_parent == 0)
@@ -92,4 +99,7 @@ def set_up(tree: Tree, camera: Camera, rng: np.random.Generator) -> FoundCamera:
     toward = tree.start[0] - camera.position
     bearing = np.degrees(np.arctan2(toward[0], toward[1])) + 3.0 * rng.normal()
     distance = float(np.hypot(*toward[:2])) * (1.0 + 0.02 * rng.normal())
-    return camera_of_clicks(tree, SIZE, clicks, Told(bearing=float(bearing), distance=distance))
+    lines = [f'{each.x:.1f},{each.y:.1f},{each.place}' for each in clicks]
+    text = ';\n'.join([f'bearing={bearing:.1f}', f'distance={distance:.2f}', *lines, ''])
+    told = told_by(text)
+    return SetUp(camera_of_clicks(tree, SIZE, told.clicks, told.told).camera, text)

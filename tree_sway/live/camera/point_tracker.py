@@ -16,7 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-MOST_POINTS = 300
+MOST_POINTS = 200
 _QUALITY = 0.02
 _APART = 6
 """Least distance of two points in pixels."""

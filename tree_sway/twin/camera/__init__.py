@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from tree_sway.twin.camera.camera_pose import Click as Click
     from tree_sway.twin.camera.camera_pose import FoundCamera as FoundCamera
     from tree_sway.twin.camera.camera_pose import Told as Told
+    from tree_sway.twin.camera.clicked_points import told_by as told_by
+    from tree_sway.twin.camera.filmed_tree import FilmedMotion as FilmedMotion
     from tree_sway.twin.camera.filmed_tree import FilmedTree as FilmedTree
-    from tree_sway.twin.camera.limb_points import LimbPoints as LimbPoints
-    from tree_sway.twin.camera.limb_points import matched_points as matched_points
+    from tree_sway.twin.camera.limb_points import drawn_wood as drawn_wood
+    from tree_sway.twin.camera.limb_points import DrawnWood as DrawnWood
     from tree_sway.twin.camera.pinhole import Camera as Camera
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -10,7 +10,8 @@ each moves, so that an error of the match or of the camera is not taken for moti
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,8 +49,18 @@ _FADE = 0.5
 _LOST = 0.5
 """Time in [s] without a picture from which the correction fades."""
 
+_USED = 0.25
+"""Weight above which a point is in use."""
+
 _FEWEST = 6
 """Least number of points that a picture must tell."""
+
+
+class FilmedMotion(NamedTuple):
+    """A camera, and of each picture what `FilmedTree.film` takes."""
+
+    camera: Camera
+    pictures: Iterable[tuple[float, int, Floats]]
 
 
 class FilmedTree(ObservedTree):
@@ -62,18 +73,15 @@ class FilmedTree(ObservedTree):
         Those of `ObservedTree`; ``at`` may be empty, or name motion sensors.
     camera
         The camera.
-    has_wind
-        Whether the steps get the measured wind; without it they should get none.
 
     """
 
     def __init__(
-        self, *arguments: Any, camera: Camera, has_wind: bool = True, at: Any = None, **options: Any
+        self, *arguments: Any, camera: Camera, at: Any = None, **options: Any
     ) -> None:
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
         self._speed = _USUAL_WIND
-        self._has_wind = has_wind
         oscillators: Any = self.banks[0].oscillators
         m = oscillators.shapes.shape[1]
         n = self._n = min(MOST_COORDINATES, m)
@@ -203,6 +211,22 @@ class FilmedTree(ObservedTree):
         self._seen_at, self._reference = -np.inf, -1
         law = self._law()
         self.filter = MotionFilter(law, stationary_covariance(law))
+
+    @property
+    def said(self) -> str:
+        """What the camera tells, or why it tells nothing, one sentence."""
+        n_points = len(self.points.row)
+        if not np.isfinite(self._seen_at):
+            why = 'no picture of the time of the wind'
+            if n_points or self.refused:
+                why = f'{n_points} points on the tree are too few: check the clicks'
+            return f'the camera moves nothing: {why}'
+        used = int((self.filter.weights > _USED).sum())
+        error = float(np.median(self.filter.errors))
+        return (
+            f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
+            f'{error:.1f} px; {self.refused} pictures refused'
+        )
 
     def reset(self) -> None:
         """Return to rest, with no wind; the points are matched anew."""

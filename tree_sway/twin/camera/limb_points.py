@@ -59,6 +59,22 @@ class LimbPoints(NamedTuple):
         return slopes
 
 
+class DrawnWood(NamedTuple):
+    """Segments in a picture: ends (s, 2), width and, ahead of the camera in [m], depth, (s,)."""
+
+    first: Floats
+    last: Floats
+    width: Floats
+    depth: Floats
+
+
+def drawn_wood(camera: Camera, start: Floats, end: Floats, diameter: Floats) -> DrawnWood:
+    """Find where a camera sees segments from their ends (s, 3) and diameters (s,) in [m]."""
+    depth = camera.depth(0.5 * (start + end))
+    width = camera.focal * diameter / np.maximum(depth, 0.1)
+    return DrawnWood(camera.project(start), camera.project(end), width, depth)
+
+
 def matched_points(
     tree: Tree, poses: Floats, camera: Camera, image: Floats, within: float = 2.0
 ) -> LimbPoints:
@@ -83,16 +99,14 @@ def matched_points(
 
     """
     start, end = ends_of_poses(poses, tree.length)
-    first, last = camera.project(start), camera.project(end)
-    depth = camera.depth(0.5 * (start + end))
-    radius = 0.5 * camera.focal * tree.base_diameter / np.maximum(depth, 0.1)
+    first, last, width, depth = drawn_wood(camera, start, end, tree.base_diameter)
     along = last - first
     square = np.maximum(np.square(along).sum(axis=1), 1e-12)
     apart = _APART * float(np.ptp(end[:, 2]))
     found = []
     for row, point in enumerate(image):
         share = np.clip(((point - first) * along).sum(axis=1) / square, 0.0, 1.0)
-        gap = np.linalg.norm(first + share[:, None] * along - point, axis=1) - radius
+        gap = np.linalg.norm(first + share[:, None] * along - point, axis=1) - 0.5 * width
         near = np.flatnonzero(gap < within)
         if not len(near):
             continue
