@@ -32,6 +32,7 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
+from tree_sway.files.export import write_tree
 from tree_sway.extras import refuse_missing
 from tree_sway.live import Film, PointTracker
 from tree_sway.twin.camera import Camera, drawn_wood, FilmedTree
@@ -85,7 +86,7 @@ def _try(name: str, arguments: argparse.Namespace) -> None:
     camera = camera_before(tree, rng)
     found = set_up(tree, camera, rng)
     if arguments.output is not None:
-        _write(arguments.output, tree, true, camera, found.clicks)
+        _write(arguments.output, tree, species, true, camera, found.clicks)
     seen, cost = _followed(tree, true, camera, found.camera, rng, arguments.points)
     rest = tips_of_poses(tree, make_simulator(tree, species).place())
     still = np.broadcast_to(rest, true.tips.shape)
@@ -186,8 +187,10 @@ def _print(name: str, motion: str, score: _Score, following: float) -> None:
     print(','.join([name, motion, *figures, f'{score.cost:.2f}', f'{following:.2f}']), flush=True)
 
 
-def _write(folder: Path, tree: Tree, true: FilmedTruth, camera: Camera, clicks: str) -> None:
-    """Write the film, the wind and the clicks of a tree."""
+def _write(
+    folder: Path, tree: Tree, species: Species, true: FilmedTruth, camera: Camera, clicks: str
+) -> None:
+    """Write a tree, its film, the wind, the clicks and the true motion of the stem's tip."""
     refuse_missing(['cv2'], 'lab film -o')
     import cv2
 
@@ -196,4 +199,8 @@ def _write(folder: Path, tree: Tree, true: FilmedTruth, camera: Camera, clicks: 
     write_film(cv2, str(folder / 'film.mp4'), tree, true.poses, camera, rng)
     rows = [f'{DT * k:.6f},{u:.4f},{v:.4f},{w:.4f}' for k, (u, v, w) in enumerate(true.wind)]
     (folder / 'wind.csv').write_text('\n'.join(['time,u,v,w', *rows, '']), encoding='utf-8')
+    moved = true.tips[:, 0] - tree.end[tree.branch_first[1] - 1]
+    rows = [f'{DT * (k + 1):.6f},{x:.5f},{y:.5f},{z:.5f}' for k, (x, y, z) in enumerate(moved)]
+    (folder / 'true.csv').write_text('\n'.join(['time,x,y,z', *rows, '']), encoding='utf-8')
+    write_tree(folder / 'tree.yaml', tree, species)
     (folder / 'clicks.txt').write_text(clicks, encoding='utf-8')
