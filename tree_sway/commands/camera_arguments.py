@@ -1,10 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A camera among the arguments ``--motion`` and ``--at``: ``camera:FILE`` and its clicked points."""
+"""A camera among the arguments ``--motion`` and ``--at``: ``camera:FILE`` and its clicks."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 import sys
 from typing import NamedTuple, TYPE_CHECKING
@@ -15,7 +17,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.files import read_text
-from tree_sway.live import Film, is_camera, PointTracker
+from tree_sway.live import Film, is_camera, LiveFilm, PointTracker
 from tree_sway.twin.camera import camera_of_clicks, drawn_wood, FilmedMotion, told_by
 
 if TYPE_CHECKING:
@@ -61,6 +63,34 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
     if told.check:
         film.check(told.check, wood)
     return PlacedCamera(film, found.camera, film.tracker(wood))
+
+
+@contextmanager
+def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | None]:
+    """
+    Follow the live camera among the arguments, and end at once; None without one.
+
+    The errors are those of `placed_camera`, and a film in a file.
+    """
+    if not any(map(is_camera, arguments.motion)):
+        yield None
+        return
+    placed = placed_camera(arguments, tree())
+    assert placed is not None
+    if not placed.film.is_live:
+        cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
+        raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
+    live = LiveFilm(placed.film, placed.camera, placed.tracker, _say)
+    live.start()
+    try:
+        yield live
+    finally:
+        live.stop()
+
+
+def _say(text: str) -> None:
+    """Print a line of news of the camera."""
+    print(f'motion: {text}\n', end='', file=sys.stderr, flush=True)
 
 
 def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | None:

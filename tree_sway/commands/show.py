@@ -16,6 +16,7 @@ import webbrowser
 import numpy as np
 
 from tree_sway.commands.arguments import chosen_leaves, opened_scene
+from tree_sway.commands.camera_arguments import filming
 from tree_sway.commands.ending import Ending
 from tree_sway.commands.learn_argument import (
     add_learn_argument,
@@ -42,6 +43,7 @@ from tree_sway.live import MotionFeed
 from tree_sway.page import Choices, PageServer, PageSettings, RATE, Session, WindSource
 from tree_sway.stream import ControlPanel
 from tree_sway.twin import observed_scene, ObservedTree
+from tree_sway.twin.camera import Camera
 from tree_sway.worker import submit_beside
 
 _SPACING = 1.2
@@ -89,7 +91,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.motion and arguments.stand > 1:
         what = f'motion sensors on a stand of {arguments.stand} trees'
         raise ParameterError(what, where='--motion', cure='leave --stand out')
-    with Ending(is_last=True) as ending, sensing(arguments) as motion:
+    with (
+        Ending(is_last=True) as ending,
+        filming(arguments, lambda: opened_scene(arguments).trees[0].placed()) as film,
+        sensing(arguments) as motion,
+    ):
+        motion.film = film
         if arguments.history is not None:
             with inside('--history'):
                 refuse_no_history(arguments.history, list(motion.places))
@@ -116,7 +123,7 @@ def _serve(
     history = TreeHistory(arguments.history, list(motion.places)) if arguments.history else None
     told: dict[str, tuple[str, ...]] = {}
     session = Session(
-        lambda wanted: build_scene(wanted, arguments, motion.places, learning, told),
+        lambda wanted: build_scene(wanted, arguments, motion.places, learning, told, motion.camera),
         choices,
         wind,
         motion=motion,
@@ -185,11 +192,12 @@ def build_scene(
     places: Mapping[str, str] | None = None,
     learning: Learning | None = None,
     told: dict[str, tuple[str, ...]] | None = None,
+    camera: Camera | None = None,
 ) -> Simulator:
     """
     Make the simulator of some choices, with the warnings of its tree in ``told``.
 
-    The tree that the command names follows the sensors at the places, and learns; others have
+    The tree that the command names follows the sensors at the places and the camera, and learns; others have
     none.
     """
     is_first = choices.tree == Path(arguments.tree).name
@@ -209,7 +217,8 @@ def build_scene(
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
-    if places and is_first and count == 1:
+    if (places or camera) and is_first and count == 1:
+        places = places or {}
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)
         settings = replace(settings, model=model_of(choices.model))
@@ -217,7 +226,7 @@ def build_scene(
         if file is not None:
             scene = scene.of_species(file.opened.species)
         twin = observed_scene(
-            scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
+            scene, settings, camera, at=places, rate=RATE, has_band=True, submit=submit_beside
         )
         if learning and file is not None:
             learning.follow(twin, file)

@@ -3,9 +3,9 @@
 """
 ``tree-sway lab film``: how far a camera brings the model to the tree that it films.
 
-The true tree is that of `gusty_truth`, drawn by the seed, in a field of gusts; its film has clouds,
-a shadow, fluttering leaves, a bird, noise and a fifth of the points lost for seconds at a time. The
-camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a bearing
+The true tree is that of `gusty_truth`, drawn by the seed, in a field of gusts; its film has
+clouds, a shadow, fluttering leaves, a bird, noise and a fifth of the points lost for seconds at a
+time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a bearing
 off by some degrees and a distance off by some percent. Of each tree there is a row for the tree at
 rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``) and the
 camera with the mast's wind (``with wind``): the error of all tips in space about their means over
@@ -32,8 +32,8 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
-from tree_sway.files.export import write_tree
 from tree_sway.extras import refuse_missing
+from tree_sway.files.export import write_tree
 from tree_sway.live import Film, PointTracker
 from tree_sway.twin.camera import Camera, drawn_wood, FilmedTree
 from tree_sway_lab.twin.film_pictures import pictures, write_film

@@ -44,8 +44,9 @@ def pictures(
     for k, block in enumerate(poses.astype(np.float64)):
         ends = ends_of_poses(block, tree.length)
         first, last, width, depth = drawn_wood(camera, *ends, tree.base_diameter)
-        shift = round(1.2 * k)
-        sky = 195.0 + 18.0 * np.clip(cloud[:, shift % (2 * wide) : shift % (2 * wide) + wide], -2.0, 2.0)
+        first_column = round(1.2 * k) % (2 * wide)
+        passing = cloud[:, first_column : first_column + wide]
+        sky = 195.0 + 18.0 * np.clip(passing, -2.0, 2.0)
         canvas = np.where(mask, ground, sky).astype(np.float32)
         canvas = cv2.resize(canvas, (wide * _FINER, high * _FINER))
         for s in np.argsort(-depth):

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tree outside the window, picture by picture, and a camera that a person sets up before it."""
+"""The tree outside the window, picture by picture, and a camera that a person sets up."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import place_on
-from tree_sway.twin.camera import Camera, camera_of_clicks, Click, told_by
-from tree_sway.twin.camera.pinhole import looking
-from tree_sway_lab.twin.gusty_truth import outside_tree, Outside
+from tree_sway.twin.camera import Camera, camera_of_clicks, Click, looking, told_by
+from tree_sway_lab.twin.gusty_truth import Outside, outside_tree
 from tree_sway_lab.twin.true_tree import DT
 
 FRAMES = 30

@@ -15,7 +15,7 @@ import numpy as np
 from tree_sway.errors import ParameterError
 from tree_sway.extras import refuse_missing
 from tree_sway.live.camera.point_tracker import PointTracker, Sighting
-from tree_sway.twin.camera import DrawnWood
+from tree_sway.twin.camera import Camera, DrawnWood
 
 PREFIX = 'camera:'
 _BESIDE = 8
@@ -108,10 +108,6 @@ class Film:
             before = at if at > before else before + 1.0 / rate
             yield tracker.follow(before, picture)
 
-    def live(self, tracker: PointTracker, log: Callable[[str], None]) -> LiveFilm:
-        """Return the source as one that is followed beside the steps."""
-        return LiveFilm(self, tracker, log)
-
     def newest(self) -> tuple[float, Any]:
         """Wait for a picture: its time on this clock [s]; None where none comes."""
         is_read, picture = self._capture.read()
@@ -128,9 +124,13 @@ class Film:
 
 
 class LiveFilm:
-    """Points of a live camera, followed in a thread from `start` to `stop`."""
+    """Points of a live camera that stands somewhere, followed from `start` to `stop`."""
 
-    def __init__(self, film: Film, tracker: PointTracker, log: Callable[[str], None]) -> None:
+    def __init__(
+        self, film: Film, camera: Camera, tracker: PointTracker, log: Callable[[str], None]
+    ) -> None:
+        self.camera = camera
+        """Where it stands."""
         self._film, self._tracker, self._log = film, tracker, log
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
         self._stop = threading.Event()

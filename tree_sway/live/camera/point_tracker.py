@@ -3,9 +3,9 @@
 """
 Points followed through pictures, each back to the picture in which it was found.
 
-So nothing drifts, and a point that a bird or a cloud hid is found again where it is. A point counts
-as seen where following it there and back ends where it began. When most are lost for long, as by
-another light, points are found anew.
+So nothing drifts, and a point that a bird or a cloud hid is found again where it is. A point
+counts as seen where following it there and back ends where it began. When most are lost for long,
+as by another light, points are found anew.
 """
 
 from __future__ import annotations
@@ -66,8 +66,7 @@ class PointTracker:
             used = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
             low = [max(int(each[0]) - _EDGE, 0) for each in used]
             self._part = tuple(
-                slice(first, int(each[-1]) + _EDGE)
-                for first, each in zip(low, used, strict=True)
+                slice(first, int(each[-1]) + _EDGE) for first, each in zip(low, used, strict=True)
             )
             self._mask = mask[self._part]
             self._corner = np.array(low[::-1], dtype=np.float64)

@@ -23,5 +23,6 @@ if TYPE_CHECKING:
     from tree_sway.twin.camera.limb_points import drawn_wood as drawn_wood
     from tree_sway.twin.camera.limb_points import DrawnWood as DrawnWood
     from tree_sway.twin.camera.pinhole import Camera as Camera
+    from tree_sway.twin.camera.pinhole import looking as looking
 else:
     __getattr__, __dir__, __all__ = face(__name__)

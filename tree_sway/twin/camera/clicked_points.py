@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a person tells of a camera, as text: clicked points and what is known of where it stands."""
+"""What a person tells of a camera, as text: clicks, and what is known of where it stands."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 """
 A tree that sways as a camera sees the real one sway.
 
-Points of a picture are matched to the tree as it stands then. What is followed from there on is how
-each moves, so that an error of the match or of the camera is not taken for motion.
+Points of a picture are matched to the tree as it stands then. What is followed from there on is
+how each moves, so that an error of the match or of the camera is not taken for motion.
 """
 
 from __future__ import annotations
@@ -33,6 +33,12 @@ _KEPT = 1.0
 
 _USUAL_WIND = 6.0
 """Mean wind in [m/s] that is taken where none is measured."""
+
+_SLOWEST, _OTHER_WIND = 2.0, 1.6
+"""Least mean wind in [m/s] for which a law is found, and the ratio that asks for another one."""
+
+_LAW_EVERY = 300
+"""Steps after which the mean wind is looked at."""
 
 _UNTOLD = 0.7
 """Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-]."""
@@ -76,12 +82,10 @@ class FilmedTree(ObservedTree):
 
     """
 
-    def __init__(
-        self, *arguments: Any, camera: Camera, at: Any = None, **options: Any
-    ) -> None:
+    def __init__(self, *arguments: Any, camera: Camera, at: Any = None, **options: Any) -> None:
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
-        self._speed = _USUAL_WIND
+        self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
         oscillators: Any = self.banks[0].oscillators
         m = oscillators.shapes.shape[1]
         n = self._n = min(MOST_COORDINATES, m)
@@ -138,6 +142,9 @@ class FilmedTree(ObservedTree):
         status = super().step(wind_mean, dt)
         if status & Outcome.RESTARTED:
             self._forget()
+        self._steps += 1
+        if self._steps % _LAW_EVERY == 0:
+            self._follow_wind()
         self._past.append((self.now, eta.copy()))
         while self._past[0][0] < self.now - _KEPT:
             self._past.popleft()
@@ -155,8 +162,26 @@ class FilmedTree(ObservedTree):
     def _calm(self, dt: float, estimate: Floats) -> None:
         """Move the correction on by its law, and nearer to the estimate: so noise is averaged."""
         state = np.stack([*self._filmed, self.filter.state[2]])
-        self._filmed = self.filter.moved(state, round(dt / TICK))
+        self._filmed[:] = self.filter.moved(state, round(dt / TICK))
         self._filmed += _NEARER * (estimate - self._filmed)
+
+    def _memory(self) -> tuple[Floats, ...]:
+        """Return views of the state, with the correction in it."""
+        return (*super()._memory(), self._filmed)
+
+    def _glide(self, dt: float) -> bool:
+        """Continue a transition of `tune`, and expect the motion of the changed tree."""
+        is_changed = super()._glide(dt)
+        self._is_outdated |= is_changed
+        return is_changed
+
+    def _follow_wind(self) -> None:
+        """Take the law of the present mean wind and of the present tree."""
+        measured = self.observer.mean_wind
+        speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
+        if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
+            self._speed, self._is_outdated = speed, False
+            self.filter.set_law(self._law())
 
     def _look(self, time: float, reference: int, image: Floats) -> None:
         """Follow the points of a picture."""
