@@ -123,7 +123,9 @@ def _serve(
     history = TreeHistory(arguments.history, list(motion.places)) if arguments.history else None
     told: dict[str, tuple[str, ...]] = {}
     session = Session(
-        lambda wanted: build_scene(wanted, arguments, motion.places, learning, told, motion.camera),
+        lambda wanted: build_scene(
+            wanted, arguments, motion.places, learning, told, motion.camera
+        ),
         choices,
         wind,
         motion=motion,
@@ -197,8 +199,8 @@ def build_scene(
     """
     Make the simulator of some choices, with the warnings of its tree in ``told``.
 
-    The tree that the command names follows the sensors at the places and the camera, and learns; others have
-    none.
+    The tree that the command names follows the sensors at the places and the camera, and learns;
+    others have none.
     """
     is_first = choices.tree == Path(arguments.tree).name
     if is_first:

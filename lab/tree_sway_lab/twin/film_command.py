@@ -5,12 +5,13 @@
 
 The true tree is that of `gusty_truth`, drawn by the seed, in a field of gusts; its film has
 clouds, a shadow, fluttering leaves, a bird, noise and a fifth of the points lost for seconds at a
-time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a bearing
-off by some degrees and a distance off by some percent. Of each tree there is a row for the tree at
-rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``) and the
+time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a
+bearing off by some degrees and a distance off by some percent. Of each tree there is a row for the
+tree at rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``) and the
 camera with the mast's wind (``with wind``): the error of all tips in space about their means over
 their motion, that of the means over the lean, that of the tip of the stem, the roughness, the time
-of a picture's step without and that of following its points, in milliseconds.
+of a picture's step without and that of following its points, in milliseconds, and how far the
+tree moves in the picture, root mean square of all segments in pixels.
 
 ``--points`` draws no pictures: points are projected, and disturbed as a tracker's would be.
 ``-o`` writes the film, the wind of the mast and the clicks as files, for ``tree-sway simulate``.
@@ -42,7 +43,7 @@ from tree_sway_lab.twin.film_truth import camera_before, filmed_truth, FilmedTru
 from tree_sway_lab.twin.gusty_truth import kinds_of, Outside
 from tree_sway_lab.twin.true_tree import DT, tree_called
 
-_HEAD = 'tree', 'motion', 'error', 'lean', 'stem', 'rough', 'ms', 'ms to follow'
+_HEAD = 'tree', 'motion', 'error', 'lean', 'stem', 'rough', 'ms', 'ms to follow', 'px'
 _SCORED = 0.25
 """Share of a film from which on it is scored."""
 _LOST = 0.2
@@ -89,14 +90,16 @@ def _try(name: str, arguments: argparse.Namespace) -> None:
         _write(arguments.output, tree, species, true, camera, found.clicks)
     seen, cost = _followed(tree, true, camera, found.camera, rng, arguments.points)
     rest = tips_of_poses(tree, make_simulator(tree, species).place())
+    nodes = np.array([camera.project(each[:, :3].astype(float)) for each in true.poses[::3]])
+    pixels = float(np.sqrt(np.square(nodes.std(axis=0)).sum(axis=1).mean()))
     still = np.broadcast_to(rest, true.tips.shape)
-    _print(name, 'still', _scored(still, true.tips, rest, 0.0), 0.0)
+    _print(name, 'still', _scored(still, true.tips, rest, 0.0), 0.0, pixels)
     calm = np.zeros_like(true.wind)
     model = make_simulator(tree, species)
-    _print(name, 'model', _swayed(model, true.wind, [], true.tips, rest), 0.0)
+    _print(name, 'model', _swayed(model, true.wind, [], true.tips, rest), 0.0, pixels)
     for motion, wind in (('camera', calm), ('with wind', true.wind)):
         filmed = _filmed(tree, species, found.camera)
-        _print(name, motion, _swayed(filmed, wind, seen, true.tips, rest), cost)
+        _print(name, motion, _swayed(filmed, wind, seen, true.tips, rest), cost, pixels)
 
 
 def _filmed(tree: Tree, species: Species, camera: Camera) -> FilmedTree:
@@ -182,9 +185,10 @@ def _over(one: Floats, other: Floats) -> float:
     return float(np.sqrt(np.square(one).sum() / np.square(other).sum()))
 
 
-def _print(name: str, motion: str, score: _Score, following: float) -> None:
+def _print(name: str, motion: str, score: _Score, following: float, pixels: float) -> None:
     figures = [f'{each:.3f}' for each in score[:4]]
-    print(','.join([name, motion, *figures, f'{score.cost:.2f}', f'{following:.2f}']), flush=True)
+    times = [f'{score.cost:.2f}', f'{following:.2f}', f'{pixels:.1f}']
+    print(','.join([name, motion, *figures, *times]), flush=True)
 
 
 def _write(

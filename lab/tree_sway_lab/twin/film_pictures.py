@@ -34,7 +34,8 @@ def pictures(
     foot = camera.project(tree.start[:1])[0, 1]
     mask = (np.arange(high) > foot)[:, None]
     bark = 45.0 + 30.0 * rng.random(tree.n_segments)
-    knots = np.repeat(np.arange(tree.n_segments), 2)
+    slender = tree.length / tree.base_diameter
+    knots = np.repeat(np.arange(tree.n_segments), np.clip(slender, 1.0, 10.0).astype(int))
     along = rng.random(len(knots)) * tree.length[knots]
     aside = rng.uniform(-0.4, 0.4, len(knots))
     shine = rng.uniform(-35.0, 45.0, len(knots))

@@ -46,7 +46,7 @@ _UNTOLD = 0.7
 _LASTS = 1.5
 """Time in [s] after which an unknown force has decayed to 1/e: the lean lasts, gusts do not."""
 
-_NEARER = 0.3
+_NEARER = 0.4
 """Share of the way to the estimate that the tree goes in a step."""
 
 _FADE = 0.5

@@ -28,7 +28,7 @@ _MOST_TICKS = 60
 _NOISE = 0.15
 """Least error of a point in pixels."""
 _FIRST_NOISE = 0.5
-_JOINED = 2.0
+_JOINED = 4.0
 """
 How many times the square of its error a point's variance is taken to be: its error is that of a
 shape that the model lacks, which lasts for several pictures.
