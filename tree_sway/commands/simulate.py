@@ -46,6 +46,7 @@ from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.export import refuse_no_table, write_columns
 from tree_sway.files.trees import LearnedFile
 from tree_sway.simulation import Exposure, refuse_too_many_steps, simulate, WindSamples
+from tree_sway.twin.camera import FilmedMotion
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -96,8 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
             cure = nearest(name, names) or f'such as {names[0]}'
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
     ground = float(tree_file.tree.start[0, 2])
-    wind = _wind(arguments, exposure)
     film = filmed_motion(arguments, tree_file.tree)
+    wind = _wind(arguments, exposure, film)
     motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
     with waiting('simulating'):
         record = simulate(
@@ -118,10 +119,17 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np.ndarray:
+def _wind(
+    arguments: argparse.Namespace, exposure: Exposure, film: FilmedMotion | None
+) -> WindSamples | np.ndarray:
     """Return the given record, the wind of a live source from now on, or simulated wind."""
     if arguments.sensor is not None:
         return live_record(arguments, arguments.seconds or 60.0)
+    if film is not None and arguments.wind is None and arguments.speed is None:
+        # The film alone tells how the tree moves.
+        seconds = arguments.seconds or film.seconds
+        refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
+        return np.zeros((max(round(seconds * arguments.rate), 1), 3))
     if arguments.wind is None:
         rng = np.random.default_rng(0)
         seconds = arguments.seconds or 60.0

@@ -10,7 +10,7 @@ how each moves, so that an error of the match or of the camera is not taken for 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,7 +66,12 @@ class FilmedMotion(NamedTuple):
     """A camera, and of each picture what `FilmedTree.film` takes."""
 
     camera: Camera
-    pictures: Iterable[tuple[float, int, Floats]]
+    pictures: Sequence[tuple[float, int, Floats]]
+
+    @property
+    def seconds(self) -> float:
+        """Time of the last picture in [s]."""
+        return self.pictures[-1][0] if self.pictures else 0.0
 
 
 class FilmedTree(ObservedTree):
