@@ -7,11 +7,11 @@ The true tree is that of `gusty_truth`, drawn by the seed, in a field of gusts; 
 clouds, a shadow, fluttering leaves, a bird, noise and a fifth of the points lost for seconds at a
 time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a
 bearing off by some degrees and a distance off by some percent. Of each tree there is a row for the
-tree at rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``) and
-the camera with the mast's wind (``with wind``): the error of all tips in space about their means over
-their motion, that of the means over the lean, that of the tip of the stem, the roughness, the time
-of a picture's step without and that of following its points, in milliseconds, and how far the
-tree moves in the picture, root mean square of all segments in pixels.
+tree at rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``)
+and the camera with the mast's wind (``with wind``): the error of all tips in space about their means over their
+motion, that of the means over the lean, that of the tip of the stem, the roughness, the time of a
+picture's step without and that of following its points, in milliseconds, and how far the tree
+moves in the picture, root mean square of all segments in pixels.
 
 ``--points`` draws no pictures: points are projected, and disturbed as a tracker's would be.
 ``-o`` writes the film, the wind of the mast and the clicks as files, for ``tree-sway simulate``.
@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 import time
 from typing import Any, NamedTuple
@@ -119,8 +120,7 @@ def _followed(
         points = followed_points(tree, true.poses, camera, rng)
         return [(k / FRAMES, 0, each) for k, each in enumerate(points)], 0.0
     refuse_missing(['cv2'], 'lab film')
-    import cv2
-
+    cv2 = import_module('cv2')
     cv2.setNumThreads(1)
     film: Iterable[Any] = pictures(cv2, tree, true.poses, camera, rng)
     tracker, spent, seen = None, list[float](), list[tuple[float, int, Floats]]()
@@ -196,8 +196,7 @@ def _write(
 ) -> None:
     """Write a tree, its film, the wind, the clicks and the true motion of the stem's tip."""
     refuse_missing(['cv2'], 'lab film -o')
-    import cv2
-
+    cv2 = import_module('cv2')
     folder.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(0)
     write_film(cv2, str(folder / 'film.mp4'), tree, true.poses, camera, rng)

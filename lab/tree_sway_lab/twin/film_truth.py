@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def filmed_truth(
     gusts = field.record(outside.seconds, 1.0 / DT, np.random.default_rng(outside.seed + 1))
     every = round(1.0 / (FRAMES * DT))
     tips = np.empty((len(gusts), tree.n_branches, 3))
-    poses = np.empty((1 + len(gusts) // every, tree.n_segments, 7), dtype=np.float32)
+    poses: Any = np.empty((1 + len(gusts) // every, tree.n_segments, 7), dtype=np.float32)
     block = np.empty((tree.n_segments, 7))
     true.place(block)
     poses[0] = block

@@ -29,7 +29,7 @@ def tree() -> Tree:
 
 @pytest.fixture(scope='module')
 def film(tree: Tree) -> tuple[np.ndarray, np.ndarray]:
-    """Tips of the model in a gusty wind, (n, b, 3), and points of its stem and limbs, (n, k, 2)."""
+    """Return tips of the model in gusts, (n, b, 3), and points of its wood, (n, k, 2)."""
     true = make_simulator(tree)
     rng = np.random.default_rng(1)
     # Of a spruce most points are hidden or crossed; the matching drops those.

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
+from importlib import import_module
 import threading
 import time
 from typing import Any
@@ -53,9 +54,7 @@ class Film:
 
     def __init__(self, address: str, late: float = 0.07) -> None:
         refuse_missing(['cv2'], f'simulate --motion {address}')
-        import cv2
-
-        self._cv2: Any = cv2
+        cv2 = self._cv2 = import_module('cv2')
         self.name = address
         source = address.removeprefix(PREFIX)
         self._source: int | str = int(source) if source.isdecimal() else source

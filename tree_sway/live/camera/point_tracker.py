@@ -60,7 +60,7 @@ class PointTracker:
         self._first: Any = None
         self._found = self._last = np.zeros((0, 1, 2), dtype=np.float32)
         self._good_at = 0.0
-        self._part = slice(None), slice(None)
+        self._part: tuple[slice, ...] = (slice(None), slice(None))
         self._corner = np.zeros(2)
         if mask is not None and mask.any():
             used = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
