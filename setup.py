@@ -265,6 +265,8 @@ extras = {
     # Instruments on a serial port.
     'sensors': ['pyserial>=3.5'],
     'bag': ['rosbags>=0.11'],
+    # Films and live cameras.
+    'camera': ['opencv-python-headless>=4.5'],
     'plot': ['matplotlib>=3.6'],
     'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
     # colcon runs pytest only where an extra of this name asks for it.

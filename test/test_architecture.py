@@ -41,8 +41,8 @@ STOREYS = {
 }  # fmt: skip
 #: Rooms with a face of their own.
 WINGS = {
-    'core.wind.gusts', 'core.wind.simulated', 'files.export', 'files.models', 'files.motion', 'files.recording',
-    'files.scenes', 'files.trees', 'files.wind',
+    'core.wind.gusts', 'core.wind.simulated', 'files.export', 'files.models', 'files.motion',
+    'files.recording', 'files.scenes', 'files.trees', 'files.wind', 'twin.camera',
 }  # fmt: skip
 LARGEST_FACE = 25
 CORE_LIBRARIES = {'numpy', 'scipy', 'tree_sway'}

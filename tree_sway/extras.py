@@ -39,6 +39,7 @@ EXTRAS = {
     'rosbags': Extra('bag', 'rosbags', '0.11'),
     'tqdm': Extra('progress', 'tqdm', '4.60'),
     'serial': Extra('sensors', 'pyserial', '3.5'),
+    'cv2': Extra('camera', 'opencv-python-headless', '4.5'),
     'imageio_ffmpeg': Extra('film', 'imageio-ffmpeg', '0.5'),
     'pyarrow': Extra('parquet', 'pyarrow', '12'),
     'netCDF4': Extra('netcdf', 'netCDF4', '1.6'),

@@ -32,6 +32,11 @@ COMMANDS: dict[str, Command] = {
         'docs --check',
         'tree_sway_lab.pages.command',
     ),
+    'film': Command(
+        'how far a camera brings the model to the tree that it films',
+        'film "spruce 8" --points --seconds 20',
+        'tree_sway_lab.twin.film_command',
+    ),
     'paper': Command(
         'the experiment of Kanda & Ohya as it is written, and what ours does instead',
         'paper',

@@ -38,6 +38,7 @@ from tree_sway.simulation.sway_record import SwayRecord
 
 if TYPE_CHECKING:
     from tree_sway.twin import ObservedTree
+    from tree_sway.twin.camera import FilmedMotion, FilmedTree
 
 MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
@@ -82,6 +83,7 @@ def simulate(
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
     motion: Sequence[PlacedMotion] = (),
+    film: FilmedMotion | None = None,
     band: bool = False,
     **changes: Any,
 ) -> SwayRecord:
@@ -106,6 +108,8 @@ def simulate(
     motion
         Records of motion sensors on the real tree, which the motion then follows
         (`ObservedTree`).
+    film
+        Film of the real tree, which the motion follows too (`FilmedTree`).
     band
         Whether to find where the real tree is for 80 % of the time, too (`ObservedTree.band`).
 
@@ -123,7 +127,7 @@ def simulate(
         A tree that buckles.
 
     """
-    rig = Rig(tree, settings, motion=motion, band=band, **changes)
+    rig = Rig(tree, settings, motion=motion, film=film, band=band, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
 
 
@@ -136,6 +140,7 @@ class Rig:
         settings: Settings | None = None,
         motion: Sequence[PlacedMotion] = (),
         *,
+        film: FilmedMotion | None = None,
         tolerance: float = 0.005,
         cache: ModelCache | None = PREPARED,
         band: bool = False,
@@ -153,13 +158,23 @@ class Rig:
         self.simulator: SwaySimulator
         self.observed: ObservedTree | None = None
         """The same simulator, if it follows sensors or has a band."""
-        if motion or band:
+        self.film = film
+        self.filmed: FilmedTree | None = None
+        observed: dict[str, Any] = {
+            'settings': chosen,
+            'at': {each.name: each.at for each in motion},
+            'cache': cache,
+            'has_band': band,
+        }
+        if film is not None:
+            from tree_sway.twin.camera import FilmedTree
+
+            self.filmed = FilmedTree(tree, camera=film.camera, **observed)
+            self.simulator = self.observed = self.filmed
+        elif motion or band:
             from tree_sway.twin import ObservedTree
 
-            places = {each.name: each.at for each in motion}
-            self.simulator = self.observed = ObservedTree(
-                tree, settings=chosen, at=places, cache=cache, has_band=band
-            )
+            self.simulator = self.observed = ObservedTree(tree, **observed)
         else:
             auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
             self.simulator = simulator_of(self.reductions, cache=cache, **auto)
@@ -188,6 +203,9 @@ class Rig:
                     orientation=each.orientation,
                 )
         simulator.reset()
+        if self.film is not None and self.filmed is not None:
+            for picture in self.film.pictures:
+                self.filmed.film(*picture)
         before = replace(simulator.counts)
         gauge = StrengthGauge(self.reductions)
         per_rotation = moment_per_rotation(self.reductions)
@@ -230,6 +248,7 @@ class Rig:
                 *_doubts(simulator, before),
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(observed),
+                *filter(None, [self.filmed.said if self.filmed is not None else '']),
             ),
             tip_band,
             moment_band,

@@ -9,10 +9,13 @@ from typing import Any
 from tree_sway.core.scene import Scene
 from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
+from tree_sway.twin.camera import Camera, FilmedTree
 from tree_sway.twin.observed_tree import ObservedTree
 
 
-def observed_scene(scene: Scene, settings: Settings, **sensors: Any) -> ObservedTree:
+def observed_scene(
+    scene: Scene, settings: Settings, camera: Camera | None = None, **sensors: Any
+) -> ObservedTree:
     """
     Make the simulator of the one tree of a scene with motion sensors on the real one.
 
@@ -20,6 +23,8 @@ def observed_scene(scene: Scene, settings: Settings, **sensors: Any) -> Observed
     ----------
     scene, settings
         The scene, and settings as for `Scene.simulator`.
+    camera
+        Camera that films the real tree, if there is one.
     **sensors
         ``at``, ``rate`` and other arguments of `ObservedTree`.
 
@@ -34,4 +39,6 @@ def observed_scene(scene: Scene, settings: Settings, **sensors: Any) -> Observed
         raise ParameterError(what, where=scene.name, cure='open the tree that they are on')
     one = scene.trees[0]
     where = one.settings_where_it_stands(settings)
+    if camera is not None:
+        return FilmedTree(one.placed(), one.species, where, camera=camera, **sensors)
     return ObservedTree(one.placed(), one.species, where, **sensors)

@@ -13,7 +13,8 @@ from tree_sway_lab.twin.gusty_truth import gusty_motion, Outside
 from tree_sway_lab.twin.trial import plain_score
 from tree_sway_lab.twin.true_tree import tree_called
 
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.setup import one_thread
 
 RATE = 10.0
 PLACES = np.array([[0.0, 0.0, 10.0], [0.0, 5.0, 10.0], [20.0, 0.0, 10.0]])

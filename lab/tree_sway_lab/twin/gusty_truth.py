@@ -16,17 +16,16 @@ import math
 from typing import Any
 
 import numpy as np
-from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.prepare import prepare
-from tree_sway.core.tree.species import Species
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.tree import tips_of_poses, Tree
-from tree_sway.twin.sensor_place import place_on
+from tree_sway.core.drag import DragLaw
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.settings import Settings
+from tree_sway.core.setup import prepare, TreeReductions
+from tree_sway.core.species import Species
+from tree_sway.core.tree import tips_of_poses, Tree
+from tree_sway.twin import place_on
 from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.twin.gust_field import DECAYS, GustField, nearest_of, spread_points
 from tree_sway_lab.twin.true_tree import DT, pose_at, TrueMotion

@@ -14,7 +14,8 @@ def add_place_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--at', action='append', default=[], metavar='PLACE',
         help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
-        'b12:0.5; once for each --motion',
+        'b12:0.5; of a camera the points that were clicked, or a file with them; once for each '
+        '--motion',
     )  # fmt: skip
 
 

@@ -14,8 +14,10 @@ import math
 import time
 from typing import NamedTuple
 
+from tree_sway.live.camera.film import LiveFilm
 from tree_sway.live.motion.live_motion import LiveMotion
 from tree_sway.twin import ObservedTree
+from tree_sway.twin.camera import Camera, FilmedTree
 
 _NEWEST = 0.02
 """Weight of the newest difference of the clocks in their mean."""
@@ -44,12 +46,19 @@ class MotionFeed:
     def __init__(self, sensors: Sequence[PlacedSensor] = ()) -> None:
         self.sensors = {f'{each.live.name} at {each.at}': each for each in sensors}
         """Sensors by their names; of two of one name and place, the last."""
+        self.film: LiveFilm | None = None
+        """A camera that films the tree; None without one."""
         self._ahead = math.nan  # mean time of the steps less that of the clock [s]
 
     @property
     def places(self) -> dict[str, str]:
         """Place of each sensor, for `ObservedTree`."""
         return {name: each.at for name, each in self.sensors.items()}
+
+    @property
+    def camera(self) -> Camera | None:
+        """Where the camera stands; None without one."""
+        return None if self.film is None else self.film.camera
 
     def feed(self, simulator: object, until: float) -> None:
         """
@@ -67,6 +76,10 @@ class MotionFeed:
         if math.isnan(self._ahead) or abs(difference - self._ahead) > _JUMP:
             self._ahead = difference
         self._ahead += _NEWEST * (difference - self._ahead)
+        sightings = self.film.drain() if self.film is not None else []
+        if isinstance(simulator, FilmedTree):
+            for seen in sightings:
+                simulator.film(seen.time + self._ahead, seen.reference, seen.points)
         for name, each in self.sensors.items():
             samples = each.live.drain()
             if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:

@@ -39,10 +39,12 @@ from tree_sway.simulation.commands.exposure import (
     touched_species,
     turbulence_of,
 )
+from tree_sway.twin.camera import FilmedMotion
 from tree_sway.twin.commands import (
     add_learn_argument,
     add_motion_arguments,
     check_learn_argument,
+    filmed_motion,
     placed_motion,
     write_learned,
 )
@@ -97,14 +99,15 @@ def run(arguments: argparse.Namespace) -> int:
             cure = nearest(name, names) or f'such as {names[0]}'
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
     ground = float(tree_file.tree.start[0, 2])
-    wind = _wind(arguments, exposure)
+    film = filmed_motion(arguments, tree_file.tree)
+    wind = _wind(arguments, exposure, film)
     motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
     with waiting('simulating'):
         record = simulate(
             tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
-            profile=exposure.profile(ground), motion=motion,
+            profile=exposure.profile(ground), motion=motion, film=film,
             band=arguments.band, **distance_settings(arguments),
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
@@ -118,10 +121,17 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np.ndarray:
+def _wind(
+    arguments: argparse.Namespace, exposure: Exposure, film: FilmedMotion | None
+) -> WindSamples | np.ndarray:
     """Return the given record, the wind of a live source from now on, or simulated wind."""
     if arguments.sensor is not None:
         return live_record(arguments, arguments.seconds or 60.0)
+    if film is not None and arguments.wind is None and arguments.speed is None:
+        # The film alone tells how the tree moves.
+        seconds = arguments.seconds or film.seconds
+        refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
+        return np.zeros((max(round(seconds * arguments.rate), 1), 3))
     if arguments.wind is None:
         rng = np.random.default_rng(0)
         seconds = arguments.seconds or 60.0

@@ -10,6 +10,7 @@ from tree_sway.faces import face
 COMMANDS = commands_of(__name__)
 
 if TYPE_CHECKING:
+    from tree_sway.twin.commands.camera_arguments import filmed_motion as filmed_motion
     from tree_sway.twin.commands.learn_argument import add_learn_argument as add_learn_argument
     from tree_sway.twin.commands.learn_argument import check_learn_argument as check_learn_argument
     from tree_sway.twin.commands.learn_argument import write_learned as write_learned

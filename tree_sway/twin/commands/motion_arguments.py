@@ -23,7 +23,8 @@ def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--motion', action='append', default=[], metavar='FILE',
         help='recording of a motion sensor on the real tree: CSV, or a bag with '
-        'sensor_msgs/Imu, of several as BAG?topic=/tree/imu; repeatable',
+        'sensor_msgs/Imu, of several as BAG?topic=/tree/imu; or a film, camera:FILE.mp4 '
+        '(doc/camera.md); repeatable',
     )  # fmt: skip
     add_place_argument(parser)
     add(

@@ -14,7 +14,9 @@ from weakref import WeakKeyDictionary
 
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import model_of, Settings
+from tree_sway.core.tree import Tree
 from tree_sway.errors import FormatError, inside, ParameterError
+from tree_sway.files.commands import opened_scene
 from tree_sway.files.motion import refuse_no_history, TreeHistory
 from tree_sway.files.trees import LearnedFile
 from tree_sway.live.commands import add_live_motion_arguments, sensing
@@ -22,6 +24,7 @@ from tree_sway.page import Choices, RATE
 from tree_sway.page.commands import PageAddition
 from tree_sway.stream import Control
 from tree_sway.twin import observed_scene, ObservedTree
+from tree_sway.twin.commands.camera_arguments import filming
 from tree_sway.twin.commands.learn_argument import add_learn_argument, check_learn_argument
 from tree_sway.worker import submit_beside
 
@@ -55,12 +58,17 @@ class SensorsOnThePage(PageAddition):
 
     def open(self, stack: ExitStack) -> None:  # noqa: A003
         """Listen to the sensors."""
+        film = stack.enter_context(filming(self.arguments, self._named_tree))
         self.motion = stack.enter_context(sensing(self.arguments))
+        self.motion.film = film
         self.places = self.motion.places
         if (path := self.arguments.history) is not None:
             with inside('--history'):
                 refuse_no_history(path, list(self.places))
             self._history = TreeHistory(path, list(self.places))
+
+    def _named_tree(self) -> Tree:
+        return opened_scene(self.arguments).trees[0].placed()
 
     def controls(self) -> tuple[Control, ...]:
         """Make the control of where a single sensor sits."""
@@ -72,8 +80,9 @@ class SensorsOnThePage(PageAddition):
         return (Control('sensor_at', 'Sensor at', next(iter(self.places.values())), what),)
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
-        """Make an observed tree; None without sensors, and for a stand."""
-        if not self.places or int(choices.count) != 1:
+        """Make an observed tree; None without sensors and camera, and for a stand."""
+        camera = self.motion.camera
+        if not (self.places or camera) or int(choices.count) != 1:
             return None
         places = self.places
         if choices.sensor_at:
@@ -84,7 +93,7 @@ class SensorsOnThePage(PageAddition):
             file = LearnedFile(path, scene.trees[0], settings.in_leaf)
             scene = scene.of_species(file.opened.species)
         twin = observed_scene(
-            scene, settings, at=places, rate=RATE, has_band=True, submit=submit_beside
+            scene, settings, camera, at=places, rate=RATE, has_band=True, submit=submit_beside
         )
         if file is not None:
             twin.learned_before = file.opened.learned

@@ -1,0 +1,78 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Points are followed to parts of a pixel, and what hides them is not followed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tree_sway.live import PointTracker
+
+cv2: Any = pytest.importorskip('cv2', reason='needs OpenCV: pip install .[camera]')
+
+RNG = np.random.default_rng(3)
+SCENE = cv2.GaussianBlur(RNG.uniform(0.0, 255.0, (300, 400)).astype(np.float32), (0, 0), 2.5)
+SCENE = 128.0 + 4.0 * (SCENE - SCENE.mean())
+
+
+def picture(x: float, y: float) -> np.ndarray:
+    """Return the scene, moved by parts of pixels, with noise."""
+    moved = cv2.warpAffine(SCENE, np.array([[1.0, 0.0, x], [0.0, 1.0, y]]), (400, 300))
+    noisy = moved + 2.0 * np.random.default_rng(1).normal(size=moved.shape)
+    return np.clip(noisy, 0.0, 255.0).astype(np.uint8)
+
+
+def moves(tracker: PointTracker, pictures: list[np.ndarray]) -> list[np.ndarray]:
+    """Return how far points are from where they were found, in each picture, (k, p, 2)."""
+    seen = [tracker.follow(k / 30.0, each) for k, each in enumerate(pictures)]
+    assert {each.reference for each in seen} == {0}
+    return [each.points - seen[0].points for each in seen]
+
+
+def test_points_are_followed_to_a_tenth_of_a_pixel() -> None:
+    places = [(0.0, 0.0), (1.3, -0.4), (3.7, 0.9), (0.2, 0.1), (0.0, 0.0)]
+    found = moves(PointTracker(cv2), [picture(*each) for each in places])
+    for moved, wanted in zip(found, places, strict=True):
+        inner = np.isfinite(moved[:, 0])
+        assert inner.mean() > 0.7
+        np.testing.assert_allclose(np.median(moved[inner], axis=0), wanted, atol=0.1)
+
+
+def test_a_hidden_point_is_lost_and_found_again() -> None:
+    hidden = picture(0.5, 0.0)
+    hidden[60:200, 100:300] = 255
+    tracker = PointTracker(cv2)
+    first = tracker.follow(0.0, picture(0.0, 0.0)).points
+    behind = (np.abs(first - [200.0, 130.0]) < [85.0, 55.0]).all(axis=1)
+    assert behind.sum() > 10
+    lost = tracker.follow(0.1, hidden).points
+    assert np.isfinite(lost[behind, 0]).mean() < 0.1
+    again = tracker.follow(0.2, picture(1.0, 0.0)).points
+    assert np.isfinite(again[behind, 0]).mean() > 0.7
+    np.testing.assert_allclose(np.nanmedian(again - first, axis=0), [1.0, 0.0], atol=0.1)
+
+
+def test_points_are_found_under_the_mask_alone() -> None:
+    mask = np.zeros((300, 400), dtype=np.uint8)
+    mask[100:180, 50:150] = 255
+    points = PointTracker(cv2, mask).follow(0.0, picture(0.0, 0.0)).points
+    assert len(points) > 5
+    assert ((points >= [50, 100]) & (points < [150, 180])).all()
+
+
+def test_points_are_found_anew_when_most_are_lost_for_long() -> None:
+    tracker = PointTracker(cv2)
+    tracker.follow(0.0, picture(0.0, 0.0))
+    other = picture(0.0, 0.0)[::-1, ::-1].copy()
+    seen = [tracker.follow(each, other).reference for each in (1.0, 5.0, 10.5, 11.0)]
+    assert seen == [0, 0, 1, 1]
+
+
+def test_a_picture_of_nothing_is_no_error() -> None:
+    tracker = PointTracker(cv2)
+    grey = np.full((300, 400), 90, dtype=np.uint8)
+    assert len(tracker.follow(0.0, grey).points) == 0
+    assert len(tracker.follow(0.1, picture(0.0, 0.0)).points) > 10

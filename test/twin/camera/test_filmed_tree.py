@@ -1,0 +1,165 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The filmed tree follows points of a true motion, and what is wrong with some moves nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import make_simulator
+from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
+from tree_sway.growth import grow
+from tree_sway.twin.camera import Camera, FilmedTree, looking
+from tree_sway.twin.camera.motion_filter import MotionFilter
+from tree_sway.twin.steady_filter import stationary_covariance, sway_law
+
+CAMERA = Camera(
+    np.array([-9.0, -9.0, 1.5]), looking(np.pi / 4, 0.15, 0.0), 900.0, np.array([640.0, 360.0])
+)
+RATE, SECONDS = 60, 12.0
+CALM = np.zeros(3)
+
+
+@pytest.fixture(scope='module')
+def tree() -> Tree:
+    return grow('spruce', 5.0, rng=np.random.default_rng(8))
+
+
+@pytest.fixture(scope='module')
+def film(tree: Tree) -> tuple[np.ndarray, np.ndarray]:
+    """Return tips of the model in gusts, (n, b, 3), and points of its wood, (n, k, 2)."""
+    true = make_simulator(tree)
+    rng = np.random.default_rng(1)
+    # Of a spruce most points are hidden or crossed; the matching drops those.
+    segment = np.concatenate([np.arange(int(tree.branch_first[1])), rng.choice(400, 150)])
+    away = 0.5 * tree.length[segment]
+    tips, points = [], [CAMERA.project(ends_of_poses(true.place()[segment], away)[1])]
+    for k in range(round(SECONDS * RATE)):
+        time = k / RATE
+        wind = [6.0 + 3.0 * np.sin(1.7 * time), 2.0 * np.sin(0.9 * time), 0.0]
+        true.step(wind, 1.0 / RATE)
+        poses = true.place()
+        tips.append(tips_of_poses(tree, poses))
+        points.append(CAMERA.project(ends_of_poses(poses[segment], away)[1]))
+    noise = 0.1 * rng.normal(size=np.shape(points))
+    return np.array(tips), np.array(points) + noise
+
+
+def followed(filmed: FilmedTree, points: np.ndarray, late: int = 0, every: int = 2) -> np.ndarray:
+    """Tips of a filmed tree without wind, (n, b, 3), whose pictures come some steps late."""
+    tips = []
+    filmed.film(0.0, 0, points[0])
+    for k in range(1, len(points)):
+        if k > late and (k - late) % every == 0:
+            filmed.film((k - late) / RATE, 0, points[k - late])
+        filmed.step(CALM, 1.0 / RATE)
+        tips.append(tips_of_poses(filmed.tree, filmed.place()))
+    return np.array(tips)
+
+
+def error(found: np.ndarray, true: np.ndarray, rest: np.ndarray) -> float:
+    """Error of the tips, lean and all, over their motion."""
+    half = len(true) // 2
+    wrong, motion = (found - true)[half:], (true - rest)[half:]
+    return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
+
+
+def rest_of(simulator: SwaySimulator) -> np.ndarray:
+    simulator.reset()
+    return tips_of_poses(simulator.tree, simulator.place())
+
+
+def test_without_wind_it_follows_lean_and_sway(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    true, points = film
+    filmed = FilmedTree(tree, camera=CAMERA)
+    rest = rest_of(filmed)
+    assert error(followed(filmed, points), true, rest) < 0.1
+    assert 'points on the tree' in filmed.said
+    assert filmed.refused == 0
+
+
+def test_a_late_picture_corrects_the_past(tree: Tree, film: tuple[np.ndarray, np.ndarray]) -> None:
+    true, points = film
+    filmed = FilmedTree(tree, camera=CAMERA)
+    rest = rest_of(filmed)
+    assert error(followed(filmed, points, late=6), true, rest) < 0.15
+
+
+def test_points_that_move_otherwise_move_nothing(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    """A fifth is lost, a fifth wanders off with a shadow, and a bird takes a twentieth."""
+    true, points = film
+    wrong = points.copy()
+    rng = np.random.default_rng(3)
+    kind = rng.choice(4, points.shape[1], p=[0.55, 0.2, 0.2, 0.05])
+    wrong[30:, kind == 1] = np.nan
+    wrong[:, kind == 2] += np.linspace(0.0, 30.0, len(wrong))[:, None, None]
+    wrong[200:400, kind == 3] += 40.0
+    filmed = FilmedTree(tree, camera=CAMERA)
+    rest = rest_of(filmed)
+    assert error(followed(filmed, wrong), true, rest) < 0.15
+    told = filmed.filter.weights / np.square(filmed.filter.errors)
+    shadowed = np.isin(filmed.points.row, np.flatnonzero(kind == 2))
+    assert told[shadowed].max() < 0.02 * np.median(told[told > 0.0])
+
+
+def test_without_pictures_it_goes_on_in_the_wind_alone(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    _, points = film
+    filmed, alone = FilmedTree(tree, camera=CAMERA), make_simulator(tree)
+    filmed.reset()
+    followed(filmed, points[:200])
+    moved = tips_of_poses(tree, filmed.place()) - tips_of_poses(tree, alone.place())
+    assert np.abs(moved).max() > 0.01
+    for _ in range(30 * RATE):
+        filmed.step(CALM, 1.0 / RATE)
+        alone.step(CALM, 1.0 / RATE)
+    apart = tips_of_poses(tree, filmed.place()) - tips_of_poses(tree, alone.place())
+    assert np.abs(apart).max() < 1e-4
+
+
+def test_pictures_that_tell_nothing_are_refused_and_said(tree: Tree) -> None:
+    filmed = FilmedTree(tree, camera=CAMERA)
+    assert 'no picture' in filmed.said
+    filmed.film(0.0, 0, np.full((30, 2), 3.0))  # of the sky
+    filmed.film(0.5 / RATE, 0, np.full((30, 2), np.nan))
+    for _ in range(3):
+        filmed.step(CALM, 1.0 / RATE)
+    assert filmed.refused == 2
+    assert 'too few: check the clicks' in filmed.said
+    assert np.isfinite(filmed.place()).all()
+
+
+def test_old_pictures_are_refused(tree: Tree, film: tuple[np.ndarray, np.ndarray]) -> None:
+    _, points = film
+    filmed = FilmedTree(tree, camera=CAMERA)
+    followed(filmed, points[:120])
+    filmed.film(0.3, 0, points[18])
+    filmed.step(CALM, 1.0 / RATE)
+    assert filmed.refused == 1
+
+
+def test_the_filter_is_the_least_squares_of_points_and_prior() -> None:
+    """One picture of good points: the state is that of the normal equations."""
+    rng = np.random.default_rng(2)
+    n, p = 4, 30
+    law = sway_law(np.geomspace(9.0, 90.0, n), np.full(n, 0.5), np.eye(n), 1.0, 1.0 / 240.0)
+    prior = stationary_covariance(law)
+    found = MotionFilter(law, prior)
+    found.begin(p)
+    slopes = rng.normal(size=(p, 2, n))
+    eta = 0.01 * rng.normal(size=n)
+    found.see(slopes, slopes @ eta)
+    rows = slopes.reshape(-1, n)
+    weight = np.repeat(found.weights / (4.0 * 0.5**2), 2)
+    inverse = np.linalg.inv(prior[:n, :n])
+    wanted = np.linalg.solve(inverse + (rows.T * weight) @ rows, (rows.T * weight) @ rows @ eta)
+    np.testing.assert_allclose(found.state[0], wanted, rtol=1e-9)
+    wanted_left = np.linalg.inv(inverse + (rows.T * weight) @ rows)
+    np.testing.assert_allclose(found.covariance[:n, :n], wanted_left, rtol=1e-8, atol=1e-14)

@@ -1,0 +1,118 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Points followed through pictures, each back to the picture in which it was found.
+
+So nothing drifts, and a point that a bird or a cloud hid is found again where it is. A point
+counts as seen where following it there and back ends where it began. When most are lost for long,
+as by another light, points are found anew.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+
+MOST_POINTS = 200
+_QUALITY = 0.02
+_APART = 6
+"""Least distance of two points in pixels."""
+_WINDOW = (13, 13)
+_LEVELS = 2
+_ROUNDS = 10
+_RETURNED = 0.7
+"""Distance in pixels within which a point has to come back."""
+_FEWEST = 0.4
+"""Share of the points below which most are lost."""
+_LONG = 10.0
+"""Time in [s] for which most must be lost before points are found anew."""
+_EDGE = 16
+"""Margin in pixels about the mask."""
+
+
+class Sighting(NamedTuple):
+    """Points of a picture, not a number where lost: its time [s], the picture they are from."""
+
+    time: float
+    reference: int
+    points: Floats
+
+
+class PointTracker:
+    """
+    Follow points.
+
+    Parameters
+    ----------
+    cv2
+        The module of OpenCV.
+    mask
+        Where in the picture points are found, not 0 there, (high, wide); everywhere if None.
+
+    """
+
+    def __init__(self, cv2: Any, mask: Any = None) -> None:
+        self._cv2, self._mask = cv2, mask
+        self._reference = -1
+        self._first: Any = None
+        self._found = self._last = np.zeros((0, 1, 2), dtype=np.float32)
+        self._good_at = 0.0
+        self._part: tuple[slice, ...] = (slice(None), slice(None))
+        self._corner = np.zeros(2)
+        if mask is not None and mask.any():
+            used = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
+            low = [max(int(each[0]) - _EDGE, 0) for each in used]
+            self._part = tuple(
+                slice(first, int(each[-1]) + _EDGE) for first, each in zip(low, used, strict=True)
+            )
+            self._mask = mask[self._part]
+            self._corner = np.array(low[::-1], dtype=np.float64)
+        ends = cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT
+        self._flow = {
+            'winSize': _WINDOW,
+            'maxLevel': _LEVELS,
+            'criteria': (ends, _ROUNDS, 0.02),
+            'flags': cv2.OPTFLOW_USE_INITIAL_FLOW,
+        }
+
+    def follow(self, time: float, picture: Any) -> Sighting:
+        """
+        Return where the points are in a picture, blue, green, red or grey, of a time in [s].
+
+        The first picture, and one with a new number, is one in which points were found.
+        """
+        grey = self._cropped(picture)
+        if self._first is None:
+            return self._begin(time, grey)
+        follow = self._cv2.calcOpticalFlowPyrLK
+        seen, is_seen, _ = follow(self._first, grey, self._found, self._last.copy(), **self._flow)
+        back, is_back, _ = follow(grey, self._first, seen, self._found.copy(), **self._flow)
+        missed = np.linalg.norm(back - self._found, axis=2).ravel()
+        is_good = (is_seen.ravel() == 1) & (is_back.ravel() == 1) & (missed < _RETURNED)
+        # A lost point is sought where those about it have gone: by the middle of all.
+        moved = np.median((seen - self._found)[is_good], axis=0) if is_good.any() else 0.0
+        self._last = np.where(is_good[:, None, None], seen, self._found + moved).astype(np.float32)
+        if is_good.mean() > _FEWEST:
+            self._good_at = time
+        elif time - self._good_at > _LONG:
+            return self._begin(time, grey)
+        points = np.where(is_good[:, None], seen[:, 0].astype(np.float64), np.nan)
+        return Sighting(time, self._reference, points + self._corner)
+
+    def _begin(self, time: float, grey: Any) -> Sighting:
+        """Find points, and follow them from here."""
+        found = self._cv2.goodFeaturesToTrack(grey, MOST_POINTS, _QUALITY, _APART, mask=self._mask)
+        self._found = np.zeros((0, 1, 2), dtype=np.float32) if found is None else found
+        self._last, self._good_at = self._found, time
+        self._first = grey if len(self._found) else None
+        self._reference += 1
+        points = self._found[:, 0].astype(np.float64) + self._corner
+        return Sighting(time, self._reference, points)
+
+    def _cropped(self, picture: Any) -> Any:
+        """Return the part of a picture about the mask in grey."""
+        part = picture[self._part]
+        return part if part.ndim == 2 else self._cv2.cvtColor(part, self._cv2.COLOR_BGR2GRAY)

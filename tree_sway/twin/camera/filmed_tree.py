@@ -1,0 +1,264 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A tree that sways as a camera sees the real one sway.
+
+Points of a picture are matched to the tree as it stands then. What is followed from there on is
+how each moves, so that an error of the match or of the camera is not taken for motion.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.run import Outcome
+from tree_sway.twin.camera.limb_points import LimbPoints, matched_points
+from tree_sway.twin.camera.motion_filter import MotionFilter, TICK
+from tree_sway.twin.camera.pinhole import Camera
+from tree_sway.twin.disturbance import crown_slope, disturbance
+from tree_sway.twin.observed_tree import ObservedTree
+from tree_sway.twin.steady_filter import stationary_covariance, sway_law, SwayLaw
+
+MOST_COORDINATES = 40
+"""Largest number of coordinates that a camera corrects."""
+
+_KEPT = 1.0
+"""Time in [s] by which a picture may be late."""
+
+_USUAL_WIND = 6.0
+"""Mean wind in [m/s] that is taken where none is measured."""
+
+_SLOWEST, _OTHER_WIND = 2.0, 1.6
+"""Least mean wind in [m/s] for which a law is found, and the ratio that asks for another one."""
+
+_LAW_EVERY = 300
+"""Steps after which the mean wind is looked at."""
+
+_UNTOLD = 0.7
+"""Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-]."""
+
+_LASTS = 1.5
+"""Time in [s] after which an unknown force has decayed to 1/e: the lean lasts, gusts do not."""
+
+_NEARER = 0.4
+"""Share of the way to the estimate that the tree goes in a step."""
+
+_FADE = 0.5
+"""Time constant in [s] with which the correction fades without pictures."""
+
+_LOST = 0.5
+"""Time in [s] without a picture from which the correction fades."""
+
+_USED = 0.25
+"""Weight above which a point is in use."""
+
+_FEWEST = 6
+"""Least number of points that a picture must tell."""
+
+
+class FilmedMotion(NamedTuple):
+    """A camera, and of each picture what `FilmedTree.film` takes."""
+
+    camera: Camera
+    pictures: Sequence[tuple[float, int, Floats]]
+
+    @property
+    def seconds(self) -> float:
+        """Time of the last picture in [s]."""
+        return self.pictures[-1][0] if self.pictures else 0.0
+
+
+class FilmedTree(ObservedTree):
+    """
+    A tree that a camera films.
+
+    Parameters
+    ----------
+    *arguments, **options
+        Those of `ObservedTree`; ``at`` may be empty, or name motion sensors.
+    camera
+        The camera.
+
+    """
+
+    def __init__(self, *arguments: Any, camera: Camera, at: Any = None, **options: Any) -> None:
+        super().__init__(*arguments, at=at or {}, **options)
+        self.camera = camera
+        self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
+        oscillators: Any = self.banks[0].oscillators
+        m = oscillators.shapes.shape[1]
+        n = self._n = min(MOST_COORDINATES, m)
+        self._filmed = np.zeros((2, n))
+        self._past: deque[tuple[float, Floats]] = deque()
+        self._waiting: deque[tuple[float, int, Floats]] = deque()
+        self._reference = -1
+        self.points = LimbPoints(*np.zeros((3, 0)))
+        """Points that are followed."""
+        self._slopes, self._offset = np.zeros((0, 2, n)), np.zeros((0, 2))
+        self._poses = np.zeros((self.tree.n_segments, 7))
+        self._seen_at = -np.inf
+        self.refused = 0
+        """Pictures that were too old, out of order, or told too little."""
+        law = self._law()
+        self.filter = MotionFilter(law, stationary_covariance(law))
+        """What the camera tells."""
+
+    def _law(self) -> SwayLaw:
+        """Return the law of what the model lacks, in the present mean wind."""
+        n = self._n
+        found = disturbance(self, self._speed, n)
+        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
+        covariance = found.covariance + whole.T @ whole
+        tunable = self.banks[0].oscillators.tunable
+        stiffness, damping = (
+            np.array(each[:n]) / tunable.inertia for each in (tunable.stiffness, tunable.damping)
+        )
+        return sway_law(stiffness, damping + found.air_damping, covariance, _LASTS, TICK)
+
+    def film(self, time: float, reference: int, image: ArrayLike) -> None:
+        """
+        Offer the points of a picture.
+
+        Parameters
+        ----------
+        time
+            Time of the picture in [s] on the clock of the steps.
+        reference
+            Number of the picture in which these points were found; points of another one are
+            other points.
+        image
+            Their places in pixels, (k, 2); not a number where one is lost.
+
+        """
+        self._waiting.append((time, reference, np.array(image, dtype=np.float64)))
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step as `ObservedTree.step`, then follow the pictures."""
+        eta, rate, _ = self._swing
+        n = self._n
+        eta[:n] -= self._filmed[0]
+        rate[:n] -= self._filmed[1]
+        status = super().step(wind_mean, dt)
+        if status & Outcome.RESTARTED:
+            self._forget()
+        self._steps += 1
+        if self._steps % _LAW_EVERY == 0:
+            self._follow_wind()
+        self._past.append((self.now, eta.copy()))
+        while self._past[0][0] < self.now - _KEPT:
+            self._past.popleft()
+        while self._waiting and self._waiting[0][0] <= self.now:
+            self._look(*self._waiting.popleft())
+        if self.now - self._seen_at < _LOST:
+            ticks = max(round((self.now - self._filter_time) / TICK), 0)
+            self._calm(dt, self.filter.ahead(ticks))
+        else:
+            self._filmed *= np.exp(-dt / _FADE)
+        eta[:n] += self._filmed[0]
+        rate[:n] += self._filmed[1]
+        return status
+
+    def _calm(self, dt: float, estimate: Floats) -> None:
+        """Move the correction on by its law, and nearer to the estimate: so noise is averaged."""
+        state = np.stack([*self._filmed, self.filter.state[2]])
+        self._filmed[:] = self.filter.moved(state, round(dt / TICK))
+        self._filmed += _NEARER * (estimate - self._filmed)
+
+    def _memory(self) -> tuple[Floats, ...]:
+        """Return views of the state, with the correction in it."""
+        return (*super()._memory(), self._filmed)
+
+    def _glide(self, dt: float) -> bool:
+        """Continue a transition of `tune`, and expect the motion of the changed tree."""
+        is_changed = super()._glide(dt)
+        self._is_outdated |= is_changed
+        return is_changed
+
+    def _follow_wind(self) -> None:
+        """Take the law of the present mean wind and of the present tree."""
+        measured = self.observer.mean_wind
+        speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
+        if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
+            self._speed, self._is_outdated = speed, False
+            self.filter.set_law(self._law())
+
+    def _look(self, time: float, reference: int, image: Floats) -> None:
+        """Follow the points of a picture."""
+        if time < self._past[0][0] - 0.1 or time <= self._seen_at:
+            self.refused += 1
+            return
+        if not np.isfinite(self._seen_at) or time - self._seen_at > 5.0:
+            self._filter_time = time
+        ticks = max(round((time - self._filter_time) / TICK), 0)
+        self._filter_time += ticks * TICK
+        self.filter.advance(ticks)
+        eta = self._computed(time)
+        eta[: self._n] += self.filter.state[0]
+        shapes = self.banks[0].oscillators.shapes
+        poses = self.place_rotations(np.ascontiguousarray(shapes @ eta), self._poses)
+        if reference != self._reference:
+            self._begin(reference, poses, image)
+        expected = self.camera.project(self.points.at(poses)) + self._offset
+        missed = image[self.points.row] - expected
+        if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
+            self.refused += 1
+            return
+        self._seen_at = time
+        self.filter.see(self._slopes, missed)
+
+    def _begin(self, reference: int, poses: Floats, image: Floats) -> None:
+        """Follow the points of another picture, in which the tree has these poses."""
+        self._reference = reference
+        found = matched_points(self.tree, poses, self.camera, image)
+        self.points = found
+        at = found.at(poses)
+        self._offset = image[found.row] - self.camera.project(at)
+        slopes = found.slopes(self)[:, :, : self._n]
+        self._slopes = self.camera.slopes(at) @ slopes
+        self.filter.begin(len(found.row))
+
+    def _computed(self, time: float) -> Floats:
+        """Coordinates of the model at a time in [s], without the camera's correction, (m,)."""
+        later = before = self._past[-1]
+        for each in reversed(self._past):
+            later, before = before, each
+            if each[0] <= time:
+                break
+        share = (time - before[0]) / max(later[0] - before[0], 1e-9)
+        return np.asarray(before[1] + np.clip(share, 0.0, 1.0) * (later[1] - before[1]))
+
+    def _forget(self) -> None:
+        """Begin anew from rest."""
+        self._filmed[:] = 0.0
+        self._past.clear()
+        self._waiting.clear()
+        self._seen_at, self._reference = -np.inf, -1
+        law = self._law()
+        self.filter = MotionFilter(law, stationary_covariance(law))
+
+    @property
+    def said(self) -> str:
+        """What the camera tells, or why it tells nothing, one sentence."""
+        n_points = len(self.points.row)
+        if not np.isfinite(self._seen_at):
+            why = 'no picture of the time of the wind'
+            if n_points or self.refused:
+                why = f'{n_points} points on the tree are too few: check the clicks'
+            return f'the camera moves nothing: {why}'
+        used = int((self.filter.weights > _USED).sum())
+        error = float(np.median(self.filter.errors))
+        return (
+            f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
+            f'{error:.1f} px; {self.refused} pictures refused'
+        )
+
+    def reset(self) -> None:
+        """Return to rest, with no wind; the points are matched anew."""
+        super().reset()
+        self._forget()

@@ -1,0 +1,114 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A camera among the arguments ``--motion`` and ``--at``: ``camera:FILE`` and its clicks."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+import sys
+from typing import NamedTuple, TYPE_CHECKING
+
+from tree_sway.commands import waiting
+from tree_sway.core.checks import within
+from tree_sway.core.tree import Tree
+from tree_sway.errors import ParameterError
+from tree_sway.files import read_text
+from tree_sway.live import Film, is_camera, LiveFilm, PointTracker
+from tree_sway.live.commands import sensors_and_places
+from tree_sway.twin.camera import camera_of_clicks, drawn_wood, FilmedMotion, told_by
+
+if TYPE_CHECKING:
+    from tree_sway.twin.camera import Camera
+
+
+class PlacedCamera(NamedTuple):
+    """A film, where its camera stands, and a tracker of the tree in it."""
+
+    film: Film
+    camera: Camera
+    tracker: PointTracker
+
+
+def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | None:
+    """
+    Take the camera out of the arguments, and find where it stands; None without one.
+
+    Raises
+    ------
+    ParameterError
+        Two cameras, a film that cannot be opened, or clicks that fit no camera.
+    MissingDependencyError
+        OpenCV is not installed.
+
+    """
+    pairs = sensors_and_places(arguments)
+    cameras = [pair for pair in pairs if is_camera(pair[0])]
+    if not cameras:
+        return None
+    if len(cameras) > 1:
+        raise ParameterError('two cameras', where='--motion', cure='give one')
+    others = [pair for pair in pairs if not is_camera(pair[0])]
+    arguments.motion, arguments.at = [[pair[k] for pair in others] for k in (0, 1)]
+    (address, at), *_ = cameras
+    if ';' not in at and '\n' not in at:
+        at = read_text(Path(at))
+    told = told_by(at)
+    film = Film(address, late=told.late)
+    found = camera_of_clicks(tree, film.size, told.clicks, told.told)
+    print(f'note: {address}: {found}', file=sys.stderr)
+    wood = drawn_wood(found.camera, tree.start, tree.end, tree.base_diameter)
+    if told.check:
+        film.check(told.check, wood)
+    return PlacedCamera(film, found.camera, film.tracker(wood))
+
+
+@contextmanager
+def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | None]:
+    """
+    Follow the live camera among the arguments, and end at once; None without one.
+
+    The errors are those of `placed_camera`, and a film in a file.
+    """
+    if not any(map(is_camera, arguments.motion)):
+        yield None
+        return
+    placed = placed_camera(arguments, tree())
+    assert placed is not None
+    if not placed.film.is_live:
+        cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
+        raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
+    live = LiveFilm(placed.film, placed.camera, placed.tracker, _say)
+    live.start()
+    try:
+        yield live
+    finally:
+        live.stop()
+
+
+def _say(text: str) -> None:
+    """Print a line of news of the camera."""
+    print(f'motion: {text}\n', end='', file=sys.stderr, flush=True)
+
+
+def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | None:
+    """
+    Follow the points of the film among the arguments; None without one.
+
+    The errors are those of `placed_camera`, and a camera without an end.
+    """
+    placed = placed_camera(arguments, tree)
+    if placed is None:
+        return None
+    if placed.film.is_live:
+        cure = 'give a film, as camera:FILE.mp4; tree-sway show follows a live camera'
+        raise ParameterError(f'{placed.film.name} has no end', where='--motion', cure=cure)
+    starts = within('--motion-starts', arguments.motion_starts, -1e9, 1e9, 's')
+    with waiting('following the film'):
+        seen = [
+            (each.time + starts, each.reference, each.points)
+            for each in placed.film.sightings(placed.tracker)
+        ]
+    return FilmedMotion(placed.camera, seen)
