@@ -32,10 +32,7 @@ def frequencies(tree, species=OAK, count=100, **changes):
 
 
 def test_a_lone_stem_is_the_same_on_every_model(stem):
-    first = [
-        frequencies(stem(tip=0.01), model=model, gravity=0.0)[0]
-        for model in ('branch', 12)
-    ]
+    first = [frequencies(stem(tip=0.01), model=model, gravity=0.0)[0] for model in ('branch', 12)]
     assert first == pytest.approx([first[0]] * 2, rel=0.02)
 
 
@@ -120,9 +117,7 @@ def test_enriching_makes_no_mode_faster(fork):
 
 @pytest.mark.parametrize(('tree', 'rows'), [('fork', ROOMS[1]), ('stem', ROOMS[2])])
 def test_records_have_room_for_all_that_a_step_needs(fork, stem, tree, rows):
-    bank = bank_of(
-        fork() if tree == 'fork' else stem(base=0.04, cuts=8), model=60, enrich='all'
-    )
+    bank = bank_of(fork() if tree == 'fork' else stem(base=0.04, cuts=8), model=60, enrich='all')
     room = room_for_fields(bank.branches['n_coordinates'].max())
     assert room == rows
     assert bank.branches.dtype == branch_layout(room)

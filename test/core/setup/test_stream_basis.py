@@ -55,9 +55,7 @@ def gaps(sim, basis, speed, steps=600):
     return np.linalg.norm(placed - through, axis=2), placed - placed.mean(axis=0)
 
 
-@pytest.mark.parametrize(
-    'name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)]
-)
+@pytest.mark.parametrize('name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)])
 @pytest.mark.parametrize('speed', [2.0, 9.0, 15.0])
 def test_no_segment_is_farther_off_than_the_error_that_is_reported(name, speed):
     sim, basis = with_basis(name)

@@ -23,9 +23,7 @@ from tree_sway.growth.growing import grow
 
 DOORS = {
     'make_simulator': lambda tree, **options: make_simulator(tree, model='branch', **options),
-    'prepare': lambda tree, **options: make_simulator(
-        prepare(tree, model='branch', **options)
-    ),
+    'prepare': lambda tree, **options: make_simulator(prepare(tree, model='branch', **options)),
     'Scene': lambda tree, **options: Scene([PlacedTree('one', tree)]).simulator(
         model='branch', **options
     ),
@@ -57,12 +55,10 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     made = DOORS[door](opened)
     apart = {
         'make_simulator': lambda: make_simulator(opened.tree, opened.species, model='branch'),
-        'prepare': lambda: make_simulator(
-            prepare(opened.tree, opened.species, model='branch')
+        'prepare': lambda: make_simulator(prepare(opened.tree, opened.species, model='branch')),
+        'Scene': lambda: Scene([PlacedTree('one', opened.tree, species=opened.species)]).simulator(
+            model='branch'
         ),
-        'Scene': lambda: Scene(
-            [PlacedTree('one', opened.tree, species=opened.species)]
-        ).simulator(model='branch'),
     }[door]()
     for each in (made, apart):
         each.step((5.0, 0.0, 0.0), 1.0 / 60.0)
