@@ -149,7 +149,6 @@ def build_scene(
     arguments: argparse.Namespace,
     added: Sequence[PageAddition] = (),
     told: dict[str, tuple[str, ...]] | None = None,
-    camera: Camera | None = None,
 ) -> Simulator:
     """
     Make the simulator of some choices, with the warnings of its tree in ``told``.

@@ -81,7 +81,7 @@ class SensorsOnThePage(PageAddition):
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
         """Make an observed tree; None without sensors and camera, and for a stand."""
-        camera = self.motion.camera
+        camera = self.motion.camera if self.motion else None
         if not (self.places or camera) or int(choices.count) != 1:
             return None
         places = self.places
