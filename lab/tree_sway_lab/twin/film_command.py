@@ -11,7 +11,7 @@ tree at rest (``still``), the model in the mast's wind (``model``), the camera a
 and the camera with the mast's wind (``with wind``): the error of all tips in space
 about their means over their motion, that of the means over the lean, that of the tip of the stem,
 the roughness, the time of a picture's step without and that of following its points, in
-milliseconds, and how far the tree moves in the picture, root mean square of all segments in pixels.
+milliseconds, and how far the tree moves in the picture, root mean square in pixels.
 
 ``--points`` draws no pictures: points are projected, and disturbed as a tracker's would be.
 ``-o`` writes the film, the wind of the mast and the clicks as files, for ``tree-sway simulate``.
