@@ -8,10 +8,10 @@ clouds, a shadow, fluttering leaves, a bird, noise and a fifth of the points los
 time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a
 bearing off by some degrees and a distance off by some percent. Of each tree there is a row for the
 tree at rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``)
-and the camera with the mast's wind (``with wind``): the error of all tips in space about their means over their
-motion, that of the means over the lean, that of the tip of the stem, the roughness, the time of a
-picture's step without and that of following its points, in milliseconds, and how far the tree
-moves in the picture, root mean square of all segments in pixels.
+and the camera with the mast's wind (``with wind``): the error of all tips in space
+about their means over their motion, that of the means over the lean, that of the tip of the stem,
+the roughness, the time of a picture's step without and that of following its points, in
+milliseconds, and how far the tree moves in the picture, root mean square in pixels.
 
 ``--points`` draws no pictures: points are projected, and disturbed as a tracker's would be.
 ``-o`` writes the film, the wind of the mast and the clicks as files, for ``tree-sway simulate``.

@@ -30,10 +30,10 @@ def test_it_looks_where_it_is_told() -> None:
     """To the west of it, half a right angle up, turned by a right angle clockwise."""
     camera = SOUTH._replace(axes=looking(np.pi * 1.5, np.pi / 4, np.pi / 2))
     np.testing.assert_allclose(camera.axes @ camera.axes.T, np.eye(3), atol=1e-12)
-    at = camera.position + [-5.0, 0.0, 5.0]
+    at = camera.position + np.array([-5.0, 0.0, 5.0])
     np.testing.assert_allclose(camera.project(at[None]), [[640.0, 360.0]], atol=1e-9)
     # What is north of there, to the right of a level camera, is now above the middle.
-    x, y = camera.project((at + [0.0, 1.0, 0.0])[None])[0]
+    x, y = camera.project((at + np.array([0.0, 1.0, 0.0]))[None])[0]
     assert x == pytest.approx(640.0)
     assert y < 360.0
 
@@ -41,7 +41,7 @@ def test_it_looks_where_it_is_told() -> None:
 def test_slopes_are_those_of_differences() -> None:
     rng = np.random.default_rng(1)
     camera = SOUTH._replace(axes=looking(0.1, 0.3, 0.05))
-    points = rng.normal(size=(5, 3)) + [0.0, 0.0, 4.0]
+    points = rng.normal(size=(5, 3)) + np.array([0.0, 0.0, 4.0])
     slopes = camera.slopes(points)
     for axis in range(3):
         step = 1e-5 * np.eye(3)[axis]
