@@ -79,7 +79,17 @@ def test_without_wind_it_follows_lean_and_sway(
     rest = rest_of(filmed)
     assert error(followed(filmed, points), true, rest) < 0.1
     assert 'points on the tree' in filmed.said
+    assert 'less than a pixel' not in filmed.said
     assert filmed.refused == 0
+
+
+def test_motion_of_less_than_a_pixel_is_said(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    points = film[1]
+    filmed = FilmedTree(tree, camera=CAMERA)
+    followed(filmed, points[:1] + 0.2 * np.random.default_rng(4).normal(size=points.shape))
+    assert 'less than a pixel tells little' in filmed.said
 
 
 def test_a_late_picture_corrects_the_past(tree: Tree, film: tuple[np.ndarray, np.ndarray]) -> None:

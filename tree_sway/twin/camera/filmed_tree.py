@@ -61,6 +61,9 @@ _USED = 0.25
 _FEWEST = 6
 """Least number of points that a picture must tell."""
 
+_LEAST_MOTION = 1.0
+"""Motion in the picture below which noise tells more than the tree [px]."""
+
 
 class FilmedMotion(NamedTuple):
     """A camera, and of each picture what `FilmedTree.film` takes."""
@@ -103,6 +106,8 @@ class FilmedTree(ObservedTree):
         self._slopes, self._offset = np.zeros((0, 2, n)), np.zeros((0, 2))
         self._poses = np.zeros((self.tree.n_segments, 7))
         self._seen_at = -np.inf
+        self._begun_at = np.zeros((0, 2))
+        self._square, self._n_seen = 0.0, 0
         self.refused = 0
         """Pictures that were too old, out of order, or told too little."""
         law = self._law()
@@ -210,6 +215,9 @@ class FilmedTree(ObservedTree):
             self.refused += 1
             return
         self._seen_at = time
+        moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
+        self._square += float(np.nanmedian(moved))
+        self._n_seen += 1
         self.filter.see(self._slopes, missed)
 
     def _begin(self, reference: int, poses: Floats, image: Floats) -> None:
@@ -218,7 +226,8 @@ class FilmedTree(ObservedTree):
         found = matched_points(self.tree, poses, self.camera, image)
         self.points = found
         at = found.at(poses)
-        self._offset = image[found.row] - self.camera.project(at)
+        self._begun_at = image[found.row]
+        self._offset = self._begun_at - self.camera.project(at)
         slopes = found.slopes(self)[:, :, : self._n]
         self._slopes = self.camera.slopes(at) @ slopes
         self.filter.begin(len(found.row))
@@ -238,9 +247,15 @@ class FilmedTree(ObservedTree):
         self._filmed[:] = 0.0
         self._past.clear()
         self._waiting.clear()
+        self._square, self._n_seen = 0.0, 0
         self._seen_at, self._reference = -np.inf, -1
         law = self._law()
         self.filter = MotionFilter(law, stationary_covariance(law))
+
+    @property
+    def motion(self) -> float:
+        """How far the points moved in the picture, root mean square [px]; 0 before any."""
+        return float(np.sqrt(self._square / max(self._n_seen, 1)))
 
     @property
     def said(self) -> str:
@@ -253,10 +268,16 @@ class FilmedTree(ObservedTree):
             return f'the camera moves nothing: {why}'
         used = int((self.filter.weights > _USED).sum())
         error = float(np.median(self.filter.errors))
-        return (
+        told = (
             f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
             f'{error:.1f} px; {self.refused} pictures refused'
         )
+        if self.motion < _LEAST_MOTION:
+            told += (
+                f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '
+                'nearer, with more pixels, or in more wind'
+            )
+        return told
 
     def reset(self) -> None:
         """Return to rest, with no wind; the points are matched anew."""
