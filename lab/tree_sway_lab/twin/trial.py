@@ -154,7 +154,8 @@ def twin_score(
     """
     Score a tree that sensors correct, told how far upwind the anemometer is [m].
 
-    Further settings are those of `ObservedTree`. With what is ``known`` of the true tree, its wood and damping are the model's.
+    Further settings are those of `ObservedTree`. With what is ``known`` of
+    the true tree, its wood and damping are the model's.
     """
     damping_ratio = None
     if known is not None:

@@ -66,7 +66,8 @@ class FarCrown:
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
         centre = 0.5 * (tree.start + tree.end)
-        middle = np.stack([np.bincount(part, area * x, N_DELAYS) / total for x in centre.T], axis=1)
+        sums = [np.bincount(part, area * x, N_DELAYS) for x in centre.T]
+        middle = np.stack(sums, axis=1) / total[:, None]
         square = np.square(centre - middle[part]).sum(axis=1)
         radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
         return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius

@@ -21,8 +21,8 @@ Stationary Time Series) on these stages; five of them are within 1 % of its erro
 know still loads the tree: where the wind is the expected one, its missing variance is added to the
 square of the speed, as E[U^2] = E[U]^2 + var U.
 
-A sample adds what may be: a drawn field, whose limbs share gusts by the same law and whose spectrum
-is ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
+A sample adds what may be: a drawn field, whose limbs share gusts by the same law, of the spectrum
+``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
 turbulence, and follows the measured one as far as that tells.
 """
 
@@ -147,7 +147,7 @@ class FarWind:
 
     def others(self, offsets: Ints, along: float, across: float) -> Floats:
         """
-        Winds that may be beside the expected one, of other stretches of the drawn field, (e, g, 3).
+        Winds that may be beside the expected one: other stretches of the drawn field, (e, g, 3).
 
         Offsets are numbers of its samples, (e,); the winds are times the factors along the mean
         wind, and across it and up.
