@@ -35,6 +35,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -195,7 +196,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
-        apart: dict[str, float] = {}
+        apart: dict[str, Any] = {}
         if arguments.easy:
             true = true_motion(tree, species, places, each, in_leaf=in_leaf, model=model)
             scores.setdefault('U^2', []).append(squared_score(true, frequency))

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
@@ -42,7 +42,7 @@ class FarCrown:
         wood = parts_of(tree)
         load = wood.share
         if model.has_limbs:
-            load = np.bincount(model.limb_delay, branches['area'], N_DELAYS)
+            load = np.asarray(np.bincount(model.limb_delay, branches['area'], N_DELAYS), float)
         places, size = self._places(tree, wood.of_branch[tree.branch_of_segment])
         self.wind = FarWind(
             places,
@@ -75,11 +75,12 @@ class FarCrown:
     @staticmethod
     def _read_by_step(bank: Bank, gusts: CrownGusts | None) -> Floats:
         """Winds of the parts less that of the crown, (parts, 3), where the model has them."""
-        stand = getattr(bank.oscillators, 'stand', None)
+        oscillators: Any = bank.oscillators
+        stand = getattr(oscillators, 'stand', None)
         if gusts is not None:
             memory = gusts.wind.memory()[0]
         elif stand is not None and stand.states.history.size:
-            memory = stand.states.history[bank.oscillators.number]
+            memory = stand.states.history[oscillators.number]
         else:
             memory = np.zeros(3 * N_DELAYS)
         return np.asarray(memory[-3 * N_DELAYS :].reshape(N_DELAYS, 3))

@@ -32,7 +32,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
 DECAYS = np.array([3.0, 10.0, 10.0])
@@ -104,7 +104,7 @@ class FarWind:
         self._passed = self._memory[: len(LENGTHS)]
         self._mean, self._variance, self._told, self._run = self._memory[len(LENGTHS) :]
         self._apart = np.zeros((len(share), 3))
-        self._rest: Floats | None = None
+        self._rest: Singles | None = None
         if seed is not None:
             self._rest = _drawn_rest(places, size, self._weights, seed)
 
@@ -229,7 +229,7 @@ def _coherences(
     return [np.mean(found, axis=0)] if bearing is None else found
 
 
-def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Floats:
+def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Singles:
     """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
     count = len(places)
     wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
