@@ -79,8 +79,8 @@ class Settings:
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
         after its own delay (`crown_wind`). 1 is one wind for the whole crown.
     anemometer_distance
-        Distance in [m] from the tree to the anemometer, which is as high as the tree: farther away,
-        less of a gust is the same (`far_wind`). 0 for one wind at both. It takes the place of
+        Distance in [m] from the tree to the anemometer, which is as high as the tree: the farther,
+        the less of a gust is the same (`far_wind`). 0 for one wind at both. It takes the place of
         `crown_coherence`.
     anemometer_bearing
         Where the anemometer stands from the tree, clockwise from north in [rad]; None if unknown.

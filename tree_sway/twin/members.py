@@ -14,8 +14,8 @@ limbs meet, each drawn from a published spread:
 - Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), the rest one limb after
   the other, as in `crown_wind`. The delay of a limb is not known, so each member draws its own.
   Where an anemometer averages fast gusts away, each member meets its own, by the law of
-  `disturbance`. Apart from the anemometer by a known distance each meets its own stretch of what is
-  drawn beside the expected wind (`far_wind`).
+  `disturbance`. At a known distance from the anemometer each meets a stretch of its own of what
+  is drawn beside the expected wind (`far_wind`).
 
 A member is an oscillator for each of the first coordinates, driven by the forces on the model and
 those of its gusts::

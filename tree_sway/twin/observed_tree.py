@@ -6,7 +6,7 @@ A simulator whose motion sensors on the real tree correct.
 It steps in the wind alone, adds the correction of its observer, and takes it off again before the
 next step. What places, streams or records the tree reads the corrected state.
 
-The wind of the steps is the one expected at the limbs: by `far_wind` where no sensor tells more and
+The wind of the steps is the one expected at the limbs: by `far_wind` where there is no sensor and
 the distance of the anemometer is known; else given that of the anemometer: a share of
 each gust reaches the whole crown at once, the rest limb after limb (`crown_wind`). The gusts of
 each limb are for the sensors to tell.

@@ -114,8 +114,8 @@ def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
         tips[k] = tips_of_poses(tree, sim.place(block))
     error, roughness, stem = _compared(tips, true.tips, 0)
     first = round(_TRUSTED * len(tips))
-    flat = [each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips)]
-    bands = compare_sway(*flat, 1.0 / DT, float(sim.frequencies(1)[0])).bands
+    found, wanted = (each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips))
+    bands = compare_sway(found, wanted, 1.0 / DT, float(sim.frequencies(1)[0])).bands
     return Score(
         error, roughness, error, roughness, stem, np.nan, *_costs(spent), bands=bands
     )  # fmt: skip
@@ -163,7 +163,8 @@ def twin_score(
     """
     Score a tree that sensors correct, told how far upwind, or else apart, the anemometer is [m].
 
-    Further settings are those of `ObservedTree`. With what is ``known`` of the true tree, its wood and damping are the model's.
+    Further settings are those of `ObservedTree`. With what is ``known`` of
+    the true tree, its wood and damping are the model's.
     """
     damping_ratio = None
     if known is not None:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class FarCrown:
         wood = parts_of(tree)
         load = wood.share
         if model.has_limbs:
-            load = np.bincount(model.limb_delay, branches['area'], N_DELAYS)
+            load = np.asarray(np.bincount(model.limb_delay, branches['area'], N_DELAYS), float)
         places, size = self._places(tree, wood.of_branch[tree.branch_of_segment])
         self.wind = FarWind(
             places,
@@ -65,7 +65,8 @@ class FarCrown:
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
         centre = 0.5 * (tree.start + tree.end)
-        middle = np.stack([np.bincount(part, area * x, N_DELAYS) / total for x in centre.T], axis=1)
+        sums = [np.bincount(part, area * x, N_DELAYS) for x in centre.T]
+        middle = np.stack(sums, axis=1) / total[:, None]
         square = np.square(centre - middle[part]).sum(axis=1)
         radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
         return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius
@@ -73,11 +74,12 @@ class FarCrown:
     @staticmethod
     def _read_by_step(bank: Bank, gusts: CrownGusts | None) -> Floats:
         """Winds of the parts less that of the crown, (parts, 3), where the model has them."""
-        stand = getattr(bank.oscillators, 'stand', None)
+        oscillators: Any = bank.oscillators
+        stand = getattr(oscillators, 'stand', None)
         if gusts is not None:
             memory = gusts.wind.memory()[0]
         elif stand is not None and stand.states.history.size:
-            memory = stand.states.history[bank.oscillators.number]
+            memory = stand.states.history[oscillators.number]
         else:
             memory = np.zeros(3 * N_DELAYS)
         return np.asarray(memory[-3 * N_DELAYS :].reshape(N_DELAYS, 3))

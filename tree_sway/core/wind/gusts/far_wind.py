@@ -21,8 +21,8 @@ Stationary Time Series) on these stages; five of them are within 1 % of its erro
 know still loads the tree: where the wind is the expected one, its missing variance is added to the
 square of the speed, as E[U^2] = E[U]^2 + var U.
 
-A sample adds what may be: a drawn field, whose limbs share gusts by the same law and whose spectrum
-is ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
+A sample adds what may be: a drawn field, whose limbs share gusts by the same law, of the spectrum
+``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
 turbulence, and follows the measured one as far as that tells.
 """
 
@@ -32,7 +32,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
 DECAYS = np.array([3.0, 10.0, 10.0])
@@ -104,7 +104,7 @@ class FarWind:
         self._passed = self._memory[: len(LENGTHS)]
         self._mean, self._variance, self._told, self._run = self._memory[len(LENGTHS) :]
         self._apart = np.zeros((len(share), 3))
-        self._rest: Floats | None = None
+        self._rest: Singles | None = None
         if seed is not None:
             self._rest = _drawn_rest(places, size, self._weights, seed)
 
@@ -147,7 +147,7 @@ class FarWind:
 
     def others(self, offsets: Ints, along: float, across: float) -> Floats:
         """
-        Winds that may be beside the expected one, of other stretches of the drawn field, (e, g, 3).
+        Winds that may be beside the expected one: other stretches of the drawn field, (e, g, 3).
 
         Offsets are numbers of its samples, (e,); the winds are times the factors along the mean
         wind, and across it and up.
@@ -229,7 +229,7 @@ def _coherences(
     return [np.mean(found, axis=0)] if bearing is None else found
 
 
-def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Floats:
+def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Singles:
     """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
     count = len(places)
     wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
