@@ -26,7 +26,13 @@ from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, 
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.page_controls import page_controls, sensor_place
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
-from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
+from tree_sway.commands.wind_arguments import (
+    add_distance_arguments,
+    add_sway_arguments,
+    distance_settings,
+    opened_wind,
+    refuse_unused_wind,
+)
 from tree_sway.core.checks import within
 from tree_sway.core.leaves.calendar import is_bare, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
@@ -76,6 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
+    add_distance_arguments(parser, 'sample')
     add_live_motion_arguments(parser)
     add_learn_argument(parser)
     parser.add_argument(
@@ -216,7 +223,8 @@ def build_scene(
     in_leaf = chosen_leaves(arguments)
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
-    settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    far = distance_settings(arguments) if is_first and count == 1 else {}
+    settings = Settings(damping_ratio=damping, in_leaf=in_leaf, **far)
     if places and is_first and count == 1:
         if choices.sensor_at:
             places = dict.fromkeys(places, choices.sensor_at)

@@ -35,7 +35,9 @@ from tree_sway.commands.motion_arguments import add_motion_arguments, placed_mot
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
 from tree_sway.commands.wind_arguments import (
+    add_distance_arguments,
     add_wind_arguments,
+    distance_settings,
     opened_record,
     refuse_unused_wind,
     simulated_speed,
@@ -54,6 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser)
     add_wind_arguments(parser)
     add_sensor_argument(parser)
+    add_distance_arguments(parser, 'expected')
     add_exposure_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
@@ -104,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(ground), motion=motion,
-            band=arguments.band,
+            band=arguments.band, **distance_settings(arguments),
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:

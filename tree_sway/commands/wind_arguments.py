@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 import sys
 from typing import Any
@@ -15,6 +16,7 @@ from tree_sway.commands.arguments import (
     add_tree_arguments,
     refuse_unused,
 )
+from tree_sway.core.wind.far_wind import GUSTS
 from tree_sway.core.wind.limits import shorter_than
 from tree_sway.errors import ParameterError
 from tree_sway.files.reader_options import reader_options
@@ -44,6 +46,41 @@ def add_wind_arguments(
     add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
     speed = f'mean speed of the simulated wind [m/s] ({speed_of})'
     add('--speed', type=float, metavar='U', help=speed)
+
+
+def add_distance_arguments(parser: argparse.ArgumentParser, gusts: str) -> None:
+    """Add where the anemometer stands, and which gusts a tree apart from it meets by default."""
+    add = parser.add_argument_group('anemometer').add_argument
+    add(
+        '--anemometer-distance',
+        type=float,
+        default=0.0,
+        metavar='M',
+        help='distance of the anemometer from the tree [m]; 0 if unknown (%(default)s)',
+    )
+    add(
+        '--anemometer-bearing',
+        type=float,
+        metavar='DEG',
+        help='where it stands from the tree, clockwise from north; without it, anywhere',
+    )
+    add(
+        '--gusts',
+        choices=GUSTS,
+        default=gusts,
+        help='wind of a tree apart from it: of least error, one that may be, or as measured '
+        '(%(default)s)',
+    )
+
+
+def distance_settings(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields of `Settings` that these arguments give."""
+    bearing = arguments.anemometer_bearing
+    return {
+        'anemometer_distance': arguments.anemometer_distance,
+        'anemometer_bearing': None if bearing is None else math.radians(bearing),
+        'gusts': arguments.gusts,
+    }
 
 
 def simulated_speed(arguments: argparse.Namespace, usual: float = USUAL_SPEED) -> float:

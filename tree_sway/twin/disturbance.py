@@ -24,7 +24,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.drag_law import drag_density
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
-from tree_sway.core.wind.crown_wind import DECAY
+from tree_sway.core.wind.crown_wind import DECAY, N_DELAYS, parts_of
 
 if TYPE_CHECKING:
     from tree_sway.core.run.simulator import SwaySimulator
@@ -124,6 +124,16 @@ def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     """Slope of the modal forces by the wind of the whole crown in a mean wind [m/s], (3, m)."""
     return np.asarray(_branch_slopes(simulator, speed, count)[0].sum(axis=0))
+
+
+def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
+    """Slope of the modal forces by the wind of each part of the crown (`parts_of`), (g, 3, m)."""
+    tree = simulator.tree
+    slopes, _ = _branch_slopes(simulator, speed, count)
+    branch = tree.branch_of_segment[simulator.banks[0].branches['first']]
+    found = np.zeros((N_DELAYS, *slopes.shape[1:]))
+    np.add.at(found, parts_of(tree).of_branch[branch], slopes)
+    return found
 
 
 def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[Floats, Floats]:

@@ -14,7 +14,8 @@ limbs meet, each drawn from a published spread:
 - Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), the rest one limb after
   the other, as in `crown_wind`. The delay of a limb is not known, so each member draws its own.
   Where an anemometer averages fast gusts away, each member meets its own, by the law of
-  `disturbance`.
+  `disturbance`. At a known distance from the anemometer each meets a stretch of its own of what
+  is drawn beside the expected wind (`far_wind`).
 
 A member is an oscillator for each of the first coordinates, driven by the forces on the model and
 those of its gusts::
@@ -42,9 +43,11 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.oscillators.propagator import held_propagator
 from tree_sway.core.wind.crown_wind import N_DELAYS, USUAL_COHERENCE
-from tree_sway.twin.disturbance import GUST
+from tree_sway.core.wind.far_wind import FarWind, SAMPLES
+from tree_sway.twin.disturbance import GUST, part_slopes
 
 if TYPE_CHECKING:
+    from tree_sway.core.run.simulator import SwaySimulator
     from tree_sway.twin.observer import Observer
 
 N_MEMBERS = 64
@@ -123,10 +126,20 @@ class Members:
         Time step in [s].
     spreads
         How far members differ from the model.
+    far
+        Winds of a tree apart from its anemometer, and the tree; None for one beside it.
 
     """
 
-    def __init__(self, observer: Observer, dt: float, spreads: Uncertainty) -> None:
+    def __init__(
+        self,
+        observer: Observer,
+        dt: float,
+        spreads: Uncertainty,
+        far: tuple[FarWind, SwaySimulator] | None = None,
+    ) -> None:
+        self._far = far
+        self._offsets = SAMPLES // N_MEMBERS * np.arange(N_MEMBERS)
         self._observer = observer
         self._dt = dt
         self.spreads = spreads
@@ -177,7 +190,11 @@ class Members:
         self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
         self._noise = np.zeros((self._gusts.shape[1], N_MEMBERS))
         self._unit = unknown.speed * GUST
-        self._draw_delays(unknown.limb_slopes, unknown.reach)
+        if self._far is None:
+            self._draw_delays(unknown.limb_slopes, unknown.reach)
+        else:
+            slopes = part_slopes(self._far[1], unknown.speed, n)
+            self._per_part = np.ascontiguousarray(slopes.reshape(-1, n).T)
 
     def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
         """Find the force on each member per wind of each delay, summed over its limbs."""
@@ -222,8 +239,13 @@ class Members:
             self.errors[:] = 0.0
             return
         self._steps += 1
-        self._blow(*wind)
-        self._reach_limbs(apart)
+        if self._far is not None:
+            winds = self._far[0].others(self._offsets, _ALONG, _ACROSS)
+            np.matmul(self._per_part, winds.reshape(N_MEMBERS, -1).T, out=self._late)
+            self._late *= self._drag
+        else:
+            self._blow(*wind)
+            self._reach_limbs(apart)
         total = self._force
         x = self.motion[0]
         v = self.motion[1]

@@ -6,7 +6,8 @@ A simulator whose motion sensors on the real tree correct.
 It steps in the wind alone, adds the correction of its observer, and takes it off again before the
 next step. What places, streams or records the tree reads the corrected state.
 
-The wind of the steps is the one expected at the limbs, given that of the anemometer: a share of
+The wind of the steps is the one expected at the limbs: by `far_wind` where there is no sensor and
+the distance of the anemometer is known; else given that of the anemometer: a share of
 each gust reaches the whole crown at once, the rest limb after limb (`crown_wind`). The gusts of
 each limb are for the sensors to tell.
 """
@@ -32,6 +33,7 @@ from tree_sway.core.checks import (
 )
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.run.far_crown import FarCrown
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator, WIND_REFUSED
 from tree_sway.core.setup.prepare import prepared
 from tree_sway.core.setup.reductions import TreeReductions
@@ -145,7 +147,7 @@ class ObservedTree(SwaySimulator):
         usual = 1.0 if chosen.is_far else USUAL_COHERENCE
         coherence = min(chosen.crown_coherence, usual)
         bare, wood = tree_and_species(tree, species)
-        whole = replace(chosen, crown_coherence=1.0)
+        whole = replace(chosen, crown_coherence=1.0, anemometer_distance=0.0)
         reductions = TreeReductions(bare, wood, whole)
         super().__init__(prepared(reductions, cache=cache))
         if not hasattr(self._bank.oscillators, 'swing') or self.settings.model == 0:
@@ -171,6 +173,9 @@ class ObservedTree(SwaySimulator):
         distance = within('upwind', upwind, 0.0, 1000.0, 'm')
         self.late_wind = LateWind(0.0 if self._places else distance)
         """The wind on its way from the anemometer."""
+        self._far_crown: FarCrown | None = None
+        if chosen.is_far:
+            self._far_crown = FarCrown(self.models[0], self._bank, None, chosen)
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
@@ -223,7 +228,8 @@ class ObservedTree(SwaySimulator):
         """Trees that the real one might be; None without a band."""
         if self._has_band:
             spreads = uncertainty_of(in_leaf=bool(self.settings.in_leaf))
-            self.members = Members(self.observer, 1.0 / rate, spreads)
+            far = None if self._far_crown is None else (self._far_crown.wind, self)
+            self.members = Members(self.observer, 1.0 / rate, spreads, far)
 
     @property
     def period(self) -> float:
@@ -311,10 +317,14 @@ class ObservedTree(SwaySimulator):
         self._held_wind = x, y, z
         x, y, z = self.late_wind.push(x, y, z, dt)
         self._last_wind = x, y, z
-        by_delay = self._crown.push(x, y, z, dt)
-        whole = np.dot(self._share, by_delay, out=self._whole)
-        np.dot(self._about_mean, by_delay, out=self._apart)
-        whole += self._last_wind
+        whole = self._whole
+        if self._far_crown is not None:
+            whole[:] = self._far_crown.push(x, y, z, dt)
+        else:
+            by_delay = self._crown.push(x, y, z, dt)
+            np.dot(self._share, by_delay, out=whole)
+            np.dot(self._about_mean, by_delay, out=self._apart)
+            whole += self._last_wind
         status = super().step(whole, dt)
         if refused:
             status |= WIND_REFUSED
@@ -403,7 +413,8 @@ class ObservedTree(SwaySimulator):
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
-        own = self.late_wind.memory(), self._crown.memory(), (self._added, self._learned)
+        far = () if self._far_crown is None else self._far_crown.wind.memory()
+        own = self.late_wind.memory(), self._crown.memory(), far, (self._added, self._learned)
         return tuple(chain(super()._memory(), *own))
 
     def set_state(self, state: TreeState) -> None:
@@ -416,6 +427,8 @@ class ObservedTree(SwaySimulator):
         super().reset()
         self.late_wind.reset()
         self._crown.reset()
+        if self._far_crown is not None:
+            self._far_crown.wind.reset()
         self._added[:] = 0.0
         self._dragged.reset()
         self.observer.reset()

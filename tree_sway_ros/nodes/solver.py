@@ -133,7 +133,7 @@ class SolverNode(TreeSwayNode):
     def _settings(self) -> Settings:
         """Return the settings of the model by the parameters."""
         return Settings(
-            **self.values.subset('model', 'gravity'),
+            **self.values.subset('model', 'gravity', 'anemometer_distance', 'gusts'),
             volume_stiffness=self.values['volume_rule.stiffness'],
             volume_damping=self.values['volume_rule.damping'],
             in_leaf=LEAVES[self.values['leaves']],

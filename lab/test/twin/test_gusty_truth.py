@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tree outside: its gusts have their spectrum and coherence, and in one wind it is the model's."""
+"""The tree outside: gusts have their spectrum and coherence; in one wind it is the model's."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_gusts_have_the_deviation_and_coherence_that_are_asked_for() -> None:
 def test_gusts_travel_with_the_mean_wind() -> None:
     wind = GustField(PLACES).record(600.0, RATE, np.random.default_rng(4))[:, :, 0] - 7.0
     lags = np.arange(60)
-    alike = [np.mean(wind[: 5900, 0] * wind[lag : 5900 + lag, 2]) for lag in lags]
+    alike = [np.mean(wind[:5900, 0] * wind[lag : 5900 + lag, 2]) for lag in lags]
     assert lags[int(np.argmax(alike))] / RATE == pytest.approx(20.0 / 7.0, abs=0.4)
 
 

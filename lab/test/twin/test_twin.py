@@ -109,8 +109,8 @@ def test_one_sensor_takes_away_most_of_the_error(capsys: pytest.CaptureFixture[s
 def test_a_sensor_finds_how_late_gusts_are_that_are_measured_upwind(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    words = 'lab twin --easy --model 90 --seconds 45 --sensors 0 1 --upwind 30 --without-band --'.split()
-    assert main([*words, 'spruce 4 6']) == 0
+    words = 'lab twin --easy --model 90 --seconds 45 --upwind 30 --without-band'.split()
+    assert main([*words, '--sensors', '0', '1', '--', 'spruce 4 6']) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     errors = {row['sensors']: float(row['error']) for row in rows}
     assert errors['1'] < 0.4 * errors['0']
@@ -142,7 +142,7 @@ def test_a_told_distance_of_the_anemometer_is_for_a_tree_without_sensors() -> No
 def test_a_sensor_on_a_limb_tells_one_period_of_sway_from_the_next(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    words = 'lab twin crooked --easy --model 120 --seconds 60 --sensors 1 --seed 415 --upwind 30'.split()
-    assert main([*words, '--advised', '--without-band']) == 0
+    words = 'lab twin crooked --easy --model 120 --seconds 60 --sensors 1 --seed 415'.split()
+    assert main([*words, '--upwind', '30', '--advised', '--without-band']) == 0
     *_, last = csv.DictReader(capsys.readouterr().out.splitlines())
     assert last['notes'].startswith('gusts 4.')

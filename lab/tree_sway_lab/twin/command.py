@@ -7,8 +7,10 @@ The true tree is made up: every segment a rigid body in a field of gusts, beside
 damping and drag drawn by the seed (`gusty_truth`). Without a tree there are six kinds. With
 ``--easy`` it is the model with all coordinates, its wood softer by a fifth, its damping higher by
 half, and gusts that reach limb after limb with a copy of the measured wind: kinder than a tree
-outdoors, as what shakes the crown is in the measured wind. Each row has one number of sensors: dynamic error
-of all tips and roughness, at once and smoothed, the correlation of the stem's tip, the share of
+outdoors, as what shakes the crown is in the measured wind.
+
+Each row has one number of sensors: dynamic error of all tips and roughness, at once and smoothed,
+the correlation of the stem's tip, the share of
 the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
 and the time per step of the thread that finds gains, mountings and fits beside the steps.
 ``sensor r`` is the correlation at the first sensor, then follow the times at which it was first
@@ -17,7 +19,12 @@ those that begin later from 90 s on. The model knows how far the mast is.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip (outdoors at the frequency that
-is best too).
+is best too; fitted to what it is scored on, it is below the bound where the record is short).
+
+Outdoors, ``expected`` and ``sample`` are the simulator that knows where the mast stands, the last
+columns the power of all tips over the true one in four bands. ``(known tree)`` has the wood,
+damping and drag of the true one, and ``bound`` the wind too that all of the mast's record tells by
+the true law: no estimate from the mast's wind alone errs less, but by chance.
 
 One tree of one wood tells little about a band: what the model errs in its lean stays for the whole
 record, so that a band of 80 % holds it always or never. ``--drawn`` draws wood, damping and drag
@@ -31,7 +38,6 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from itertools import product
-import math
 import sys
 
 import numpy as np
@@ -94,7 +100,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'tree',
         nargs='*',
         help='kind of the laboratory, or species, height and seed, as "oak 9 4"; or the folder of '
-        'a record of wind and motion, as tree-sway record writes it; by default six kinds of --seed',
+        'a record of wind and motion, as tree-sway record writes it; without it, six kinds of '
+        '--seed',
     )
     add('--easy', action='store_true', help='a truth that has the measured wind in its crown')
     add(
@@ -203,6 +210,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
+        apart: dict[str, float] = {}
         if arguments.easy:
             true = true_motion(tree, species, places, each, in_leaf=in_leaf, model=model)
             scores.setdefault('U^2', []).append(squared_score(true, frequency))
@@ -219,16 +227,16 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             best = min(passed, key=lambda score: score.error)
             scores.setdefault('U^2', []).append(best)
             distance, bearing = mast_of(outside)
-            apart = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
-            for motion in ('expected', 'sample'):
-                far = make_simulator(tree, species, in_leaf=in_leaf, motion=motion, **apart)
-                scores.setdefault(motion, []).append(plain_score(far, true))
+            apart |= {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+            for gusts in ('expected', 'sample'):
+                far = make_simulator(tree, species, in_leaf=in_leaf, gusts=gusts, **apart)
+                scores.setdefault(gusts, []).append(plain_score(far, true))
             true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
             told = true._replace(wind=told_wind(tree, outside, true.wind))
             scores.setdefault('bound', []).append(plain_score(true_one, told))
-            for motion in ('expected', 'sample'):
-                far = known_tree(tree, species, outside, in_leaf=in_leaf, motion=motion, **apart)
-                scores.setdefault(f'{motion} (known tree)', []).append(plain_score(far, true))
+            for gusts in ('expected', 'sample'):
+                far = known_tree(tree, species, outside, in_leaf=in_leaf, gusts=gusts, **apart)
+                scores.setdefault(f'{gusts} (known tree)', []).append(plain_score(far, true))
         known.reset()
         scores.setdefault('model', []).append(plain_score(known, true))
         for count, fault in product(arguments.sensors, arguments.fault):
@@ -242,8 +250,8 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 has_band=not arguments.without_band,
                 known=each if arguments.known else None,
                 upwind=each.upwind if arguments.tell_upwind else 0.0,
+                **apart,
                 fault=fault,
-                apart=0.0 if arguments.easy else math.hypot(*arguments.mast),
             )
             named = str(count) if fault == 'none' else f'{count} {fault}'
             scores.setdefault(named, []).append(score)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS
 
 DECAYS = np.array([3.0, 10.0, 10.0])
@@ -57,7 +57,8 @@ class GustField:
         """One-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies [Hz], (f, 3)."""
         time = self.length * SCALE_RATIOS / SCALE_RATIOS[0] / self.speed
         variance = np.square(self.intensity * self.speed * _DEVIATIONS)
-        return np.asarray(variance * 4.0 * time / (1.0 + 6.0 * frequency[:, None] * time) ** (5 / 3))
+        falling = (1.0 + 6.0 * frequency[:, None] * time) ** (5.0 / 3.0)
+        return np.asarray(variance * 4.0 * time / falling)
 
     def coherence(self, frequency: Floats) -> Floats:
         """Root coherence of every pair of places, without travel, (f, p, p)."""
@@ -108,6 +109,6 @@ def spread_points(places: Floats, weight: Floats, count: int) -> Floats:
     return points
 
 
-def nearest_of(places: Floats, points: Floats) -> Floats:
+def nearest_of(places: Floats, points: Floats) -> Ints:
     """Return the number of the point nearest to each place, (n,)."""
     return np.asarray(np.linalg.norm(places[:, None] - points, axis=2).argmin(axis=1))

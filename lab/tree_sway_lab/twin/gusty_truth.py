@@ -109,7 +109,7 @@ class Outside:
 
 
 def mast_of(outside: Outside) -> tuple[float, float]:
-    """Distance [m], 0.1 on top of the tree, and bearing [rad] of the mast as settings have them."""
+    """Return distance [m], 0.1 on top of the tree, and bearing [rad] of the mast."""
     east, north, _ = outside.mast
     return max(math.hypot(east, north), 0.1), math.atan2(east, north)
 

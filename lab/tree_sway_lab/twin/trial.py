@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 import time
+from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
@@ -159,12 +160,13 @@ def twin_score(
     upwind: float = 0.0,
     known: Circumstances | None = None,
     fault: str = 'none',
-    apart: float = 0.0,
+    **changes: Any,
 ) -> Score:
     """
-    Score a tree that sensors correct, told how far upwind, or else apart, the anemometer is [m].
+    Score a tree that sensors correct, told how far upwind the anemometer is [m].
 
-    With what is ``known`` of the true tree, its wood and damping are the model's.
+    Further settings are those of `ObservedTree`. With what is ``known`` of
+    the true tree, its wood and damping are the model's.
     """
     damping_ratio = None
     if known is not None:
@@ -182,7 +184,7 @@ def twin_score(
         has_band=has_band,
         upwind=upwind,
         submit=submit_beside,
-        anemometer_distance=apart,
+        **changes,
     )
     rng = np.random.default_rng(seed)
     for name in places:

@@ -13,7 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, refuse_other_kind, within
-from tree_sway.core.wind.far_wind import MOTIONS
+from tree_sway.core.wind.far_wind import GUSTS
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
@@ -45,7 +45,7 @@ _RANGES = {
     'crown_coherence': (0.0, 1.0, '', False),
     'anemometer_distance': (0.0, 1000.0, 'm', False),
     'anemometer_bearing': (-1e3, 1e3, 'rad', False),
-    'motion_seed': (0, 2**31, '', False),
+    'gust_seed': (0, 2**31, '', False),
     'root_stiffness': (0.0, math.inf, 'N m/rad', True),
     'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
 }
@@ -80,15 +80,15 @@ class Settings:
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
         after its own delay (`crown_wind`). 1 is one wind for the whole crown.
     anemometer_distance
-        Distance in [m] from the tree to the anemometer, which is as high as the tree: farther away,
-        less of a gust is the same (`far_wind`). 0 for one wind at both. It takes the place of
+        Distance in [m] from the tree to the anemometer, which is as high as the tree: the farther,
+        the less of a gust is the same (`far_wind`). 0 for one wind at both. It takes the place of
         `crown_coherence`.
     anemometer_bearing
         Where the anemometer stands from the tree, clockwise from north in [rad]; None if unknown.
-    motion
+    gusts
         Wind of a tree apart from its anemometer: the one ``expected``, which has the least error
         and is smooth; a ``sample``, one that may be, as rough as the real one; or ``measured``.
-    motion_seed
+    gust_seed
         Seed of a sample: two sites with the same one see the same gusts.
     enrich
         Branches with further shapes and twists, on all models but ``branch``: ``none``, the
@@ -114,8 +114,8 @@ class Settings:
     crown_coherence: float = 1.0
     anemometer_distance: float = 0.0
     anemometer_bearing: float | None = None
-    motion: str = 'expected'
-    motion_seed: int = 0
+    gusts: str = 'expected'
+    gust_seed: int = 0
     enrich: str = 'needed'
     root_stiffness: float | None = None
     leaf_mass: Floats | None = None
@@ -131,7 +131,7 @@ class Settings:
             if value is not None or known[name].default is not None:
                 within(name, value, low, high, unit, above=above)
         one_of('enrich', self.enrich, ENRICHED)
-        one_of('motion', self.motion, MOTIONS)
+        one_of('gusts', self.gusts, GUSTS)
         one_of('in_leaf', self.in_leaf, (True, False, None))
         refuse_other_kind('profile', self.profile, WindProfile, 'give WindProfile(...)')
         if self.volume_stiffness and self.model != 'branch':
@@ -148,7 +148,7 @@ class Settings:
     @property
     def is_far(self) -> bool:
         """Whether the tree stands apart from its anemometer (`far_wind`)."""
-        return self.anemometer_distance > 0.0 and self.motion != 'measured'
+        return self.anemometer_distance > 0.0 and self.gusts != 'measured'
 
     @property
     def has_limb_winds(self) -> bool:

@@ -310,7 +310,7 @@ class SwayModel:
         LIMBS, 'b', '',
         'number of the delay with which gusts reach each branch',
     )  # fmt: skip
-    limb_spread: Floats = _optional(LIMBS, '1', 'm', 'longest delay times the wind speed')
+    limb_spread: Floats = _optional(LIMBS, '1', 'm', 'longest delay times the wind speed; 0 where the winds of limbs are given')
     limb_share: Floats = _optional(LIMBS, 'delays', '', 'share of these limbs in the load')
     limb_harmonics: Floats = _optional(
         LIMB_LOADS, f'delays, {N_HARMONICS}, m', 'm^3',

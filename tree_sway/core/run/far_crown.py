@@ -13,6 +13,7 @@ from tree_sway.core.wind.crown_wind import N_DELAYS, parts_of
 from tree_sway.core.wind.far_wind import FarWind
 
 if TYPE_CHECKING:
+    from tree_sway.core.model.settings import Settings
     from tree_sway.core.model.sway_model import SwayModel
     from tree_sway.core.run.bank import Bank
     from tree_sway.core.run.crown_gusts import CrownGusts
@@ -30,9 +31,13 @@ It is half the mean distance of two places in it: a part moves most at its end.
 class FarCrown:
     """The wind of a crown; that of its parts is written where the step of the model reads it."""
 
-    def __init__(self, model: SwayModel, bank: Bank, gusts: CrownGusts | None) -> None:
-        """Start without wind."""
-        settings, branches = model.settings, bank.branches
+    def __init__(
+        self, model: SwayModel, bank: Bank, gusts: CrownGusts | None, settings: Settings
+    ) -> None:
+        """Start without wind; observed trees, whose models have one wind, draw what may be too."""
+        branches = bank.branches
+        is_sample = settings.gusts == 'sample' and settings is model.settings
+        is_drawn = is_sample or settings is not model.settings
         tree = model.tree
         wood = parts_of(tree)
         load = wood.share
@@ -45,7 +50,8 @@ class FarCrown:
             load / load.sum(),
             settings.anemometer_distance,
             settings.anemometer_bearing,
-            int(settings.motion_seed) if settings.motion == 'sample' else None,
+            int(settings.gust_seed) if is_drawn else None,
+            is_sample=is_sample,
         )
         self._apart = self._read_by_step(bank, gusts)
 
@@ -60,7 +66,8 @@ class FarCrown:
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
         centre = 0.5 * (tree.start + tree.end)
-        middle = np.stack([np.bincount(part, area * x, N_DELAYS) / total for x in centre.T], axis=1)
+        sums = [np.bincount(part, area * x, N_DELAYS) for x in centre.T]
+        middle = np.stack(sums, axis=1) / total[:, None]
         square = np.square(centre - middle[part]).sum(axis=1)
         radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
         return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius

@@ -103,7 +103,7 @@ class SwaySimulator:
         if self.settings.is_far:
             from tree_sway.core.run.far_crown import FarCrown
 
-            self._far = FarCrown(prepared, self._bank, self._gusts)
+            self._far = FarCrown(prepared, self._bank, self._gusts, self.settings)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan

@@ -21,7 +21,7 @@ from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
-from tree_sway.errors import inside
+from tree_sway.errors import inside, ParameterError
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,12 +159,30 @@ class Scene(PlacedTrees):
         """
         chosen = settings_with(settings, changes)
         if not self.is_one_tree:
+            if chosen.is_far:
+                raise ParameterError(
+                    f'a distance to the anemometer for {len(self.trees)} trees',
+                    where='anemometer_distance',
+                    cure='leave it out: their gusts travel from the `anemometer` of the scene',
+                )
             return SceneSimulator(
                 self, chosen, tolerance=tolerance, cache=cache, progress=progress
             )
         one = self.trees[0]
-        where = one.settings_where_it_stands(chosen)
+        where = self._apart(one.settings_where_it_stands(chosen))
         return make_simulator(one.placed(), one.species, where, tolerance=tolerance, cache=cache)
+
+    def _apart(self, settings: Settings) -> Settings:
+        """Return the settings of the only tree, apart from an anemometer whose place is known."""
+        if self.anemometer is None or settings.anemometer_distance > 0.0:
+            return settings
+        (tree,) = self.trees
+        east, north = self.anemometer[0] - tree.x, self.anemometer[1] - tree.y
+        return replace(
+            settings,
+            anemometer_distance=math.hypot(east, north),
+            anemometer_bearing=math.atan2(east, north),
+        )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
         """

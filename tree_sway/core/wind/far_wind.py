@@ -21,8 +21,8 @@ Stationary Time Series) on these stages; five of them are within 1 % of its erro
 know still loads the tree: where the wind is the expected one, its missing variance is added to the
 square of the speed, as E[U^2] = E[U]^2 + var U.
 
-A sample adds what may be: a drawn field, whose limbs share gusts by the same law and whose spectrum
-is ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
+A sample adds what may be: a drawn field, whose limbs share gusts by the same law, of the spectrum
+``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
 turbulence, and follows the measured one as far as that tells.
 """
 
@@ -32,7 +32,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
 DECAYS = np.array([3.0, 10.0, 10.0])
@@ -41,7 +41,7 @@ DECAYS = np.array([3.0, 10.0, 10.0])
 LENGTHS = np.array([1.0, 4.0, 16.0, 64.0, 256.0])
 """Lengths of the low-passes [m]."""
 
-MOTIONS = ('expected', 'sample', 'measured')
+GUSTS = ('expected', 'sample', 'measured')
 """Winds of a tree apart from its anemometer: least error, one that may be, or as measured."""
 
 _WITHIN = 9.0
@@ -54,7 +54,10 @@ _WAVENUMBERS = np.geomspace(1e-4, 2.0, 300)
 _DIRECTIONS = 36
 _AVERAGED = 600.0
 _SLOWEST = 0.5
-_SAMPLES, _SPACING = 1 << 14, 0.25
+SAMPLES = 1 << 14
+"""Number of samples of a drawn field, after which it repeats: 4 km of wind."""
+
+_SPACING = 0.25
 _HEIGHT = 10.0
 """Height in [m] whose turbulence has the lengths of the spectrum: a usual anemometer's."""
 
@@ -77,7 +80,9 @@ class FarWind:
     bearing
         Where it stands from the tree, clockwise from north in [rad]; None if that is not known.
     seed
-        Seed of the sample; None for the expected wind.
+        Seed of what is drawn; None without.
+    is_sample
+        Whether the wind is a sample and not the expected one.
 
     """
 
@@ -89,7 +94,10 @@ class FarWind:
         distance: float,
         bearing: float | None = None,
         seed: int | None = None,
+        *,
+        is_sample: bool = False,
     ) -> None:
+        self._is_sample = is_sample
         self._share = share
         self._weights = _weights(places, distance, bearing)
         self._memory = np.zeros((len(LENGTHS) + 4, 3))
@@ -122,7 +130,7 @@ class FarWind:
         passed += keep[:, None] * (wind - passed)
         found = self._weights_in(east, north) @ (passed - mean)
         told = self._share @ found
-        if self._rest is None:
+        if not self._is_sample:
             self._told += share * (told * told - self._told)
             lost = np.maximum(self._variance - self._told, 0.0)
             found += mean
@@ -136,6 +144,19 @@ class FarWind:
         whole = self._share @ found
         np.subtract(found, whole, out=apart)
         return np.asarray(whole)
+
+    def others(self, offsets: Ints, along: float, across: float) -> Floats:
+        """
+        Winds that may be beside the expected one: other stretches of the drawn field, (e, g, 3).
+
+        Offsets are numbers of its samples, (e,); the winds are times the factors along the mean
+        wind, and across it and up.
+        """
+        assert self._rest is not None
+        east, north, _ = self._mean.tolist()
+        turned = np.array([[along], [across], [across]]) * self._turned(east, north)
+        first = int(self._run[0] / _SPACING)
+        return np.asarray(self._rest[(first + offsets) % SAMPLES] @ turned)
 
     def _weights_in(self, east: float, north: float) -> Floats:
         """Weights of each part in a mean wind [m/s], (g, k)."""
@@ -152,8 +173,8 @@ class FarWind:
         assert self._rest is not None
         at = run / _SPACING
         first = int(at)
-        low = self._rest[first % _SAMPLES]
-        return np.asarray(low + (at - first) * (self._rest[(first + 1) % _SAMPLES] - low))
+        low = self._rest[first % SAMPLES]
+        return np.asarray(low + (at - first) * (self._rest[(first + 1) % SAMPLES] - low))
 
     def _turned(self, east: float, north: float) -> Floats:
         """Wind per drawn one along the mean wind, across it and up, (3, 3)."""
@@ -211,7 +232,7 @@ def _coherences(
 def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Floats:
     """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
     count = len(places)
-    wavenumbers = np.arange(1, _SAMPLES // 2) / (_SAMPLES * _SPACING)
+    wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
     stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
     told = np.mean([np.square(np.abs(stages @ each.T)) for each in weights], axis=0)
     acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * size)
@@ -220,11 +241,11 @@ def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Flo
     shared = np.exp(-_WITHIN * wavenumbers[:, None, None] * apart) + 1e-9 * np.eye(count)
     root = np.linalg.cholesky(shared)
     spectra = Turbulence(1.0, _HEIGHT, 1.0).spectrum(wavenumbers)
-    amplitudes = _SAMPLES * np.sqrt(0.5 * spectra / spectra.sum(axis=0))
+    amplitudes = SAMPLES * np.sqrt(0.5 * spectra / spectra.sum(axis=0))
     phases = np.exp(2j * np.pi * np.random.default_rng(seed).random((3, len(wavenumbers), count)))
-    rest = np.empty((_SAMPLES, count, 3), dtype=np.float32)
+    rest = np.empty((SAMPLES, count, 3), dtype=np.float32)
     for axis, phase in enumerate(phases):
-        lines = np.zeros((_SAMPLES // 2 + 1, count), dtype=np.complex128)
+        lines = np.zeros((SAMPLES // 2 + 1, count), dtype=np.complex128)
         lines[1:-1] = np.einsum('kij,kj->ki', root, phase) * missing * amplitudes[:, axis, None]
-        rest[..., axis] = np.fft.irfft(lines, _SAMPLES, axis=0)
+        rest[..., axis] = np.fft.irfft(lines, SAMPLES, axis=0)
     return rest
