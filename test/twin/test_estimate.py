@@ -23,7 +23,9 @@ class Sensors:
 
     def __init__(self) -> None:
         self.beyond, self.is_known = np.zeros((2, 9)), np.ones(2, dtype=np.bool_)
-        self.each = [NativeSensor(dt=DT, is_mounted=1, in_use=1, excess=1.0, usual=1.0) for _ in range(2)]
+        self.each = [
+            NativeSensor(dt=DT, is_mounted=1, in_use=1, excess=1.0, usual=1.0) for _ in range(2)
+        ]
         self.native = NativeReadings(
             sensors=2, sensor=np.array([each.at for each in self.each], dtype=np.int64),
             beyond=self.beyond, is_known=self.is_known,

@@ -171,7 +171,7 @@ class ObservedTree(SwaySimulator):
         self.late_wind = LateWind(0.0 if self._places else distance)
         """The wind on its way from the anemometer."""
         self._far_crown: FarCrown | None = None
-        if chosen.is_far and not self._places:
+        if chosen.is_far:
             self._far_crown = FarCrown(self.models[0], self._bank, None, chosen)
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)

@@ -197,7 +197,8 @@ class SensorTrack:
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf, is_awaited=1,
+            newest=sensor.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf,
+            is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
         self.fitted_motion = self.watched_motion = self._moved[:2]

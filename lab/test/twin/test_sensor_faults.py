@@ -27,7 +27,7 @@ def truth() -> TrueMotion:
 def scored(fault: str, n_sensors: int = 1) -> Score:
     return twin_score(
         TREE, SPECIES, truth(), [AT][:n_sensors], in_leaf=False, has_band=False, fault=fault,
-        apart=12.6,
+        anemometer_distance=12.6,
     )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ Fault = Callable[[SensedMotion, np.random.Generator], SensedMotion]
 
 
 def _spikes(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
-    """One sample in a hundred is off by 8 g, in any direction."""
+    """Throw one sample in a hundred off by 8 g, in any direction."""
     away = rng.normal(size=motion.acceleration.shape)
     away *= _SPIKE / np.linalg.norm(away, axis=1, keepdims=True)
     away[rng.random(len(away)) > 0.01] = 0.0
@@ -28,7 +28,7 @@ def _spikes(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
 
 
 def _stuck(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
-    """It repeats its last numbers."""
+    """Repeat the last numbers."""
     last = int(np.searchsorted(motion.time, FROM))
     acceleration, rate = motion.acceleration.copy(), motion.rate.copy()
     acceleration[last:], rate[last:] = acceleration[last], rate[last]
@@ -36,7 +36,7 @@ def _stuck(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
 
 
 def _noise(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
-    """Its samples are those of nothing."""
+    """Measure noise, as with a broken solder joint."""
     later = motion.time >= FROM
     acceleration, rate = motion.acceleration.copy(), motion.rate.copy()
     acceleration[later] += rng.normal(size=(int(later.sum()), 3))
@@ -45,7 +45,7 @@ def _noise(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
 
 
 def _loose(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
-    """It falls off its belt, and hangs another way."""
+    """Fall off the belt, and hang another way."""
     later = motion.time >= FROM
     acceleration, rate = motion.acceleration.copy(), motion.rate.copy()
     acceleration[later] = acceleration[later][:, [1, 2, 0]]

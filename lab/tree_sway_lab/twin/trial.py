@@ -161,7 +161,7 @@ def twin_score(
     **changes: Any,
 ) -> Score:
     """
-    Score a tree that sensors correct, told how far upwind, or else apart, the anemometer is [m].
+    Score a tree that sensors correct, told how far upwind the anemometer is [m].
 
     Further settings are those of `ObservedTree`. With what is ``known`` of
     the true tree, its wood and damping are the model's.
