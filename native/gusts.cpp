@@ -131,7 +131,9 @@ extern "C" {
 void sway_past_winds(double *history, size_t size, double finest, const double *wanted,
                      double *delays, size_t count, double longest, const double *wind, double dt,
                      double *out) {
+#ifndef SWAY_PAGE
   if (size == 0) return;  // no past is kept, and nothing is written
+#endif
   const History own = {history, history + 1, history + 2, static_cast<int64_t>(size)};
   if (finest >= 0.0) remember(own, finest, wind, dt);
   past_winds(own, wanted, delays, static_cast<int64_t>(count), longest, wind, dt, out);

@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.signal import coherence
-from tree_sway.core.setup.one_thread import one_thread
 from tree_sway_lab.twin.gust_field import GustField, spread_points
 from tree_sway_lab.twin.gusty_truth import gusty_motion, Outside
 from tree_sway_lab.twin.trial import plain_score

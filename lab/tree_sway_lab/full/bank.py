@@ -31,7 +31,7 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.drag import drag_density
 from tree_sway.core.model import Branches, SwayModel, WIDTH
 from tree_sway.core.oscillators import LOAD_MAX
-from tree_sway.core.run import FARTHEST, middle_of_step, ModalCoordinates
+from tree_sway.core.run import FARTHEST, ModalCoordinates
 from tree_sway.core.setup import MOST_CHANGE
 from tree_sway_lab.full.branch_loads import wind_moments
 from tree_sway_lab.full.load_layouts import Loads, WORK, Works
@@ -143,7 +143,7 @@ class FullBank(ModalCoordinates):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
-        middle = middle_of_step(self.law, dt)
+        middle = self.law.middle_of_step(dt)
         self.half[:] = 0.0
         self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt

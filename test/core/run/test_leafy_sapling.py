@@ -8,7 +8,6 @@ from drawn_trees import Sketch, UP
 import numpy as np
 import pytest
 
-from tree_sway.core.run.modal_coordinates import middle_of_step
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.wood import Species
 
@@ -41,12 +40,12 @@ def simulator(tree, model):
 def test_the_rate_at_the_middle_of_a_step_follows_the_force(sapling, dt):
     bank = simulator(sapling, 60).banks[0].oscillators
     bank.set_step(dt)
-    assert (middle_of_step(bank.modal.law, dt)[5] > 0.0).all()
+    assert (bank.modal.law.middle_of_step(dt)[5] > 0.0).all()
 
 
 def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
     bank = simulator(sapling, 12).banks[0].oscillators
     bank.modal.set_time_step(1e-3)
-    exact, half = bank.modal.half.T, middle_of_step(bank.modal.law, 1e-3)
+    exact, half = bank.modal.half.T, bank.modal.law.middle_of_step(1e-3)
     assert (half[[0, 1, 3, 4]] == exact[[0, 1, 4, 5]]).all()
     assert (half[[2, 5]] == exact[[2, 6]] + exact[[3, 7]]).all()

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from tree_sway.core.run.clamp_watch import fewer as fewer
     from tree_sway.core.run.far_crown import FarCrown as FarCrown
     from tree_sway.core.run.modal_coordinates import FARTHEST as FARTHEST
-    from tree_sway.core.run.modal_coordinates import middle_of_step as middle_of_step
     from tree_sway.core.run.modal_coordinates import ModalCoordinates as ModalCoordinates
     from tree_sway.core.run.outcome import Outcome as Outcome
     from tree_sway.core.run.pushes import MOST_PUSHES as MOST_PUSHES

@@ -36,6 +36,20 @@ class Propagators(NamedTuple):
     whole: Floats
     half: Floats
 
+    def middle_of_step(self, dt: float) -> Floats:
+        """
+        Return displacement and rate at the middle of a step by those before and force, (6, m).
+
+        The load is taken from there, where the rate of a coordinate that swings nearly once a step
+        or more may be opposite to its force. Strong drag, whose implicit part needs a rate that
+        follows the force, would then feed the motion. The middle state of such coordinates is that
+        of an implicit Euler step, whose rate always follows the force.
+        """
+        half = self.half.T[[0, 1, 2, 4, 5, 6]]
+        half[[2, 5]] += self.half.T[[3, 7]]
+        euler = _implicit_euler(self.damping, self.stiffness, 0.5 * dt)
+        return np.where(half[5] < euler[5], euler, half)
+
 
 class ModalCoordinates:
     """
@@ -112,21 +126,6 @@ class ModalCoordinates:
     def projected(self, x: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Project key rotations and their rates, (N,), on the coordinates, (m,)."""
         return self.momentum @ x, self.momentum @ v
-
-
-def middle_of_step(law: Propagators, dt: float) -> Floats:
-    """
-    Return displacement and rate at the middle of a step by displacement, rate and force, (6, m).
-
-    The load is taken from there, where the rate of a coordinate that swings nearly once a step or
-    more may be opposite to its force. Strong drag, whose implicit part needs a rate that follows
-    the force, would then feed the motion. The middle state of such coordinates is that of an
-    implicit Euler step, whose rate always follows the force.
-    """
-    half = law.half.T[[0, 1, 2, 4, 5, 6]]
-    half[[2, 5]] += law.half.T[[3, 7]]
-    euler = _implicit_euler(law.damping, law.stiffness, 0.5 * dt)
-    return np.where(half[5] < euler[5], euler, half)
 
 
 def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.native import NativeStand, States
-from tree_sway.core.run.modal_coordinates import middle_of_step, ModalCoordinates
+from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class TableOscillators:
         """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
         count = self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
-        per_force = middle_of_step(self.modal.law, self.modal.dt)[5]
+        per_force = self.modal.law.middle_of_step(self.modal.dt)[5]
         implicit = 1.0 - self._state.diagonal[self.number, :count] * per_force
         return np.asarray(self.modal.whole / implicit[:, None])
 

@@ -3,9 +3,10 @@
 """
 Gusts in space: from the anemometer to a tree, and from limb to limb.
 
-`GustHistory` lets gusts travel to the trees of a scene (Taylor 1938), `CrownWind` from limb to limb of
-a crown. `FarWind` is the wind of a tree that stands apart from its anemometer, which no longer knows
-the small gusts there: the expected wind, or a sample of what may be (Davenport 1961; Wiener 1949).
+`GustHistory` lets gusts travel to the trees of a scene (Taylor 1938), `CrownWind` from limb to
+limb of a crown. `FarWind` is the wind of a tree that stands apart from its anemometer, which no
+longer knows the small gusts there: the expected wind, or a sample of what may be (Davenport 1961;
+Wiener 1949).
 """
 
 from typing import TYPE_CHECKING

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.far_wind import FarWind
+from tree_sway.core.wind.gusts.far_wind import FarWind
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 DT = 1.0 / 20.0
