@@ -312,7 +312,8 @@ def test_the_band_holds_the_real_tree_and_a_sensor_narrows_it() -> None:
     along, across = widths[1] / widths[0]
     # A sensor does not tell how far the tree leans in its mean, along the wind.
     assert along < 1.0
-    assert across < 0.7
+    # Across, gusts that no sensor foresees remain, with the whole deviation of the wind.
+    assert across < 0.75
 
 
 def test_the_band_of_the_sway_holds_that_of_the_real_tree() -> None:
