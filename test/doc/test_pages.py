@@ -23,6 +23,7 @@ import sys
 import pytest
 
 from tree_sway.commands import cli
+from tree_sway_ros.parameters import ANNEXES
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').rglob('*.md'))]
@@ -160,9 +161,10 @@ LAUNCHED = re.compile(r'sway\.launch\.py(.*)|launch_arguments=\{(.*?)\}')
 def test_its_launch_arguments_are_arguments(page: Path) -> None:
     declared = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
     known = set(re.findall(r"^    \(\s*'(\w+)',\s*'", declared, re.MULTILINE))
-    of_parameters = declared.partition('OF_PARAMETERS = {')[2].partition('}')[0]
+    of_parameters = declared.partition('OF_PARAMETERS = {')[2].partition('\n}')[0]
     known |= set(re.findall(r"^    '(\w+)': \(", of_parameters, re.MULTILINE))
-    assert {'tree', 'pose'} <= known
+    known |= {each.name for table in ANNEXES.values() for each in table}
+    assert {'tree', 'pose', 'imu'} <= known
     for typed, included in LAUNCHED.findall(page.read_text(encoding='utf-8')):
         given = {*re.findall(r'(\w+):=', typed), *re.findall(r'"(\w+)":', included)}
         assert given <= known, typed or included

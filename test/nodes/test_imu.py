@@ -259,7 +259,7 @@ def test_messages_move_a_tree_as_a_recording_does():
     tree, at = builtin_tree('goldcrest'), 'segment:3'
     softer = replace(species_named('goldcrest'), modulus=6.0e9)
     rng, dt = np.random.default_rng(21), PERIOD * 1e-9
-    wind = simulate_turbulence(4.0, rate=60.0, duration=30.0, rng=rng)
+    wind = simulate_turbulence(4.0, rate=60.0, duration=40.0, rng=rng)
     true, poses = make_simulator(tree, softer, crown_coherence=0.3), np.empty((len(wind), 7))
     for k, each in enumerate(wind):
         true.step(each, dt)
@@ -291,7 +291,7 @@ def test_messages_move_a_tree_as_a_recording_does():
             run.offer(BEGIN + k * PERIOD, tuple(each), BEGIN + k * PERIOD)
         run.advance(BEGIN + k * PERIOD, delay=dt)
     assert twin.observer.is_active
-    later = slice(27 * 60, len(known.tips) - 12)
+    later = slice(37 * 60, len(known.tips) - 12)
     wanted = known.tips[later, 0]
     found = np.array(tips)
     # A period of the wind of six steps, a delay of one, and a first step at the first stamp.

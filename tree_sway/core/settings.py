@@ -14,8 +14,10 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, refuse_other_kind, within
 from tree_sway.core.wind import FASTEST_WIND, WindProfile
-from tree_sway.core.wind.gusts import GUSTS
 from tree_sway.errors import nearest, ParameterError
+
+GUSTS = ('expected', 'sample', 'measured')
+"""Winds of a tree apart from its anemometer: least error, one that may be, or as measured."""
 
 USUAL = 60
 """Default number of coordinates."""

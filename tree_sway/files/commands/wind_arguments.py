@@ -11,8 +11,8 @@ import sys
 from typing import Any
 
 from tree_sway.commands import refuse_unused
+from tree_sway.core.settings import GUSTS
 from tree_sway.core.wind import shorter_than
-from tree_sway.core.wind.gusts import GUSTS
 from tree_sway.errors import ParameterError
 from tree_sway.files import reader_options
 from tree_sway.files.commands.arguments import (

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.gusts.crown_wind import parts_of as parts_of
     from tree_sway.core.wind.gusts.crown_wind import USUAL_COHERENCE as USUAL_COHERENCE
     from tree_sway.core.wind.gusts.far_wind import FarWind as FarWind
-    from tree_sway.core.wind.gusts.far_wind import GUSTS as GUSTS
     from tree_sway.core.wind.gusts.far_wind import SAMPLES as SAMPLES
     from tree_sway.core.wind.gusts.gust_travel import GustHistory as GustHistory
     from tree_sway.core.wind.gusts.wind_history import follow_mean as follow_mean

@@ -41,9 +41,6 @@ DECAYS = np.array([3.0, 10.0, 10.0])
 LENGTHS = np.array([1.0, 4.0, 16.0, 64.0, 256.0])
 """Lengths of the low-passes [m]."""
 
-GUSTS = ('expected', 'sample', 'measured')
-"""Winds of a tree apart from its anemometer: least error, one that may be, or as measured."""
-
 _WITHIN = 9.0
 """
 Davenport's C among the parts of a crown, all directions alike [-]: 10, and 7 along the wind, where
