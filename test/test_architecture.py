@@ -171,8 +171,8 @@ def test_a_face_is_small_and_every_name_on_it_is_there() -> None:
 
 
 def test_a_name_that_a_face_does_not_offer_is_refused() -> None:
-    with pytest.raises(AttributeError, match=r"'tree_sway\.core\.tree' has no attribute 'Treee'"):
-        import_module('tree_sway.core.tree').Treee  # noqa: B018
+    with pytest.raises(AttributeError, match=r"'tree_sway\.core\.tree' has no attribute 'Shrub'"):
+        import_module('tree_sway.core.tree').Shrub  # noqa: B018
 
 
 def test_a_package_imports_none_above_it() -> None:
