@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 from tempfile import TemporaryDirectory
+import zlib
 
 from setuptools import Command, Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
@@ -116,6 +117,9 @@ class BuildNative(build_ext):
         # Such as -fsanitize=address,undefined, which .ci/run tests the core with.
         more = os.environ.get('TREE_SWAY_CXXFLAGS', '').split()
         options = [*OPTIONS.split(), *([] if IS_WINDOWS else ['-fPIC']), *more]
+        # What the library is built of, which `tree_sway.core.native.library` asks it for.
+        headers = [(ROOT / 'native' / name).read_bytes() for name in ('sway.h', 'library.h')]
+        options += [f'-DSWAY_INTERFACE={zlib.crc32(b"".join(headers))}u']
         folder = Path(self.build_temp, 'native')
         folder.mkdir(parents=True, exist_ok=True)
         objects = []

@@ -16,6 +16,10 @@
 extern "C" {
 #endif
 
+/* Of which headers the library is built: the CRC-32 of sway.h and library.h, one after the other.
+ * Whoever calls what is declared here compares it, as memory is shared. */
+SWAY_API uint32_t sway_interface(void);
+
 /* The branches of a tree for the load of the wind on them, parents before their children. In the
  * frames of their bases at rest, which are that of the tree; k is the most key rotations that a
  * branch has. */

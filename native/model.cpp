@@ -342,6 +342,10 @@ extern "C" {
 
 int sway_version(void) { return SWAY_VERSION; }
 
+#if defined(SWAY_INTERFACE)
+uint32_t sway_interface(void) { return SWAY_INTERFACE; }
+#endif
+
 sway_model *sway_model_open(const void *bytes, size_t size, char *error, size_t room) {
   Text text(error, room);
   Memory memory;

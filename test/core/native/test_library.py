@@ -7,6 +7,7 @@ from __future__ import annotations
 import ctypes
 import math
 import re
+import zlib
 
 from native_headers import fields_of, HEADER, LIBRARY_HEADER, NATIVE
 import numpy as np
@@ -15,7 +16,7 @@ import pytest
 from tree_sway.core.model.branch_blocks import BRANCH_BLOCK
 from tree_sway.core.model.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
-from tree_sway.core.native.library import contiguous, LIBRARY, SIGNATURES, VERSION
+from tree_sway.core.native.library import contiguous, INTERFACE, LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
@@ -32,7 +33,7 @@ def kind(declared: str) -> object:
         return ctypes.c_void_p
     named = {
         'int': ctypes.c_int, 'size_t': ctypes.c_size_t, 'double': ctypes.c_double,
-        'int64_t': ctypes.c_int64,
+        'int64_t': ctypes.c_int64, 'uint32_t': ctypes.c_uint32,
     }  # fmt: skip
     return named.get(words.split()[0]) if words.split()[0] != 'void' else None
 
@@ -55,6 +56,12 @@ def test_every_function_is_called_as_it_is_declared() -> None:
         of_text = [ctypes.c_void_p if each == 'text' else each for each in arguments]
         assert list(own_arguments) == of_text, name
         assert own_result == (ctypes.c_char_p if result == 'text' else result), name
+
+
+def test_a_library_of_other_headers_is_not_used() -> None:
+    headers = b''.join((NATIVE / name).read_bytes() for name in ('sway.h', 'library.h'))
+    assert hex(INTERFACE) == hex(zlib.crc32(headers)), 'write it to library.py, and build again'
+    assert LIBRARY.sway_interface() == INTERFACE
 
 
 def test_version_and_structures_are_those_of_the_header() -> None:

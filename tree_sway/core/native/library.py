@@ -22,6 +22,9 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
+INTERFACE = 0x767da87c
+"""CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
+
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
 """The library, which programs in other languages may link."""
 
@@ -30,6 +33,7 @@ _whole = ctypes.c_int64
 
 SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_version': (ctypes.c_int, ()),
+    'sway_interface': (ctypes.c_uint32, ()),
     'sway_target': (ctypes.c_char_p, ()),
     'sway_model_open': (_pointer, (_pointer, _size, _pointer, _size)),
     'sway_model_close': (None, (_pointer,)),
@@ -82,16 +86,20 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
 
 def _opened() -> ctypes.CDLL:
     cure = 'pip install . in the source of tree_sway_ros; it needs a C++ compiler'
+    other = 'the native core is of other sources than the library'
     try:
         library = ctypes.CDLL(str(FILE))
     except OSError as error:
         raise MissingDependencyError('the native core is not built', cure=cure) from error
     for name, (result, arguments) in SIGNATURES.items():
         function = getattr(library, name, None)
-        if function is None or library.sway_version() != VERSION:
-            raise MissingDependencyError('the native core is of another version', cure=cure)
+        if function is None:
+            raise MissingDependencyError(other, cure=cure)
         function.restype = result
         function.argtypes = arguments
+    # A structure with another field would be read wrongly without a word.
+    if library.sway_interface() != INTERFACE:
+        raise MissingDependencyError(other, cure=cure)
     return library
 
 
