@@ -1,23 +1,26 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The film of a tree with a sensor shows what its titles say."""
+"""The film of a tree with a sensor or a camera shows what its titles say."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from tree_sway_lab.chart.twin import Motions, SHOWN, three_motions
+from tree_sway_lab.chart.twin import four_motions, Motions, SHOWN
 from tree_sway_lab.twin.true_tree import tree_called
 
 
 @pytest.mark.long
-def test_a_sensor_brings_the_model_to_the_true_tree() -> None:
-    motions = three_motions()
+def test_what_sees_the_tree_brings_the_model_to_it() -> None:
+    pytest.importorskip('cv2')
+    motions = four_motions()
     assert all(np.isfinite(poses).all() and len(poses) == SHOWN for poses in motions.poses)
-    alone, sensor = motions.errors()
-    print(f'error of the tip: {alone:.2f} in the wind alone, {sensor:.2f} with one sensor')
-    assert alone > 0.4
-    assert sensor < 0.15
+    alone, sensor, camera = motions.errors()
+    print(f'error of the tip: {alone:.2f} in the wind alone, {sensor:.2f} with one sensor, ')
+    print(f'{camera:.2f} with a camera')
+    assert alone > 0.75
+    assert sensor < 0.75 * alone
+    assert camera < 0.25
 
 
 def test_an_error_is_that_of_the_motion_about_its_mean() -> None:
@@ -27,4 +30,4 @@ def test_an_error_is_that_of_the_motion_about_its_mean() -> None:
     leaning = true + np.array([0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     half = tree.rest_poses + 0.5 * (true - tree.rest_poses)
     motions = Motions(tree, np.zeros((200, 3)), (true, half, leaning))
-    assert motions.errors() == pytest.approx((0.5, 0.0))
+    assert motions.errors() == pytest.approx([0.5, 0.0])

@@ -89,7 +89,7 @@ def _try(name: str, arguments: argparse.Namespace) -> None:
     found = set_up(tree, camera, rng)
     if arguments.output is not None:
         _write(arguments.output, tree, species, true, camera, found.clicks)
-    seen, cost = _followed(tree, true, camera, found.camera, rng, arguments.points)
+    seen, cost = followed(tree, true, camera, found.camera, rng, arguments.points)
     rest = tips_of_poses(tree, make_simulator(tree, species).place())
     nodes = np.array([camera.project(each[:, :3].astype(float)) for each in true.poses[::3]])
     pixels = float(np.sqrt(np.square(nodes.std(axis=0)).sum(axis=1).mean()))
@@ -107,7 +107,7 @@ def _filmed(tree: Tree, species: Species, camera: Camera) -> FilmedTree:
     return FilmedTree(tree, species, camera=camera)
 
 
-def _followed(
+def followed(
     tree: Tree,
     true: FilmedTruth,
     camera: Camera,

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import place_on
 from tree_sway.twin.camera import Camera, camera_of_clicks, Click, looking, told_by
-from tree_sway_lab.twin.gusty_truth import Outside, outside_tree
+from tree_sway_lab.twin.gusty_truth import Outside, swayed_outside
 from tree_sway_lab.twin.true_tree import DT
 
 FRAMES = 30
@@ -22,7 +22,6 @@ FRAMES = 30
 SIZE = (1280, 720)
 _LIMBS = 4
 """Stoutest limbs that are clicked too."""
-_SUBSTEPS = 4
 _CLICK = 1.5
 """Error of a click in pixels."""
 
@@ -39,23 +38,15 @@ def filmed_truth(
     tree: Tree, species: Species, outside: Outside, *, in_leaf: bool = False
 ) -> FilmedTruth:
     """Sway the tree outside from rest; the first picture is of rest, the next 1 / 30 s later."""
-    true = outside_tree(tree, species, outside, in_leaf=in_leaf)
-    field, near = outside.field(tree)
-    gusts = field.record(outside.seconds, 1.0 / DT, np.random.default_rng(outside.seed + 1))
     every = round(1.0 / (FRAMES * DT))
-    tips = np.empty((len(gusts), tree.n_branches, 3))
-    poses: Any = np.empty((1 + len(gusts) // every, tree.n_segments, 7), dtype=np.float32)
-    block = np.empty((tree.n_segments, 7))
-    true.place(block)
-    poses[0] = block
-    for k, wind in enumerate(gusts):
-        for _ in range(_SUBSTEPS):
-            true.step(wind[near], DT / _SUBSTEPS)
-        true.place(block)
-        tips[k] = tips_of_poses(tree, block)
-        if (k + 1) % every == 0:
-            poses[(k + 1) // every] = block
-    return FilmedTruth(gusts[:, 0].copy(), tips, poses)
+    winds, tips = [], []
+    poses = [tree.rest_poses.astype(np.float32)]
+    for wind, block in swayed_outside(tree, species, outside, in_leaf=in_leaf):
+        winds.append(wind.copy())
+        tips.append(tips_of_poses(tree, block))
+        if len(winds) % every == 0:
+            poses.append(block.astype(np.float32))
+    return FilmedTruth(np.array(winds), np.array(tips), np.array(poses))
 
 
 def camera_before(tree: Tree, rng: np.random.Generator) -> Camera:

@@ -10,7 +10,7 @@ are drawn from what is published of trees of one species.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 import math
 from typing import Any
@@ -177,23 +177,36 @@ def outside_tree(
     )
 
 
+def swayed_outside(
+    tree: Tree, species: Species, outside: Outside, *, in_leaf: bool
+) -> Iterator[tuple[Floats, Floats]]:
+    """
+    Sway the tree outside: yield the mast's wind [m/s] and the poses of each step.
+
+    Both are (3,) and (n, 7), and written again by the next step.
+    """
+    true = outside_tree(tree, species, outside, in_leaf=in_leaf)
+    field, near = outside.field(tree)
+    gusts = field.record(outside.seconds, 1.0 / DT, np.random.default_rng(outside.seed + 1))
+    block = np.empty((tree.n_segments, 7))
+    felt = np.zeros_like(near) if outside.is_uniform else near
+    for wind in gusts:
+        for _ in range(_SUBSTEPS):
+            true.step(wind[felt], DT / _SUBSTEPS)
+        yield wind[0], true.place(block)
+
+
 def gusty_motion(
     tree: Tree, species: Species, places: Sequence[str], outside: Outside, *, in_leaf: bool
 ) -> TrueMotion:
     """Sway the tree outside: the mast's wind, its tips, and poses of places of sensors."""
-    true = outside_tree(tree, species, outside, in_leaf=in_leaf)
-    field, near = outside.field(tree)
-    gusts = field.record(outside.seconds, 1.0 / DT, np.random.default_rng(outside.seed + 1))
     found = {name: place_on(tree, name) for name in places}
-    poses = {name: np.empty((len(gusts), 7)) for name in places}
-    tips = np.empty((len(gusts), tree.n_branches, 3))
-    block = np.empty((tree.n_segments, 7))
-    felt = np.zeros_like(near) if outside.is_uniform else near
-    for k, wind in enumerate(gusts):
-        for _ in range(_SUBSTEPS):
-            true.step(wind[felt], DT / _SUBSTEPS)
-        true.place(block)
-        tips[k] = tips_of_poses(tree, block)
+    winds, tips = [], []
+    poses: dict[str, list[Floats]] = {name: [] for name in places}
+    for wind, block in swayed_outside(tree, species, outside, in_leaf=in_leaf):
+        winds.append(wind.copy())
+        tips.append(tips_of_poses(tree, block))
         for name, place in found.items():
-            poses[name][k] = pose_at(tree, block, place)
-    return TrueMotion(gusts[:, 0].copy(), tips, poses)
+            poses[name].append(pose_at(tree, block, place))
+    at = {name: np.array(each) for name, each in poses.items()}
+    return TrueMotion(np.array(winds), np.array(tips), at)
