@@ -30,6 +30,11 @@ NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
 HOUSES = (
     'files', 'forest', 'growth', 'page', 'pictures', 'simulation', 'twin',
 )  # fmt: skip
+#: Kinds of objects that have a picture, and the function that draws each.
+DRAWN = {
+    'Tree': 'of_tree', 'TreeFile': 'of_tree', 'WindRecord': 'of_wind', 'SwayRecord': 'of_sway',
+    'MotionRecord': 'of_motion',
+}  # fmt: skip
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
@@ -354,6 +359,9 @@ setup(
         'tree_sway.show': [
             f'forest = {LIBRARY}.forest.commands.on_the_page:RiskOnThePage',
             f'twin = {LIBRARY}.twin.commands.on_the_page:SensorsOnThePage',
+        ],
+        'tree_sway.pictures': [
+            f'{kind} = {LIBRARY}.pictures.figures:{function}' for kind, function in DRAWN.items()
         ],
         f'{PACKAGE}.solver': [f'motion = {PACKAGE}.motion.annex:MotionAnnex'],
         'ament_copyright.license': [

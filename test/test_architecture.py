@@ -28,7 +28,8 @@ PACKAGES = {
 #: by the face, from a higher storey. Houses of the library first, then those of the core, then
 #: the commands that houses bring.
 STOREYS = {
-    'errors': 0, 'faces': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'newest': 1,
+    'errors': 0, 'faces': 0, 'tables': 0, 'drawn': 0, 'by_name': 26, 'extras': 1, 'cache': 1,
+    'worker': 1, 'newest': 1,
     'doorkeeper': 1, 'installed_models': 2, 'commands': 19, 'core': 20, 'growth': 21, 'twin': 21,
     'simulation': 22, 'files': 23, 'parameters': 23, 'live': 24, 'stream': 24, 'page': 25,
     'pictures': 25, 'forest': 25,

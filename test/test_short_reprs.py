@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tree_sway as sway
+from tree_sway.files.motion import MotionRecord
 from tree_sway.files.wind.record import WindRecord
 
 LONGEST = 240
@@ -32,6 +33,7 @@ def objects() -> dict[str, object]:
         'SceneSimulator': sway.Scene(placed[:3], name='row').simulator(model=3),
         'SwayRecord': sway.simulate(file, WIND, model=3),
         'WindRecord': WindRecord(np.arange(30.0), WIND, 'wind.csv'),
+        'MotionRecord': MotionRecord(np.arange(30.0), WIND, None, None, 'imu.csv'),
         'TreeState': simulator.state(),
     }
 
@@ -50,6 +52,7 @@ def objects() -> dict[str, object]:
         ('SceneSimulator', ['row', '3 trees', 'model 3']),
         ('SwayRecord', ['goldcrest', '30 steps']),
         ('WindRecord', ['wind.csv', '30 samples', '6 m/s']),
+        ('MotionRecord', ['imu.csv', '30 samples', '29 s', 'acceleration']),
         ('TreeState', ['goldcrest', 'model 3']),
     ],
 )

@@ -9,6 +9,7 @@ tree_sway`` itself costs nothing.
 Examples
 --------
 >>> import tree_sway as sway
+>>> sway.simulate("oak", "canopy", seconds=10).plot()
 >>> tree = sway.open_tree("goldcrest")
 >>> record = sway.simulate(tree, sway.read_wind("wind.csv"))
 
@@ -23,6 +24,7 @@ from tree_sway.faces import face
 __version__ = '0.1.0'
 
 if TYPE_CHECKING:
+    from tree_sway.by_name import simulate as simulate
     from tree_sway.core.model import SwayModel as SwayModel
     from tree_sway.core.scene import make_simulator as make_simulator
     from tree_sway.core.scene import PlacedTree as PlacedTree
@@ -44,7 +46,6 @@ if TYPE_CHECKING:
     from tree_sway.files.trees import open_tree as open_tree
     from tree_sway.files.wind import read_wind as read_wind
     from tree_sway.growth import grow as grow
-    from tree_sway.simulation import simulate as simulate
     from tree_sway.simulation import SwayRecord as SwayRecord
     from tree_sway.stream import StreamClient as StreamClient
     from tree_sway.twin import calibrate as calibrate

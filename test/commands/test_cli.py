@@ -43,6 +43,17 @@ def one_line(text: str) -> str:
     return lines[0]
 
 
+def test_help_is_a_command_too(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run('help', 'plot')[0] == 0
+    assert capsys.readouterr().out.startswith('usage: tree-sway plot ')
+
+
+def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
+    path = tmp_path / 'seedling.glb'
+    assert run('convert', str(SEEDLING), '--leaves', 'off', str(path)) == (0, '')
+    assert path.stat().st_size
+
+
 @pytest.mark.parametrize(
     ('arguments', 'expected'),
     [
@@ -51,6 +62,17 @@ def one_line(text: str) -> str:
         (['dmeo'], "did you mean 'demo'?"),
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
         (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
+        (['convert', 'benjamina'], '--output: no file to write; name it last'),
+        (['convert', 'benjamina', 'a.yaml', 'b.yaml'], 'unrecognized arguments: a.yaml b.yaml'),
+        (
+            ['simulate', 'benjamina', '--seconds', '12m'],
+            "--seconds: '12m' is no number; give it in s, with a point",
+        ),
+        (
+            ['grow', 'oak', '--height', '0,45', '-o', 'a.yaml'],
+            "--height: '0,45' is no number; give it in m, with a point",
+        ),
+        (['info', 'benjamina', '--seed', 'one'], "--seed: 'one' is no number; give it with"),
         (['info', 'oak'], 'it is a species: tree-sway grow oak --height 10 -o oak.yaml'),
         (['info', 'x' * 300], 'File name too long'),
         (['info'], 'required: TREE'),
@@ -67,7 +89,7 @@ def one_line(text: str) -> str:
         (['plot', '--wind', '/no/such.csv', '-o', 'a.png'], '/no/such.csv: no such file'),
         (
             ['grow', '--species', 'oak', '--height', 'tall', '-o', 'x'],
-            "invalid float value: 'tall'",
+            "--height: 'tall' is no number; give it in m",
         ),
         (['grow', '--species', 'oak', '--height', '12', '-o', 'x.doc'], "cannot write '.doc'"),
         (['grow', '--height', '12', '-o', 'x.yaml'], 'no species; give one, as in tree-sway grow'),
@@ -166,8 +188,8 @@ def test_a_missing_module_is_one_line_with_its_cure(
         raise ModuleNotFoundError("No module named 'tqdm'", name='tqdm')
 
     monkeypatch.setattr(cli.importlib, 'import_module', missing)
-    monkeypatch.setattr(cli, '_parser', lambda *_: argparse.Namespace(parse_args=lambda given:
-        argparse.Namespace(quiet=False, command='info')))  # fmt: skip
+    monkeypatch.setattr(cli, '_parser', lambda *_: argparse.Namespace(parse_known_args=lambda _:
+        (argparse.Namespace(quiet=False, command='info'), [])))  # fmt: skip
     assert cli.main(['info', 'two words']) == 2
     assert extras.cure_of_missing('tqdm', "info 'two words'") in one_line(capsys.readouterr().err)
 

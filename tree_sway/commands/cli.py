@@ -30,6 +30,8 @@ from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+_NO_NUMBER = re.compile(r"argument (\S+): invalid (?:float|int) value: '(.*)'")
+_UNIT = re.compile(r'\[([^]%]+)\]')
 _UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
 
 
@@ -45,10 +47,20 @@ class _OneLineParser(argparse.ArgumentParser):
             guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
         elif wrong := _UNRECOGNIZED.search(message):
             guess = nearest(wrong[1], (self.chosen or self)._option_string_actions)
+        elif wrong := _NO_NUMBER.search(message):
+            message = f"argument {wrong[1]}: '{wrong[2]}' is no number"
+            guess = f'give it {self._unit_of(wrong[1])}with a point, as 12 or 0.45'
         where = (self.chosen or self).prog
         text = '; '.join(filter(None, (message, guess, f'see {where} --help')))
         print(f'{where}: {text}', file=sys.stderr)
         raise SystemExit(_FAILURE)
+
+    def _unit_of(self, names: str) -> str:
+        """Return the unit that the help of an argument has, as 'in m, '."""
+        actions = (self.chosen or self)._actions
+        named = (each for each in actions if '/'.join(each.option_strings) == names)
+        unit = _UNIT.search(str(getattr(next(named, None), 'help', '')))
+        return f'in {unit[1]}, ' if unit else ''
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -59,7 +71,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     with escaped_output(), warnings.catch_warnings():
         warnings.showwarning = _show_warning  # type: ignore[assignment]
-        return _main(list(sys.argv[1:] if argv is None else argv))
+        given = list(sys.argv[1:] if argv is None else argv)
+        return _main([*given[1:], '--help'] if given[:1] == ['help'] else given)
 
 
 def _main(given: list[str]) -> int:
@@ -72,7 +85,7 @@ def _main(given: list[str]) -> int:
         cure = cure_of_missing('tree_sway', shlex.join(given))
         return _fail(command, f'the commands of {", ".join(missing)} are missing; {cure}')
     try:
-        arguments = _parser(command, table, group).parse_args(given[bool(group) :])
+        arguments = _parsed(_parser(command, table, group), given[bool(group) :])
         # This is without notes and progress: errors are printed afterwards.
         quiet = contextlib.redirect_stderr(io.StringIO()) if arguments.quiet else None
         with quiet or contextlib.nullcontext():
@@ -98,6 +111,20 @@ def _main(given: list[str]) -> int:
         return _fail(command, f'{where}{error.strerror or error}')
     except KeyboardInterrupt:
         return _INTERRUPTED
+
+
+def _parsed(parser: _OneLineParser, given: list[str]) -> argparse.Namespace:
+    """Parse arguments; a last word that is left is the file to write, where none is named."""
+    arguments, left = parser.parse_known_args(given)
+    if (
+        left == given[-1:]
+        and not left[0].startswith('-')
+        and vars(arguments).get('output', '') is None
+    ):
+        arguments.output = left.pop()
+    if left:
+        parser.error(f'unrecognized arguments: {" ".join(left)}')
+    return arguments
 
 
 def _show_warning(message: Warning | str, *_where: Any) -> None:

@@ -40,7 +40,7 @@ def grow(
     height: float,
     diameter: float | None = None,
     *,
-    rng: np.random.Generator | int,
+    rng: np.random.Generator | int = 0,
     name: str | None = None,
 ) -> Tree:
     """

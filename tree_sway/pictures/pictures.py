@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,9 @@ from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.pictures.plotting import new_figure, save_figure
 from tree_sway.pictures.tree_drawing import draw_trees, limits_around
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _HEIGHT = 6.0
 """Height of a picture in [inch]."""
@@ -49,6 +53,17 @@ def picture_in_wind(
         If matplotlib is not installed.
 
     """
+    return save_figure(figure_in_wind(trees, poses, wind, leaves=leaves), path)
+
+
+def figure_in_wind(
+    trees: Sequence[Tree],
+    poses: ArrayLike,
+    wind: ArrayLike,
+    *,
+    leaves: LeafClusters | None = None,
+) -> Figure:
+    """Make the figure of `picture_in_wind`."""
     rest = np.vstack([each.rest_poses for each in trees])
     length = np.concatenate([each.length for each in trees])
     limits = limits_around(
@@ -58,4 +73,4 @@ def picture_in_wind(
     figure = new_figure(_HEIGHT * (right - left) / (top - bottom), _HEIGHT)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     draw_trees(axes, trees, poses, limits, wind=wind, leaves=leaves, has_ghost=True)
-    return save_figure(figure, path)
+    return figure

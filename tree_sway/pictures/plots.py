@@ -45,6 +45,11 @@ def plot_wind_and_tip(
         If the shapes of the three do not match.
 
     """
+    return _finished(wind_and_tip(time, wind, tip), path, title)
+
+
+def wind_and_tip(time: ArrayLike, wind: ArrayLike, tip: ArrayLike) -> Figure:
+    """Make the figure of `plot_wind_and_tip`."""
     t, blowing, moved = (np.asarray(each, dtype=np.float64) for each in (time, wind, tip))
     shapes = blowing.shape, moved.shape
     if t.ndim != 1 or len(t) < 2 or shapes != ((len(t), 3), (len(t), 3)):
@@ -60,7 +65,7 @@ def plot_wind_and_tip(
     sway.plot(t, moved[:, 0], label='east')
     sway.plot(t, moved[:, 1], label='north')
     sway.set(xlabel='time [s]', ylabel='tip from rest [m]', xlim=(t[0], t[-1]))
-    return _finished(figure, path, title)
+    return figure
 
 
 def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path: str) -> Path:
@@ -136,11 +141,15 @@ def _tree_of(row: Mapping[str, str]) -> str:
     return ', '.join(parts)
 
 
-def _finished(figure: Figure, path: str | Path, title: str = '') -> Path:
-    """Write a figure with a grid and a legend."""
+def labelled(figure: Figure, title: str = '') -> Figure:
+    """Give a figure a grid, a legend and a title, and return it."""
     for axes in figure.axes:
         axes.grid(alpha=0.25)
         axes.legend(frameon=False, fontsize='small')
     figure.suptitle(title)
     figure.set_layout_engine('constrained')
-    return save_figure(figure, path)
+    return figure
+
+
+def _finished(figure: Figure, path: str | Path, title: str = '') -> Path:
+    return save_figure(labelled(figure, title), path)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.drawn import Drawn
 from tree_sway.simulation.strength_use import StrengthUse
 from tree_sway.twin import LearnedTree
 
@@ -18,7 +19,7 @@ _SIDES = ('east', 'north')
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SwayRecord:
+class SwayRecord(Drawn):
     """
     The sway of one tree; every array has one row per step.
 

@@ -63,11 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_unused_wind(arguments)
     scene = opened_scene(arguments)
     tree = scene.tree
-    print(
-        f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments; starting '
-        '(the first start compiles, up to a minute)',
-        flush=True,
-    )
+    size = f'{tree.n_branches} branches, {tree.n_segments} segments'
+    print(f'{tree.name}: {size}; starting', flush=True)
     with (
         Ending() as ending,
         Composition({}) as nodes,

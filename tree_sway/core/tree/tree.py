@@ -21,12 +21,13 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree.segment_frame import ends_of_poses, quaternions_from_x
+from tree_sway.drawn import Drawn
 
 _Number = TypeVar('_Number', np.float64, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
-class Tree:
+class Tree(Drawn):
     """
     A tree of straight segments; build it with `tree_from_segments`, which checks and orders.
 

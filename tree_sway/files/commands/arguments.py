@@ -192,7 +192,6 @@ def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | 
     return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
-
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """Add the model of the sway."""
     parser.add_argument(
@@ -205,8 +204,8 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
-    """Add ``--output`` and ``--force``; `what` is the help of the first."""
-    parser.add_argument('-o', '--output', required=True, metavar='FILE', help=what)
+    """Add ``--output``, which may be the last word alone, and ``--force``; `what` is its help."""
+    parser.add_argument('-o', '--output', metavar='FILE', help=f'{what}; or the last word alone')
     parser.add_argument('--force', action='store_true', help='overwrite an existing file')
 
 
@@ -217,11 +216,12 @@ def output_path(arguments: argparse.Namespace) -> str:
     Raises a `ParameterError` if it exists and ``--force`` is not given, and a `FormatError` if it
     cannot be written, before any work for it.
     """
+    if arguments.output is None:
+        raise ParameterError('no file to write', where='--output', cure='name it last')
     if not arguments.force:
         refuse_overwriting(arguments.output, '--output')
     refuse_unwritable(arguments.output)
     return str(arguments.output)
-
 
 
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:

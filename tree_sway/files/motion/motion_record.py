@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.drawn import Drawn
 
 
-@dataclass(frozen=True, eq=False)
-class MotionRecord:
+@dataclass(frozen=True, eq=False, repr=False)
+class MotionRecord(Drawn):
     """
     Motion over time; a quantity that the sensor does not measure is None.
 
@@ -42,6 +43,14 @@ class MotionRecord:
     source: str
     epoch: float | None = None
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return source, length and what was measured on one line."""
+        quantities = 'acceleration', 'rate', 'orientation'
+        measured = [each for each in quantities if getattr(self, each) is not None]
+        seconds = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
+        size = f'{len(self.time)} samples, {seconds:.4g} s'
+        return f'MotionRecord {self.source!r}: {size}, {", ".join(measured)}'
 
     def times_after(self, epoch: float | None, offset: float = 0.0) -> Floats:
         """

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 
 from tree_sway.core.species import Species
 from tree_sway.core.tree import oddities, refuse_implausible, Tree
+from tree_sway.drawn import Drawn
 from tree_sway.errors import inside
 from tree_sway.twin import LearnedTree
 
 
 @dataclass(frozen=True, eq=False)
-class TreeFile:
+class TreeFile(Drawn):
     """
     A tree with its species.
 

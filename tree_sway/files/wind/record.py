@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.wind import FASTEST_WIND, WindConvention
+from tree_sway.drawn import Drawn
 from tree_sway.errors import FormatError
 
 
 @dataclass(frozen=True, eq=False)
-class WindRecord:
+class WindRecord(Drawn):
     """
     Wind over time.
 

@@ -15,7 +15,7 @@ import webbrowser
 
 import numpy as np
 
-from tree_sway.commands import additions, Ending
+from tree_sway.commands import additions, Ending, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.leaves import is_bare, species_in_month
 from tree_sway.core.scene import PlacedTree, Scene, Simulator
@@ -95,19 +95,19 @@ def _serve(
     ending: Ending,
 ) -> int:
     """Serve the page of a wind, with what is added to it."""
-    print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
     own = [control for each in added for control in each.controls()]
     first = {control.name: control.value for control in own}
     choices = replace(choices, **first)  # type: ignore[arg-type]
     told: dict[str, tuple[str, ...]] = {}
-    session = Session(
-        lambda wanted: build_scene(wanted, arguments, added, told),
-        choices,
-        wind,
-        motion=next((each.motion for each in added if each.motion is not None), None),
-        warnings=told,
-    )
+    with waiting(f'setting {arguments.tree} up'):
+        session = Session(
+            lambda wanted: build_scene(wanted, arguments, added, told),
+            choices,
+            wind,
+            motion=next((each.motion for each in added if each.motion is not None), None),
+            warnings=told,
+        )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
     panel = ControlPanel()

@@ -180,7 +180,8 @@ def along_bearing(record: Floats, bearing_to: float) -> Floats:
 
 
 def simulate_turbulence(
-    mean_speed: float, *, rate: float, duration: float, rng: np.random.Generator | int,
+    mean_speed: float, *, rate: float = 60.0, duration: float = 60.0,
+    rng: np.random.Generator | int = 0,
     height: float = 10.0, intensity: float | None = None, bearing_to: float = 0.5 * np.pi,
 ) -> Floats:  # fmt: skip
     """
