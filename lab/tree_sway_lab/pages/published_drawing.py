@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A drawing of measured against computed, from the section ``published`` of ``validation.md``.
+A drawing of measured against computed, from the claim ``published``.
 
 Both are on logarithmic axes, with the line on which they agree and the band of a factor of 2.
 """
@@ -12,9 +12,7 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
-from tree_sway_lab.validation.report import sections_of
-
-PAGE = Path('doc/validation.md')
+PAGE = Path('doc/proof/published/README.md')
 
 _SIZE, _MARGIN, _PANEL, _HEAD = 300, 60, 390, 44
 _FIRST_NUMBER = 5
@@ -58,7 +56,7 @@ MOMENT = Panel(
 def published_points(page: str) -> tuple[list[Point], list[Point]]:
     """Read the points of frequency and of moment from the text of the page."""
     frequencies, moments = list[Point](), list[Point]()
-    for line in sections_of(page).get('published', '').splitlines():
+    for line in page.splitlines():
         cells = [cell.strip() for cell in line.strip('|').split('|')]
         if len(cells) != _FIRST_NUMBER + 5 or not cells[1][:1].isdigit():
             continue

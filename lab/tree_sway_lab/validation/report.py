@@ -1,20 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The page ``validation.md``: a section per subject, each measured and replaced on its own.
+A folder for each claim, ``proof/NAME``, and the page ``validation.md`` with what they come to.
 
-A section is between two comments, ``<!-- section: NAME -->`` and ``<!-- end -->``. The page is
-written again after each, so a run that ends early has written what it has measured.
-
+A folder has how it was measured, the command that measures it again, every check with its limit,
+and its further figures, as ``figures.csv`` where they are many. Each is measured and replaced on
+its own, and the page is written again after each, so a run that ends early has written what it has
+measured.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import ProcessPoolExecutor
+import csv
 from datetime import datetime, timezone
 from importlib import import_module
 from importlib.metadata import version
+import io
 import multiprocessing
 import os
 from pathlib import Path
@@ -25,7 +28,7 @@ from typing import Any
 from tree_sway.commands import bar
 from tree_sway.errors import ParameterError
 from tree_sway.files import write_text_whole
-from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
+from tree_sway_lab.validation.section import CHECKS, Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
     'kinds', 'storms', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans',
@@ -35,9 +38,11 @@ SECTIONS = (
 """Names of the sections, each a module of ``sections``."""
 
 PAGE = 'validation.md'
+LONGEST = 40
+"""Rows of a table from which on it is a file of its own."""
 
 _HEAD = Path(__file__).with_name('first_screen.md').read_text(encoding='utf-8')
-_SECTION = re.compile(r'<!-- section: (?P<name>\w+) -->\n(?P<text>.*?)<!-- end -->\n', re.DOTALL)
+_TABLE = re.compile(r'(?:^\|.*\n)+', re.MULTILINE)
 
 
 def write_validation(
@@ -48,12 +53,12 @@ def write_validation(
     data: Path | None = None,
 ) -> list[str]:
     """
-    Measure sections and put them into the page.
+    Measure claims, and write their folders and the page.
 
     Parameters
     ----------
     folder
-        Where the page is, or is to be.
+        Where the page and the folder ``proof`` are, or are to be.
     only
         Names of `SECTIONS`; all if there are none.
     is_full, data
@@ -76,8 +81,7 @@ def write_validation(
             raise ParameterError(
                 f"no section '{name}'", where='--only', cure=f'name one of: {", ".join(SECTIONS)}'
             )
-    page, missed = Path(folder) / PAGE, []
-    page.parent.mkdir(parents=True, exist_ok=True)
+    missed = []
     # One thread per process: they share the cores already.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     context = multiprocessing.get_context('spawn')
@@ -90,9 +94,7 @@ def write_validation(
         for name in names:
             section = measured(name, Effort(each, is_full, data))
             missed += [f'{name}: {check.what}' for check in section.checks if not check.holds]
-            text = page.read_text(encoding='utf-8') if page.is_file() else ''
-            written = section.markdown() + f'\nMeasured on {_stamp()}.\n'
-            write_text_whole(page, with_section(text, name, written))
+            write_proof(Path(folder), name, section.markdown(), f'Measured on {_stamp()}.')
             print(f'{name}: {sum(c.holds for c in section.checks)} of {len(section.checks)} hold')
     return missed
 
@@ -115,18 +117,39 @@ def measured(name: str, effort: Effort) -> Section:
     return found
 
 
-def with_section(page: str, name: str, section: str) -> str:
-    """Return the page with a section put in or replaced, in order, and with its summary."""
-    texts = sections_of(page) | {name: section}
-    ordered = [each for each in SECTIONS if each in texts]
-    lines = ['| section | hold | miss |', '|---|---|---|']
-    for each in ordered:
-        counts = (texts[each].count(f'| {mark} |') for mark in (HOLDS, MISSES))
-        lines.append(f'| {each} | ' + ' | '.join(map(str, counts)) + ' |')
-    body = [f'<!-- section: {each} -->\n{texts[each]}<!-- end -->\n' for each in ordered]
-    return '\n'.join((_HEAD + '\n'.join(lines) + '\n', *body))
+def write_proof(folder: Path, name: str, section: str, stamp: str) -> None:
+    """Write the folder of a claim by the text of its section, and the page of all."""
+    home = folder / 'proof' / name
+    home.mkdir(parents=True, exist_ok=True)
+
+    def table(found: re.Match[str]) -> str:
+        head, _, *rows = found[0].splitlines()
+        if len(rows) < LONGEST or head == CHECKS:
+            return found[0]
+        lines = [[cell.strip() for cell in row.strip('|').split('|')] for row in (head, *rows)]
+        text = io.StringIO()
+        csv.writer(text, lineterminator='\n').writerows(lines)
+        write_text_whole(home / 'figures.csv', text.getvalue())
+        return f'{len(rows)} rows of {", ".join(lines[0])}: [figures.csv](figures.csv).\n'
+
+    title, _, text = section.partition('\n')
+    command = f'`tree-sway lab validate --only {name} -o doc` measures it again.'
+    parts = title.replace('##', '#'), '', command, _TABLE.sub(table, text).rstrip('\n'), '', stamp
+    write_text_whole(home / 'README.md', '\n'.join((*parts, '')))
+    write_text_whole(folder / PAGE, page_of(folder))
 
 
-def sections_of(page: str) -> dict[str, str]:
-    """Return the text of each section of a page."""
-    return {match['name']: match['text'] for match in _SECTION.finditer(page)}
+def page_of(folder: Path) -> str:
+    """Return the page: the claims, and a row for every folder that is there."""
+    lines = ['| claim | hold | miss | measured |', '|---|---|---|---|']
+    for name in SECTIONS:
+        path = folder / 'proof' / name / 'README.md'
+        if not path.is_file():
+            continue
+        text = path.read_text(encoding='utf-8')
+        title = text.partition('\n')[0].strip('# ')
+        holds, misses = (text.count(f'| {mark} |') for mark in (HOLDS, MISSES))
+        stamp = text.rstrip().rpartition('\n')[2].removeprefix('Measured on ').rstrip('.')
+        link = f'[{title}](proof/{name}/README.md)'
+        lines.append(f'| `{name}`: {link} | {holds} | {misses} | {stamp} |')
+    return '\n'.join((_HEAD + '\n'.join(lines), ''))

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 HOLDS, MISSES = 'holds', '**misses**'
+CHECKS = '| check | measured | limit | |'
+"""Head of the table of checks."""
 
 
 class Each(Protocol):
@@ -102,7 +104,7 @@ class Section(NamedTuple):
     def markdown(self) -> str:
         """Return the section as Markdown, with its marks."""
         parts = [f'## {self.title}\n', f'{self.text}\n']
-        head = '| check | measured | limit | |\n|---|---|---|---|'
+        head = f'{CHECKS}\n|---|---|---|---|'
         if self.checks:
             parts.append('\n'.join((head, *(check.row() for check in self.checks))) + '\n')
         if self.table:

@@ -30,7 +30,7 @@ def measure(effort: Effort) -> Section:
         f'The default model against every segment solved ({FINE}) in {SECONDS:g} s of turbulence '
         f'with a mean of {", ".join(WINDS)} m/s, or as long as the truth follows the tips. '
         'Willow, birch and whips; bamboo, shoots of one year and reeds, each of two seeds. '
-        'Columns are those of the section before.'
+        'Columns are those of `kinds`.'
     )
     return Section('Limp trees in storms', text, checks(found), trial_table(found))
 
