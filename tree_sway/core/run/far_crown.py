@@ -19,14 +19,6 @@ if TYPE_CHECKING:
     from tree_sway.core.tree import Tree
 
 
-_SIZE = 0.65
-"""
-Size of a part over the root mean square distance from its middle [-].
-
-It is half the mean distance of two places in it: a part moves most at its end.
-"""
-
-
 class FarCrown:
     """The wind of a crown; that of its parts is written where the step of the model reads it."""
 
@@ -47,6 +39,7 @@ class FarCrown:
             places,
             size,
             load / load.sum(),
+            float(model.natural_frequencies[0]),
             settings.anemometer_distance,
             settings.anemometer_bearing,
             int(settings.gust_seed) if is_drawn else None,
@@ -61,7 +54,7 @@ class FarCrown:
 
     @staticmethod
     def _places(tree: Tree, part: Ints) -> tuple[Floats, Floats]:
-        """Middle of each part from the highest point [m], (g, 3), and its size [m], (g,)."""
+        """Middle of each part from the highest point [m], (g, 3), and its root mean square radius [m], (g,)."""
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
         centre = 0.5 * (tree.start + tree.end)
@@ -69,7 +62,7 @@ class FarCrown:
         middle = np.stack(sums, axis=1) / total[:, None]
         square = np.square(centre - middle[part]).sum(axis=1)
         radius = np.sqrt(np.bincount(part, area * square, N_DELAYS) / total)
-        return middle - tree.end[int(np.argmax(tree.end[:, 2]))], _SIZE * radius
+        return middle - tree.end[int(np.argmax(tree.end[:, 2]))], radius
 
     @staticmethod
     def _read_by_step(bank: Bank, gusts: CrownGusts | None) -> Floats:

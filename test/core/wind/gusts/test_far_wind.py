@@ -35,7 +35,7 @@ def winds(far: FarWind, measured: Floats) -> tuple[Floats, Floats]:
 def far(distance: float, seed: int | None = None, *, bearing: float | None = UPWIND) -> FarWind:
     """Return a wind of three parts, which is a sample with a seed."""
     is_sample = seed is not None
-    return FarWind(PLACES, np.zeros(3), SHARE, distance, bearing, seed, is_sample=is_sample)
+    return FarWind(PLACES, np.zeros(3), SHARE, 1.0, distance, bearing, seed, is_sample=is_sample)
 
 
 def test_a_steady_wind_is_the_same_at_any_distance() -> None:

@@ -24,6 +24,11 @@ square of the speed, as E[U^2] = E[U]^2 + var U.
 A sample adds what may be: a drawn field, whose limbs share gusts by the same law, of the spectrum
 ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
 turbulence, and follows the measured one as far as that tells.
+
+Of gusts that are smaller than what they move ``1 / (1 + C k l)`` of the power acts. Up to the first
+frequency of the tree that is a whole part, and above it less: the frequency of a branch falls with
+the square root of its length, so modes at a frequency f move pieces of a length that falls as
+``f^-2``, ``l = size min(1, 2 / (1 + (f / f_1)^2))``.
 """
 
 from __future__ import annotations
@@ -55,6 +60,9 @@ SAMPLES = 1 << 14
 """Number of samples of a drawn field, after which it repeats: 4 km of wind."""
 
 _SPACING = 0.25
+_USUAL = 7.0
+"""Wind [m/s] in which a wavenumber is the frequency at which it shakes the tree."""
+
 _HEIGHT = 10.0
 """Height in [m] whose turbulence has the lengths of the spectrum: a usual anemometer's."""
 
@@ -68,10 +76,11 @@ class FarWind:
     places
         Places of the parts from the highest point of the tree [m], east, north, up, (g, 3).
     size
-        Size of each part [m], (g,): of gusts smaller than it, ``1 / (1 + C k size)`` of the power
-        acts on the part.
+        Size of each part [m], (g,).
     share
         Share of each in the load [-], (g,).
+    frequency
+        First frequency of the tree [Hz].
     distance
         Distance of the anemometer in [m], as high as the highest point.
     bearing
@@ -88,6 +97,7 @@ class FarWind:
         places: Floats,
         size: Floats,
         share: Floats,
+        frequency: float,
         distance: float,
         bearing: float | None = None,
         seed: int | None = None,
@@ -103,7 +113,7 @@ class FarWind:
         self._apart = np.zeros((len(share), 3))
         self._rest: Singles | None = None
         if seed is not None:
-            self._rest = _drawn_rest(places, size, self._weights, seed)
+            self._rest = _drawn_rest(places, size, self._weights, frequency / _USUAL, seed)
 
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
@@ -226,13 +236,20 @@ def _coherences(
     return [np.mean(found, axis=0)] if bearing is None else found
 
 
-def _drawn_rest(places: Floats, size: Floats, weights: Floats, seed: int) -> Singles:
-    """Draw what is not expected at each place, over its deviation, (samples, g, 3)."""
+def _drawn_rest(
+    places: Floats, size: Floats, weights: Floats, first: float, seed: int
+) -> Singles:
+    """
+    Draw what is not expected at each place, over its deviation, (samples, g, 3).
+
+    The first mode of the tree is at the wavenumber `first` [1/m].
+    """
     count = len(places)
     wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
     stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
     told = np.mean([np.square(np.abs(stages @ each.T)) for each in weights], axis=0)
-    acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * size)
+    extent = size * np.minimum(1.0, 2.0 / (1.0 + np.square(wavenumbers[:, None] / first)))
+    acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * extent)
     missing = np.sqrt(np.maximum(1.0 - told, 0.0) * acting)
     apart = np.linalg.norm(places[:, None] - places, axis=2)
     shared = np.exp(-_WITHIN * wavenumbers[:, None, None] * apart) + 1e-9 * np.eye(count)
