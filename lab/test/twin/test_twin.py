@@ -59,7 +59,10 @@ def test_the_square_of_the_wind_explains_a_motion_that_is_one() -> None:
         passed = keep * passed + (1.0 - keep) * np.linalg.norm(each) * each
         tips[k, 0] = 0.01 * passed
     tips[:, 0, 2] = 0.0
-    assert squared_score(TrueMotion(wind, tips, {}), 0.5).error < 1e-9
+    true = TrueMotion(wind, tips, {})
+    assert squared_score(true, 0.5).error < 1e-9
+    # The gains of a tree that moves half as far leave half of the motion.
+    assert squared_score(true, 0.5, 0.5 * tips).error == pytest.approx(0.5)
 
 
 def test_drawn_trees_have_the_spreads_of_wood_damping_and_drag() -> None:

@@ -19,7 +19,8 @@ those that begin later from 90 s on. The model knows how far the mast is.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip (outdoors at the frequency that
-is best too; fitted to what it is scored on, it is below the bound where the record is short).
+is best too; fitted to what it is scored on, it is below the bound where the record is short, so
+that ``U^2 (gains of the model)`` has those of the model in the same wind, which need no truth).
 
 Outdoors, ``expected`` and ``sample`` are the simulator that knows where the mast stands, the last
 columns the power of all tips over the true one in four bands. ``(known tree)`` has the wood,
@@ -58,7 +59,14 @@ from tree_sway_lab.twin.read_record import is_tree_record, read_tree_record
 from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sensor_faults import FAULTS
 from tree_sway_lab.twin.sway_comparison import BANDS
-from tree_sway_lab.twin.trial import mean_score, plain_score, Score, squared_score, twin_score
+from tree_sway_lab.twin.trial import (
+    mean_score,
+    plain_score,
+    Score,
+    squared_score,
+    swayed,
+    twin_score,
+)
 from tree_sway_lab.twin.true_tree import (
     Circumstances,
     drawn,
@@ -227,6 +235,11 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             passed = [squared_score(true, share * frequency) for share in CUTOFFS]
             best = min(passed, key=lambda score: score.error)
             scores.setdefault('U^2', []).append(best)
+            known.reset()
+            model, _ = swayed(known, true.wind)
+            passed = [squared_score(true, share * frequency, model) for share in CUTOFFS]
+            best = min(passed, key=lambda score: score.error)
+            scores.setdefault('U^2 (gains of the model)', []).append(best)
             distance, bearing = mast_of(outside)
             apart |= {'anemometer_distance': distance, 'anemometer_bearing': bearing}
             for gusts in ('expected', 'sample'):

@@ -104,14 +104,7 @@ def mean_score(scores: Sequence[Score]) -> Score:
 
 def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
     """Score a simulator as it is without sensors."""
-    tree = sim.tree
-    block, tips = np.empty((tree.n_segments, 7)), np.empty_like(true.tips)
-    spent = np.empty(len(tips))
-    for k, each in enumerate(true.wind):
-        began = time.thread_time_ns()
-        sim.step(each, DT)
-        spent[k] = time.thread_time_ns() - began
-        tips[k] = tips_of_poses(tree, sim.place(block))
+    tips, spent = swayed(sim, true.wind)
     error, roughness, stem = _compared(tips, true.tips, 0)
     first = round(_TRUSTED * len(tips))
     found, wanted = (each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips))
@@ -121,23 +114,36 @@ def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
     )  # fmt: skip
 
 
+def swayed(sim: SwaySimulator, winds: Floats) -> tuple[Floats, Floats]:
+    """Tips of a simulator (n, b, 3) in the winds of its steps, and the time of each [ns], (n,)."""
+    block = np.empty((sim.tree.n_segments, 7))
+    tips, spent = np.empty((len(winds), sim.tree.n_branches, 3)), np.empty(len(winds))
+    for k, each in enumerate(winds):
+        began = time.thread_time_ns()
+        sim.step(each, DT)
+        spent[k] = time.thread_time_ns() - began
+        tips[k] = tips_of_poses(sim.tree, sim.place(block))
+    return tips, spent
+
+
 def _costs(spent: Floats) -> tuple[float, float]:
     """Median and 99th percentile, in [us], of times [ns] of the later steps of a record."""
     later = 1e-3 * spent[round(_TRUSTED * len(spent)) :]
     return float(np.median(later)), float(np.quantile(later, 0.99))
 
 
-def squared_score(true: TrueMotion, frequency: float) -> Score:
+def squared_score(true: TrueMotion, frequency: float, like: Floats | None = None) -> Score:
     """
     Score the square of the wind, low-passed at a frequency [Hz], as a model of the motion.
 
-    It gets the gains by which each tip follows it best along each axis, from the truth itself.
+    It gets the gains by which each tip follows it best along each axis: from the truth itself, or
+    from the tips (n, b, 3) of another tree in the same wind.
     """
     squared = np.linalg.norm(true.wind, axis=1, keepdims=True) * true.wind
     keep = float(np.exp(-2.0 * np.pi * frequency * DT))
     passed = lfilter([1.0 - keep], [1.0, -keep], squared, axis=0)
     inputs = np.column_stack([np.ones(len(passed)), passed])
-    flat = true.tips.reshape(len(passed), -1)
+    flat = (true.tips if like is None else like).reshape(len(passed), -1)
     first = round(_TRUSTED * len(passed))
     gains = np.linalg.lstsq(inputs[first:], flat[first:], rcond=None)[0]
     tips = (inputs @ gains).reshape(true.tips.shape)
