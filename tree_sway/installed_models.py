@@ -3,7 +3,7 @@
 """
 Models of installed packages, by the entry point group `tree_sway.models`.
 
-An entry point names a function ``make(model, branches, plain)`` that returns the `Oscillators` of
+An entry point names a function ``make(model, branches)`` that returns the `Oscillators` of
 a tree, from its `SwayModel` on all coordinates and the records of its branches. The reference
 model ``full`` comes so, from the laboratory.
 """

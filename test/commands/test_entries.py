@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway.commands import cli, entries
-from tree_sway.commands.entries import additions, commands_called, own_commands
+from tree_sway.commands.entries import additions, commands_called, other_groups, own_commands
 
 GONE = EntryPoint('roots', 'tree_sway.roots.commands:COMMANDS', entries.GROUP)
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,6 +71,7 @@ def test_a_table_of_another_package_is_called_by_its_name(
     monkeypatch.setattr(entries, 'entry_points', lambda group: [*entries._own(), other])
     assert [*(commands_called('other') or ())] == ['grow']
     assert commands_called('growth') is None
+    assert other_groups() == ['other']
 
 
 def test_additions_come_in_the_order_of_their_names(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -101,6 +101,12 @@ CHANGES = {
         "print('neuron' in [each.name for each in TREE_FORMATS])",
         'True',
     ),
+    'instrument': (
+        'tree_sway/live/readers/makers/young.py', "LineFormat('Young'", "LineFormat('R. M. Young'",
+        'from tree_sway.live.readers.instrument_lines import EXPECTS;'
+        "print('R. M. Young' in EXPECTS)",
+        'True',
+    ),
     'command': (
         'tree_sway/simulation/commands/commands.csv', 'info benjamina', 'info goldcrest',
         "from tree_sway.simulation.commands import COMMANDS; print(COMMANDS['info'].example)",

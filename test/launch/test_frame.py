@@ -10,12 +10,12 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.process.topics import (  # noqa: E402
-    FORCE_PLANE,
     MARKERS,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     WIND,
     WIND_FILTERED,
+    WIND_FORCE_PLANE,
 )
 
 
@@ -25,7 +25,7 @@ def frames_of(message):
 
 
 def test_one_frame_is_named_everywhere(launched, observer, tree_file):
-    topics = (WIND, WIND_FILTERED, FORCE_PLANE, SEGMENT_POSES, MARKERS)
+    topics = (WIND, WIND_FILTERED, WIND_FORCE_PLANE, SEGMENT_POSES, MARKERS)
     heard = {topic.name: observer.listen(topic) for topic in topics}
     described = observer.listen(TREE_DESCRIPTION)
     run = launched('sway.launch.py', tree=tree_file, frame_id='site')

@@ -18,13 +18,13 @@ from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
     CLOCK,
     DIAGNOSTICS,
-    FORCE_PLANE,
     qos_profile,
     SEGMENT_POSES,
     TF,
     TF_STATIC,
     WIND,
     WIND_FILTERED,
+    WIND_FORCE_PLANE,
 )
 from tree_sway_ros.reports.diagnostics import ERROR, OK, WARN  # noqa: E402
 from tree_sway_ros.wire import frames  # noqa: E402
@@ -100,7 +100,7 @@ def test_a_westerly_bends_a_tree_of_the_package_to_the_east(compose, observer):
 
 def test_the_wind_goes_through_with_its_stamp(compose, observer):
     compose(wind={'speed_scale': 0.5, 'yaw_offset': np.pi / 2})
-    filtered, plane = observer.listen(WIND_FILTERED), observer.listen(FORCE_PLANE)
+    filtered, plane = observer.listen(WIND_FILTERED), observer.listen(WIND_FORCE_PLANE)
     mast = Mast(observer)
     observer.until(lambda: mast.say(4.0) and filtered and plane, 'wind')
     stamp = mast.say(4.0)

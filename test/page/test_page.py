@@ -56,11 +56,14 @@ class Live:
 
     def start(self) -> None:
         self.server = PageServer(
-            PageSettings(port=self.port), self.panel, self.session.status, self.session.written
+            PageSettings(port=self.port), self.panel, self._status, self.session.written
         )
         self.server.start()
         self.port = self.server.port
         self.session.serve(self.server)
+
+    def _status(self) -> dict[str, object]:
+        return {**self.session.status(), 'facts': {'Beaufort': '5 <b>'}}
 
 
 @pytest.fixture(scope='module')
@@ -180,6 +183,14 @@ def test_the_head_names_the_wind_the_line_and_the_error(live: Live, visit: Visit
         await browser.until(f"{text % 'source'} === 'Simulierter Wind'")
 
     visit(script)
+
+
+def test_the_facts_of_other_packages_are_listed(visit: Visit) -> None:
+    async def look(browser: Browser) -> None:
+        rows = '[...document.querySelectorAll("#facts .added")]'
+        await browser.until(f"{rows}.map((each) => each.textContent).join() === 'Beaufort5 <b>'")
+
+    visit(look)
 
 
 def test_the_wind_comes_from_one_of_360_degrees(live: Live, visit: Visit) -> None:

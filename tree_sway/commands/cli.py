@@ -22,7 +22,7 @@ from typing import Any, NoReturn
 import warnings
 
 from tree_sway.commands.command import Command
-from tree_sway.commands.entries import commands_called, own_commands
+from tree_sway.commands.entries import commands_called, other_groups, own_commands
 from tree_sway.commands.escaped_text import escaped_output
 from tree_sway.errors import nearest, shown, TreeSwayError
 from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
@@ -162,6 +162,9 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
     """Parse all commands, but only the arguments of the given one, as imports take long."""
     program = f'tree-sway {group}'.strip()
     parser = _OneLineParser(prog=program, description='Trees that sway in measured wind.')
+    if not group and chosen.startswith('-') and (others := other_groups()):
+        called = ', '.join(f'{program} {each}' for each in others)
+        parser.epilog = f'commands of other packages: {called}'
     version = importlib.import_module('tree_sway').__version__
     parser.add_argument('--version', action='version', version=version)
     commands = parser.add_subparsers(dest='command', metavar='COMMAND', required=True)

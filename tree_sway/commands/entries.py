@@ -35,6 +35,12 @@ def commands_called(group: str) -> dict[str, Command] | None:
     return next((each.load() for each in points if each.name == group), None)
 
 
+def other_groups() -> list[str]:
+    """Return the names by which commands of other packages are called."""
+    own = _own()
+    return sorted({each.name for each in entry_points(group=GROUP) if each not in own})
+
+
 def additions(command: str) -> list[Any]:
     """Return what is added to a command, in the order of the names of its entry points."""
     points = entry_points(group=f'tree_sway.{command}')

@@ -20,7 +20,6 @@ from tree_sway.files.recording import BagWriter
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import (
     DIAGNOSTICS,
-    FORCE_PLANE,
     MARKERS,
     message_class,
     qos_profile,
@@ -30,10 +29,11 @@ from tree_sway_ros.process.topics import (
     TREE_STATE,
     WIND,
     WIND_FILTERED,
+    WIND_FORCE_PLANE,
 )
 
 _USUAL = (WIND, WIND_FILTERED, TREE_STATE, TREE_DESCRIPTION)
-_MORE = (FORCE_PLANE, SEGMENT_POSES, MARKERS, DIAGNOSTICS)
+_MORE = (WIND_FORCE_PLANE, SEGMENT_POSES, MARKERS, DIAGNOSTICS)
 _LOOK = 0.2
 
 

@@ -17,7 +17,7 @@ from rclpy.duration import Duration
 
 from tree_sway.core.wind import WindConvention, WindGate, WindIntake
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
+from tree_sway_ros.process.topics import WIND, WIND_FILTERED, WIND_FORCE_PLANE
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.wind_report import WindReport
 from tree_sway_ros.wire.wind_messages import (
@@ -55,7 +55,7 @@ class WindNode(TreeSwayNode):
         self._filtered = self.publisher(WIND_FILTERED)
         self._held: list[Any] = []
         self._held_since: float | None = None
-        self._plane = self.publisher(FORCE_PLANE)
+        self._plane = self.publisher(WIND_FORCE_PLANE)
         kind = WIND_CLASSES[self.values['input_type']]
         self._topic = self.subscription(WIND, self._receive, kind).topic_name
         self.report_with('wind', self._statuses)

@@ -1,6 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The topics of ``topics.yaml``: name, type and quality of service of each."""
+"""
+The topics of ``topics.yaml``: name, type and quality of service of each.
+
+Each is a name of this module, as `WIND_FILTERED` is the topic ``wind/filtered``.
+"""
 
 from __future__ import annotations
 
@@ -38,27 +42,14 @@ class Topic:
 
 _TABLE = yaml.safe_load(Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8'))
 TOPICS = tuple(Topic(name, **keys) for name, keys in _TABLE.items())
+_NAMED = {each.name.lstrip('~/').replace('/', '_').upper(): each for each in TOPICS}
 
-# In the order of the file.
-(
-    WIND,
-    WIND_FILTERED,
-    FORCE_PLANE,
-    SEGMENT_POSES,
-    MARKERS,
-    TREE_DESCRIPTION,
-    TREE_STATE,
-    CAMERA,
-    IMU,
-    PUSH,
-    PULL,
-    WIND_AT,
-    WIND_THERE,
-    DIAGNOSTICS,
-    CLOCK,
-    TF,
-    TF_STATIC,
-) = TOPICS
+
+def __getattr__(name: str) -> Topic:
+    """Return the topic of a constant's name."""
+    if name not in _NAMED:
+        raise AttributeError(f'no topic {name} in topics.yaml')
+    return _NAMED[name]
 
 
 def qos_profile(topic: Topic, *, is_input: bool = False, is_replay: bool = False) -> Any:

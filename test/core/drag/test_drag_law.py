@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+import re
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -11,6 +14,7 @@ import pytest
 from scipy.integrate import quad
 from simulators import FULL
 
+from tree_sway.core.drag import drag_law
 from tree_sway.core.drag.drag_law import AIR_DENSITY, drag_density
 from tree_sway.core.model.branch_blocks import BranchBlocks
 from tree_sway.core.run.assembly import bank_of
@@ -119,6 +123,15 @@ def test_pressure_streamlines_where_it_was_measured():
     assert pine[0] == pine[1] == pytest.approx(0.5 * 1.225 * 3.07 * 4.0**-0.75)
     assert pine[2] / pine[1] == pytest.approx(1.5**-0.75)
     assert pine[3] == pine[4]
+
+
+def test_the_native_core_has_the_same_constants():
+    text = (Path(__file__).parents[3] / 'native' / 'table.h').read_text(encoding='utf-8')
+    found = dict(re.findall(r'\b(AIR_DENSITY|STREAMLINING_\w+) = ([\d.]+)', text))
+    names = ('AIR_DENSITY', 'STREAMLINING_FROM', 'STREAMLINING_TO')
+    assert {name: float(found[name]) for name in names} == {
+        name: getattr(drag_law, name) for name in names
+    }
 
 
 def test_levers_are_those_of_the_load(stem):

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 import dataclasses
 
 import pytest
@@ -137,6 +138,6 @@ def test_a_misspelt_species_has_the_nearest_name(name, guess):
 
 
 def test_every_name_is_of_one_species():
-    names = [name for each in NAMES.values() for name in each]
-    assert len(names) == len(set(names))
+    counts = Counter(name for each in NAMES.values() for name in each)
+    assert [name for name, count in counts.items() if count > 1] == []
     assert set(NAMES) == set(species_keys())

@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ import pytest
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
 from tree_sway.core.settings import model_of, USUAL  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.forest.commands.on_the_page import RiskOnThePage  # noqa: E402
@@ -28,6 +30,7 @@ from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices  # noqa: E402
 from tree_sway.simulation.wind_source import RecordedWind, SimulatedWind  # noqa: E402
+from tree_sway.stream.controls import Control, Value  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 
@@ -189,6 +192,42 @@ def test_a_table_of_risk_colours_the_trees_that_it_names(
         arguments = ['show', str(SEEDLING), '--risk', str(table), '--port', '0', '--seconds', '1']
         assert main(arguments) == 2
         assert message in capsys.readouterr().err
+
+
+def test_what_is_added_lists_its_facts_and_does_what_its_control_asks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen: list[object] = []
+
+    class Doubled(show.PageAddition):
+        factor = 1.0
+
+        def controls(self) -> tuple[Control, ...]:
+            return (Control('factor', 'Factor', 1.0, minimum=0.0, maximum=9.0),)
+
+        def apply(self, name: str, value: Value) -> bool:
+            if name != 'factor':
+                return False
+            self.factor = float(value or 0.0)
+            return True
+
+        def facts(self, simulator: Simulator) -> dict[str, str]:
+            return {'Height': f'{self.factor * simulator.tree.height:.2f} m'}
+
+    class Watched(show.PageServer):
+        def __init__(self, settings: Any, panel: Any, status: Any, *others: Any) -> None:
+            super().__init__(settings, panel, status, *others)
+            seen.extend([status()['facts'], panel.set('factor', 2.0), status()['facts']])
+            seen.extend([panel.set('pause', True), panel.values()['factor']])
+
+    monkeypatch.setattr(show, 'additions', lambda _: [Doubled])
+    monkeypatch.setattr(show, 'PageServer', Watched)
+    given = ['show', str(SEEDLING), '--port', '0', '--seconds', '0', '--model', QUICK]
+    assert main(given) == 0
+    before, *_, after, refusal, factor = seen
+    assert (refusal, factor) == (None, 2.0)
+    lengths = [float(each['Height'].split()[0]) for each in (before, after)]  # type: ignore[index]
+    assert lengths[1] == pytest.approx(2.0 * lengths[0], abs=0.02)
 
 
 @pytest.mark.parametrize(('address', 'is_warned'), [('0.0.0.0', True), ('127.0.0.1', False)])

@@ -26,7 +26,7 @@ from tree_sway_ros.process.topics import (
 @pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
 def test_each_has_the_constant_of_its_name(topic):
     name = topic.name.removeprefix('~').lstrip('/').replace('/', '_').upper()
-    assert getattr(topics, name.replace('WIND_FORCE', 'FORCE')) is topic
+    assert getattr(topics, name) is topic
 
 
 def test_names_are_relative_but_those_that_ros_fixes():
@@ -68,3 +68,8 @@ def test_types_and_qos_exist(topic):
     pytest.importorskip('rclpy')
     assert message_class(topic).__name__ == topic.type_name.rsplit('/', 1)[-1]
     assert qos_profile(topic).depth == topic.depth
+
+
+def test_a_name_of_no_topic_is_refused():
+    with pytest.raises(AttributeError, match=r'no topic SOIL in topics\.yaml'):
+        topics.__getattr__('SOIL')

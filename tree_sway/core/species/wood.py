@@ -33,7 +33,7 @@ class Species:
     drag_coefficient
         C of the drag law Cd = C U^-N in leaf, U in [m/s].
     drag_exponent
-        N of the drag law in [-], by which the crown streamlines.
+        N of the drag law in [-], by which the crown streamlines; -N is the Vogel exponent.
     bare_drag_coefficient
         Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.

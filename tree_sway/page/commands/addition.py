@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.page import Choices
-from tree_sway.stream import Control
+from tree_sway.stream import Control, Value
 
 if TYPE_CHECKING:
     from tree_sway.live import MotionFeed
@@ -46,8 +46,20 @@ class PageAddition:
         """Open what stays open while the page is served; the stack closes it."""
 
     def controls(self) -> tuple[Control, ...]:
-        """Make controls that the page shows before its own: fields of `Choices` as they begin."""
+        """
+        Make controls that the page shows before its own.
+
+        One that is a field of `Choices` makes the tree anew; any other is for `apply`.
+        """
         return ()
+
+    def apply(self, name: str, value: Value) -> bool:
+        """Do what a control asks, in the thread of the server; False if it is of another."""
+        return False
+
+    def facts(self, simulator: Simulator) -> Mapping[str, str]:
+        """Return names and values that the page lists; called twice a second by the server."""
+        return {}
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
         """Make the simulator of the tree that the command names; None for the usual one."""

@@ -43,7 +43,7 @@ from tree_sway.page.commands.addition import PageAddition
 from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.page.commands.page_controls import page_controls
 from tree_sway.simulation import WindSource
-from tree_sway.stream import ControlPanel
+from tree_sway.stream import ControlPanel, Value
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -97,7 +97,7 @@ def _serve(
     """Serve the page of a wind, with what is added to it."""
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
     own = [control for each in added for control in each.controls()]
-    first = {control.name: control.value for control in own}
+    first = {each.name: each.value for each in own if each.name in vars(choices)}
     choices = replace(choices, **first)  # type: ignore[arg-type]
     told: dict[str, tuple[str, ...]] = {}
     with waiting(f'setting {arguments.tree} up'):
@@ -110,13 +110,24 @@ def _serve(
         )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
+
+    def apply(name: str, value: Value) -> None:
+        if not any(each.apply(name, value) for each in added):
+            session.apply(name, value)
+
+    def status() -> dict[str, object]:
+        facts: dict[str, str] = {}
+        for each in added:
+            facts |= each.facts(session.simulator)
+        return {**session.status(), 'facts': facts}
+
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
-        panel = ControlPanel((*own, *controls), session.apply, session.pull)
+        panel = ControlPanel((*own, *controls), apply, session.pull)
         panel.update(session.values())
-    pages = PageServer(settings, panel, session.status, session.written, critical_winds)
+    pages = PageServer(settings, panel, status, session.written, critical_winds)
     with pages as server:
         session.serve(server)
         print_address(server, 'open')

@@ -120,6 +120,7 @@ const stream = new TreeStream(address.href, {
     status = newStatus ?? status;
     if (newStatus) {
       hideIdle();
+      listAdded(newStatus.facts ?? {});
       scene.grass.gusts.foresee(sceneTime, newStatus.wind_ahead);
     }
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
@@ -193,6 +194,14 @@ function hideIdle() {
   // Without a measured stem an age says nothing.
   panel.hide("age", !status.is_grown || !status.stem_of);
   panel.note("age", status.stem_of ? `${word("age_of")} ${status.stem_of} (McPherson 2016)` : "");
+}
+
+/** List what packages add to the facts. @param {Record<string, string>} facts */
+function listAdded(facts) {
+  element("facts").querySelectorAll(".added").forEach((each) => each.remove());
+  const rows = Object.entries(facts).map(([name, value]) =>
+    made("div", { className: "added" }, made("dt", {}, name), made("dd", {}, value)));
+  element("facts").append(...rows);
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */

@@ -14,7 +14,7 @@ import re
 
 from tree_sway.files import finite
 from tree_sway.files.wind import degrees_to_bearing
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.reading import LineFormat, Reading, Refusal, WindReading
 
 KIND = 'Vaisala WXT'
 _LINE = re.compile(r'\w[Rr][0135],')
@@ -22,7 +22,7 @@ _FIELD = re.compile(r'(D[nmx]|S[nmx])=([-\d.]*)([A-Z#])')
 _UNITS = {'M': 1.0, 'K': 1.0 / 3.6, 'S': 0.44704, 'N': 1852.0 / 3600.0}
 
 
-def read_wxt(line: str, heading: float) -> Reading | None:
+def read_wxt(line: str, heading: float, _factor: float) -> Reading | None:
     """Read a line; its directions count from the north mark, which points to a heading [rad]."""
     if not _LINE.match(line):
         return None
@@ -52,3 +52,6 @@ def read_wxt(line: str, heading: float) -> Reading | None:
         bearing,
         gust=gust * gust_factor if gust is not None and gust_factor is not None else None,
     )
+
+
+LINES = LineFormat('Vaisala WXT', read_wxt)

@@ -17,7 +17,7 @@ import re
 
 from tree_sway.files import finite
 from tree_sway.files.wind import checksum_of, degrees_to_bearing
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.reading import LineFormat, Reading, Refusal, WindReading
 
 KIND_81000 = 'Young 81000'
 KIND_85000 = 'Young 85000'
@@ -58,3 +58,6 @@ def _polar(text: str, found: re.Match[str], heading: float, factor: float) -> Re
     if bearing is None:
         return Refusal(KIND_85000, f'direction is {direction}')
     return WindReading(KIND_85000, factor * float(speed), bearing + heading, interval=0.0)
+
+
+LINES = LineFormat('Young', read_young)
