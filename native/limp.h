@@ -155,7 +155,7 @@ static bool take_part(const sway_model &model, const double *stiffness, const Co
     store(own.ahead + i, load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
   own.rows[0] = own.force;
   own.rows[1] = own.ahead;
-  const int64_t count = columns_due(m, turned + law.part.dt * fastest);
+  const int64_t count = columns_due(m, turned + law.part.dt * fastest, speed);
   find_columns(model, tree, room, count);
   renew(model, tree, room, count, room.middle, own.rate);
   // The force.

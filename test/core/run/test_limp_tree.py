@@ -87,6 +87,15 @@ def test_a_limp_tree_keeps_its_slow_coordinates():
     assert np.sqrt(hair.stiffness.min()) > FASTEST_LIMP
 
 
+@pytest.mark.parametrize('tree', [young_whip(), weeping(3)])
+def test_none_of_its_coordinates_is_lost_to_a_fast_one(tree):
+    reductions = TreeReductions(tree, WOOD, SETTINGS)
+    slow = int(np.sum(reductions.natural_modes(None).circular < FASTEST_LIMP))
+    count = slow - 2
+    assert len(reductions.modes(count).circular) == count
+    assert len(reductions.modes(slow + 10).circular) == slow
+
+
 def middles(sim, eta):
     """Middles of the segments at coordinates, (n, 3)."""
     model = sim.models[0]

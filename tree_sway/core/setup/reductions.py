@@ -114,37 +114,50 @@ class TreeReductions:
         if count == 0:
             return self.natural_modes(1).slowest(0)
         if count == n:
-            leading = self.natural_modes(None)
-        else:
-            responses = self.responses
-            leading = leading_modes(reduction, responses.rotations, responses.tips, count)
-        if self.is_limp:
-            fastest = max(FASTEST_LIMP, LEAST_SPAN * float(leading.circular.min()))
-            return leading.slower_than(fastest)
-        return leading
+            return self._slow(self.natural_modes(None))
+        rotations, tips, _ = self.responses
+        known = self._candidates
+        slow = self._slow(known)
+        if len(slow.circular) < len(known.circular):
+            # All slow ones are known: none of the leading is wasted on a fast one.
+            rotations = slow.shapes @ (slow.shapes.T @ (reduction.mass @ rotations))
+            tips = self._tips_moved(rotations)
+        return self._slow(leading_modes(reduction, rotations, tips, count))
+
+    def _slow(self, modes: Modes) -> Modes:
+        """Leave out the modes of a limp tree that are too fast."""
+        if not self.is_limp:
+            return modes
+        return modes.slower_than(max(FASTEST_LIMP, LEAST_SPAN * float(modes.circular.min())))
+
+    @property
+    def _candidates(self) -> Modes:
+        """Return the natural modes by which responses to gusts are computed."""
+        n = self.with_subtrees.reduction.n_coordinates
+        return self.natural_modes(None if n <= _CANDIDATES else _CANDIDATES)
+
+    def _tips_moved(self, rotations: Floats) -> Floats:
+        """Find the motion of the tips by key rotations, (any, c)."""
+        from tree_sway.core.setup.tree_motion import tip_motion
+
+        branches = self.with_subtrees.branches
+        return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
 
     @cached_property
     def responses(self) -> Responses:
         """Return the responses to gusts and winds of the tree reduced with its subtrees."""
         from tree_sway.core.setup.gust_responses import gust_responses
-        from tree_sway.core.setup.tree_motion import tip_motion
 
-        n = self.with_subtrees.reduction.n_coordinates
-        candidates = min(n, _CANDIDATES)
-        natural = self.natural_modes(None if candidates == n else candidates)
+        natural = self._candidates
+        loss = self.damping_ratio * np.ones(len(natural.circular))
+        tips = self._tips_moved(natural.shapes)
         branches = self.with_subtrees.branches
-
-        def moved(rotations: Floats) -> Floats:
-            return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
-
-        loss = self.damping_ratio * np.ones(candidates)
-        tips = moved(natural.shapes)
         gusts = gust_responses(branches, natural, tips, loss, self.drag_law)
         squares, mixes = np.linalg.eigh(gusts @ gusts.T)
         mixes *= np.sqrt(np.maximum(squares, 0.0))
         steady = self._static_responses()
         tips = tips @ mixes
-        moved_steadily = moved(steady)
+        moved_steadily = self._tips_moved(steady)
         weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
         answers = np.hstack([natural.shapes @ mixes, weight * steady])
         in_gale = self.drag_law.dynamic_pressure(_GALE) / weight
