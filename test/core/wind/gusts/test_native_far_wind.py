@@ -23,7 +23,7 @@ def far(bearing: float | None, *, is_sample: bool) -> FarWind:
 
 
 def by_equations(wind: FarWind, measured: Floats, dts: Floats) -> tuple[Floats, Floats]:
-    """Winds of crown and parts: means over all of the wind, at most 600 s, and low-passes of it."""
+    """Return winds of crown and parts: means over at most 600 s, and low-passes of the wind."""
     mean, variance, told, passed = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros((5, 3))
     run = span = 0.0
     wholes, aparts = [], []
