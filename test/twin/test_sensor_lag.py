@@ -103,3 +103,13 @@ def test_a_sensor_is_left_when_its_motion_has_nothing_of_the_wind() -> None:
     track = seeing(sensed, model)
     assert said(track, is_told=True)
     assert not track.in_use
+
+
+def test_a_mirrored_lean_is_that_of_an_acceleration_of_the_opposite_sign() -> None:
+    model, sensed = noise(300.0, np.random.default_rng(5))
+    track = seeing(sensed, model)
+    assert said(track, is_told=True) == ()
+    track = seeing(sensed, model)
+    track._sensed[:, :3] *= -1.0
+    assert said(track, is_told=True) == ('acceleration of the opposite sign',)
+    assert track.in_use

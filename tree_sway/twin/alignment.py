@@ -47,7 +47,7 @@ _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
 _WITHOUT = 'acceleration without gravity'
-_OPPOSITE = 6.0
+OPPOSITE = 6.0
 """Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign."""
 
 _SIGNS = {
@@ -123,6 +123,7 @@ def align(
     reference: Floats | None = None,
     window: int = 1,
     facing: float | None = None,
+    sign: float = 0.0,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -144,6 +145,8 @@ def align(
     facing
         Azimuth to which its z axis points, or its y axis where that is upright, from east to
         north in [rad]; None if it is not told.
+    sign
+        Sign of its acceleration, 1 or -1; that by which it is more alike if 0.
 
     """
     raw, sensed = sensed, averaged(sensed, window)
@@ -165,13 +168,13 @@ def align(
             sensed, model, measures, scale * signs, reference, facing, has_gravity=has_gravity
         )
 
-    signs = 1.0, 1.0
+    signs = sign or 1.0, 1.0
     found = mounted(model, signs)
     count = max(len(raw) / window, 2.0)
-    if measures[0]:
+    if measures[0] and not sign:
         opposite = mounted(model, (-1.0, 1.0))
         ratio = (1.0 - found.likeness**2) / max(1.0 - opposite.likeness**2, 1e-12)
-        if count * math.log(max(ratio, 1e-12)) > _OPPOSITE:
+        if count * math.log(max(ratio, 1e-12)) > OPPOSITE:
             signs, found = (-1.0, 1.0), opposite
     if given[:2].all() and _is_against(found.motion(raw)):
         signs = signs[0], -1.0

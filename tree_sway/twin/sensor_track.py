@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from tree_sway.twin.alignment import (
     averaged,
     GRAVITY,
     LEAST_NOISE,
+    OPPOSITE,
     TELLS_LITTLE,
 )
 from tree_sway.twin.late_wind import LONGEST_WAY
@@ -131,13 +132,22 @@ def _mountings(
 ) -> Iterator[FoundMounting]:
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-    known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
+    known: tuple[Any, ...] = (
+        sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing,
+    )  # fmt: skip
     found = align(sensed, upright, free, *known)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
     if not lag and found.problem != TELLS_LITTLE:
         model = upright if found.has_gravity else free
         left = _slow_lag(found.motion(sensed), model, windows, lags)
+        if found.has_gravity and np.isfinite(sensed[:, :3]).all():
+            # Of opposite sign, a lean is mirrored.
+            sign = -math.copysign(1.0, found.scale[0])
+            rival = align(sensed, upright, free, *known, sign)
+            other = _slow_lag(rival.motion(sensed), model, windows, lags)
+            if other.evidence > left.evidence + OPPOSITE:
+                found, left, known = rival, other, (*known, sign)
         steps = round(left.seconds / windows.dt)
         is_of_wind = left.is_sure and lags.earliest <= steps <= lags.latest
         if is_of_wind and abs(steps) >= lags.least:
