@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -132,9 +132,8 @@ def _mountings(
 ) -> Iterator[FoundMounting]:
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-    known: tuple[Any, ...] = (
-        sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing,
-    )  # fmt: skip
+    known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
+    sign = 0.0
     found = align(sensed, upright, free, *known)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
@@ -143,11 +142,11 @@ def _mountings(
         left = _slow_lag(found.motion(sensed), model, windows, lags)
         if found.has_gravity and np.isfinite(sensed[:, :3]).all():
             # Of opposite sign, a lean is mirrored.
-            sign = -math.copysign(1.0, found.scale[0])
-            rival = align(sensed, upright, free, *known, sign)
+            rival_sign = -math.copysign(1.0, found.scale[0])
+            rival = align(sensed, upright, free, *known, rival_sign)
             other = _slow_lag(rival.motion(sensed), model, windows, lags)
             if other.evidence > left.evidence + OPPOSITE:
-                found, left, known = rival, other, (*known, sign)
+                found, left, sign = rival, other, rival_sign
         steps = round(left.seconds / windows.dt)
         is_of_wind = left.is_sure and lags.earliest <= steps <= lags.latest
         if is_of_wind and abs(steps) >= lags.least:
@@ -155,7 +154,7 @@ def _mountings(
     if lag:
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known)
+        found = align(sensed, upright, free, *known, sign)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
