@@ -47,7 +47,7 @@ _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
 _WITHOUT = 'acceleration without gravity'
-OPPOSITE = 6.0
+_OPPOSITE = 6.0
 """Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign."""
 
 _SIGNS = {
@@ -116,6 +116,11 @@ class Alignment:
         return out
 
 
+    def turned(self, angle: float, error: float) -> Alignment:
+        """Return it turned from east to north by an angle of an error, both in [rad]."""
+        return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)
+
+
 def align(
     sensed: Floats,
     with_gravity: Floats,
@@ -174,7 +179,7 @@ def align(
     if measures[0] and not sign:
         opposite = mounted(model, (-1.0, 1.0))
         ratio = (1.0 - found.likeness**2) / max(1.0 - opposite.likeness**2, 1e-12)
-        if count * math.log(max(ratio, 1e-12)) > OPPOSITE:
+        if count * math.log(max(ratio, 1e-12)) > _OPPOSITE:
             signs, found = (-1.0, 1.0), opposite
     if given[:2].all() and _is_against(found.motion(raw)):
         signs = signs[0], -1.0

@@ -51,7 +51,9 @@ least logarithm of the likelihood of one over that of none, 3 standard deviation
 _PER_SECOND = 4.0
 """Samples in which motion is averaged before it is compared, per second."""
 
-_FEWEST = 48
+_FEWEST, _MANY = 32, 48
+"""Numbers of lines of the spectra from which they are compared, and from which they tell a lag."""
+
 _TAPERED = 0.1
 _PASSES = 3
 
@@ -70,6 +72,10 @@ class SensorLag(NamedTuple):
         The same over that of any lag that is none.
     motion
         Time in [s] that was compared.
+    turn
+        Angle from east to north by which it is turned from the model [rad].
+    count
+        Number of lines of the spectra that were compared.
 
     """
 
@@ -78,6 +84,18 @@ class SensorLag(NamedTuple):
     evidence: float = 0.0
     over_none: float = 0.0
     motion: float = 0.0
+    turn: float = 0.0
+    count: int = 0
+
+    @property
+    def turn_error(self) -> float:
+        """
+        Standard deviation of the turn [rad].
+
+        It is 1.4 times that of the likelihood's curvature: the noise is found of the same lines.
+        """
+        is_known = self.evidence > _CHANCE and self.count >= _MANY
+        return self.evidence**-0.5 if is_known else np.inf
 
     @property
     def is_by_chance(self) -> bool:
@@ -87,7 +105,8 @@ class SensorLag(NamedTuple):
     @property
     def is_sure(self) -> bool:
         """Whether the lag is believed."""
-        return self.over_none > _SURE and self.evidence > _CHANCE
+        is_beyond_chance = self.evidence > _CHANCE and self.count >= _MANY
+        return self.over_none > _SURE and is_beyond_chance
 
     def __str__(self) -> str:
         side = 'after' if self.seconds > 0.0 else 'before'
@@ -140,6 +159,8 @@ def sensor_lag(
         float(likelihood[at]),
         float(likelihood[at] - likelihood[np.abs(lags) <= _NONE + none].max()),
         period,
+        float(np.angle(gain[at])),
+        len(bins),
     )
 
 

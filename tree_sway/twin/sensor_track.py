@@ -25,7 +25,6 @@ from tree_sway.twin.alignment import (
     averaged,
     GRAVITY,
     LEAST_NOISE,
-    OPPOSITE,
     TELLS_LITTLE,
 )
 from tree_sway.twin.late_wind import LONGEST_WAY
@@ -48,6 +47,12 @@ mounting: gusts of less are not those of a mast 10 m away.
 
 _LONGEST = 4.0
 """Longest lag of a sensor in [s] that is looked for where the way of the wind is known."""
+
+_MIRRORED = 10.0
+"""
+Logarithm of the likelihoods from which a lean is believed to be mirrored, as by an acceleration of
+the opposite sign: 1 of 100 right ones has 6 after a minute.
+"""
 
 _ALIEN = (
     'its lean in gusts has nothing of that of the tree in this wind: check that it is of this '
@@ -145,7 +150,7 @@ def _mountings(
             rival_sign = -math.copysign(1.0, found.scale[0])
             rival = align(sensed, upright, free, *known, rival_sign)
             other = _slow_lag(rival.motion(sensed), model, windows, lags)
-            if other.evidence > left.evidence + OPPOSITE:
+            if other.evidence > left.evidence + _MIRRORED:
                 found, left, sign = rival, other, rival_sign
         steps = round(left.seconds / windows.dt)
         is_of_wind = left.is_sure and lags.earliest <= steps <= lags.latest
@@ -155,6 +160,9 @@ def _mountings(
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
         found = align(sensed, upright, free, *known, sign)
+    is_free = found.has_gravity and sensor.place.facing is None and not found.problem
+    if is_free and left.turn_error < found.azimuth_error:
+        found = found.turned(-left.turn, left.turn_error)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
