@@ -125,3 +125,13 @@ def test_a_mirrored_lean_is_that_of_an_acceleration_of_the_opposite_sign() -> No
     track._sensed[:, :3] *= -1.0
     assert said(track, is_told=True) == ('acceleration of the opposite sign',)
     assert track.in_use
+
+
+def test_a_late_sensor_stays_late_until_that_is_unlikely() -> None:
+    model, sensed = noise(200.0, np.random.default_rng(3))
+    track = seeing(sensed[:-25], model[25:])
+    assert said(track, is_told=True) == ()
+    track._is_doubted = True
+    assert said(track, is_told=True)
+    assert not track.in_use
+    assert said(seeing(sensed, model), is_told=True) == ()

@@ -48,6 +48,9 @@ mounting: gusts of less are not those of a mast 10 m away.
 _LONGEST = 4.0
 """Longest lag of a sensor in [s] that is looked for where the way of the wind is known."""
 
+_DOUBTED = 0.5
+"""Logarithm of the likelihood of a lag over that of none above which a late sensor stays late."""
+
 _MIRRORED = 10.0
 """
 Logarithm of the likelihoods from which a lean is believed to be mirrored, as by an acceleration of
@@ -97,6 +100,7 @@ class LagRange(NamedTuple):
 
     ``none`` is the largest lag of a sensor that gusts on their way through the crown have [s], and
     ``is_told`` whether the way of the wind is known: what is late then is the sensor.
+    ``is_doubted`` is whether it was late when it was looked at last.
     """
 
     earliest: int
@@ -104,6 +108,7 @@ class LagRange(NamedTuple):
     least: int
     none: float = 0.0
     is_told: bool = False
+    is_doubted: bool = False
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -172,7 +177,7 @@ def _mountings(
     is_wrong, said = False, ''
     if left.is_by_chance:
         is_wrong, said = sensor.place.facing is None, _ALIEN
-    elif left.is_sure:
+    elif left.is_sure or (lags.is_doubted and left.over_none > _DOUBTED):
         is_wrong, said = lags.is_told, f'{left} that of the tree in this wind: check its clock'
     if is_wrong:
         found = replace(found, problem=found.problem or said)
@@ -263,6 +268,7 @@ class SensorTrack:
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(LEARNING / dt)
         self._quantities = sensor.quantities
+        self._is_doubted = False
         self._moved = np.zeros(9)
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
@@ -376,6 +382,7 @@ class SensorTrack:
         """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
+        lags = lags._replace(is_doubted=self._is_doubted)
         return _mountings(sensed, computed.T.copy(), self.sensor, self._windows, lags)
 
     @property
@@ -404,6 +411,7 @@ class SensorTrack:
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
+        self._is_doubted = mounting.is_wrong
         is_kept = native.is_mounted and not native.is_refused and not mounting.is_wrong
         if found.problem and is_kept:
             return
