@@ -74,7 +74,7 @@ class SensorLag(NamedTuple):
         Time in [s] that was compared.
     turn
         Angle from east to north by which it is turned from the model [rad].
-    count
+    n_lines
         Number of lines of the spectra that were compared.
 
     """
@@ -85,7 +85,7 @@ class SensorLag(NamedTuple):
     over_none: float = 0.0
     motion: float = 0.0
     turn: float = 0.0
-    count: int = 0
+    n_lines: int = 0
 
     @property
     def turn_error(self) -> float:
@@ -94,7 +94,7 @@ class SensorLag(NamedTuple):
 
         It is 1.4 times that of the likelihood's curvature: the noise is found of the same lines.
         """
-        is_known = self.evidence > _CHANCE and self.count >= _MANY
+        is_known = self.evidence > _CHANCE and self.n_lines >= _MANY
         return self.evidence**-0.5 if is_known else np.inf
 
     @property
@@ -105,7 +105,7 @@ class SensorLag(NamedTuple):
     @property
     def is_sure(self) -> bool:
         """Whether the lag is believed."""
-        is_beyond_chance = self.evidence > _CHANCE and self.count >= _MANY
+        is_beyond_chance = self.evidence > _CHANCE and self.n_lines >= _MANY
         return self.over_none > _SURE and is_beyond_chance
 
     def __str__(self) -> str:
