@@ -253,6 +253,26 @@ typedef struct sway_dragged {
 SWAY_API void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
                         double *added);
 
+/* The wind of the g parts of a crown apart from its anemometer, by k low-passes of it. */
+typedef struct sway_farwind {
+  int64_t parts, stages; /* g, k */
+  int64_t directions, samples; /* of the mean wind, d; of a drawn field, s */
+  int64_t is_sample; /* whether what is drawn is added */
+  const double *length; /* of the low-passes [m] (k) */
+  const double
+      *weights; /* of the low-passes in winds from each direction, or all alike (d, g, k) */
+  const double *share; /* of each part in the load (g) */
+  const float *rest; /* what is drawn, over its deviations (s, g, 3); no matter where none is */
+  double *memory; /* low-passes, mean, variance and what is told of it, (k + 3, 3); the run of the
+                     wind [m], its time [s] and a number that is left alone (3), written */
+  double *whole; /* wind of the crown (3), written */
+} sway_farwind;
+
+/* Add the wind x y z [m/s] of a step of dt [s] at the anemometer, and write the wind of each part
+ * less that of the crown to `apart` (g, 3). */
+SWAY_API void sway_push_farwind(const sway_farwind *wind, double x, double y, double z, double dt,
+                                double *apart);
+
 #ifdef __cplusplus
 }
 #endif

@@ -116,6 +116,11 @@ class Alignment:
         return out
 
 
+    def turned(self, angle: float, error: float) -> Alignment:
+        """Return it turned from east to north by an angle of an error, both in [rad]."""
+        return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)
+
+
 def align(
     sensed: Floats,
     with_gravity: Floats,
@@ -123,6 +128,7 @@ def align(
     reference: Floats | None = None,
     window: int = 1,
     facing: float | None = None,
+    sign: float = 0.0,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -144,6 +150,8 @@ def align(
     facing
         Azimuth to which its z axis points, or its y axis where that is upright, from east to
         north in [rad]; None if it is not told.
+    sign
+        Sign of its acceleration, 1 or -1; that by which it is more alike if 0.
 
     """
     raw, sensed = sensed, averaged(sensed, window)
@@ -165,10 +173,10 @@ def align(
             sensed, model, measures, scale * signs, reference, facing, has_gravity=has_gravity
         )
 
-    signs = 1.0, 1.0
+    signs = sign or 1.0, 1.0
     found = mounted(model, signs)
     count = max(len(raw) / window, 2.0)
-    if measures[0]:
+    if measures[0] and not sign:
         opposite = mounted(model, (-1.0, 1.0))
         ratio = (1.0 - found.likeness**2) / max(1.0 - opposite.likeness**2, 1e-12)
         if count * math.log(max(ratio, 1e-12)) > _OPPOSITE:

@@ -39,10 +39,13 @@ class LateWind:
     ----------
     distance
         Distance of the anemometer upwind of the tree in [m].
+    is_told
+        Whether whoever steps the tree knows the way of the wind, so that no sensor tells it.
 
     """
 
-    def __init__(self, distance: float = 0.0) -> None:
+    def __init__(self, distance: float = 0.0, *, is_told: bool = False) -> None:
+        self.is_told = is_told
         self._history = WindHistory(_CAPACITY, LONGEST_WAY)
         self._mean, self._wanted = np.zeros(3), np.zeros(1)
         self._way = np.array([distance, 0.0])  # distance [m], and 1 while it is not yet known

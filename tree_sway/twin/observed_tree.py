@@ -49,7 +49,7 @@ from tree_sway.twin.learned_tree import LearnedTree
 from tree_sway.twin.members import Members, most_of, uncertainty_of
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.observer import Observer
-from tree_sway.twin.sensor_place import place_on, tip_slopes
+from tree_sway.twin.sensor_place import place_on, reach_of, tip_slopes
 from tree_sway.twin.sensor_track import SensorTrack
 from tree_sway.twin.sway_watch import SwayChange
 from tree_sway.twin.tree_fit import TreeFit
@@ -168,7 +168,8 @@ class ObservedTree(SwaySimulator):
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
         distance = within('upwind', upwind, 0.0, 1000.0, 'm')
-        self.late_wind = LateWind(0.0 if self._places else distance)
+        is_told = chosen.is_far and chosen.anemometer_bearing is not None
+        self.late_wind = LateWind(0.0 if self._places else distance, is_told=is_told)
         """The wind on its way from the anemometer."""
         self._far_crown: FarCrown | None = None
         if chosen.is_far:
@@ -209,7 +210,10 @@ class ObservedTree(SwaySimulator):
         self._rate = rate
         frequency = float(self.frequencies(1)[0])
         self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
-        tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
+        tracks = [
+            SensorTrack(each, frequency, 1.0 / rate, reach_of(self.tree, each.place))
+            for each in self.sensors.values()
+        ]
         self.observer: Observer = Observer(
             self,
             tracks,

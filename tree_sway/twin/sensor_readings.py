@@ -155,11 +155,12 @@ class SensorReadings:
     def _lags_of(self, track: SensorTrack) -> LagRange:
         """Find which lags of the wind a sensor may tell."""
         delay = self._wind.delay
-        if self._told_lag not in (None, track):
-            return NO_LAG
+        none = track.reach / max(self._unknown.mean_speed, 1.0)
+        if self._wind.is_told or self._told_lag not in (None, track):
+            return NO_LAG._replace(none=none, is_told=self._wind.is_told)
         if delay:
             least = round(_LEAST_CHANGE / self._dt)
         else:
             least = max(round(_LEAST_LAG / self._dt), track.window)
         earliest = -math.floor(delay / self._dt)
-        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least)
+        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least, none)

@@ -11,6 +11,7 @@ and so on, from all motion of the last ten minutes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 import math
 from typing import NamedTuple
 
@@ -26,7 +27,9 @@ from tree_sway.twin.alignment import (
     LEAST_NOISE,
     TELLS_LITTLE,
 )
+from tree_sway.twin.late_wind import LONGEST_WAY
 from tree_sway.twin.motion_sensor import MotionSensor
+from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.wind_lag import find_lag
 
@@ -41,6 +44,23 @@ _COMPARED, _LEAST_COMPARED = 8.0, 3.0
 Time in [s], and periods of the first sway at least, over which motions are averaged to find a
 mounting: gusts of less are not those of a mast 10 m away.
 """
+
+_LONGEST = 4.0
+"""Longest lag of a sensor in [s] that is looked for where the way of the wind is known."""
+
+_DOUBTED = 0.5
+"""Logarithm of the likelihood of a lag over that of none above which a late sensor stays late."""
+
+_MIRRORED = 10.0
+"""
+Logarithm of the likelihoods from which a lean is believed to be mirrored, as by an acceleration of
+the opposite sign: 1 of 100 right ones has 6 after a minute.
+"""
+
+_ALIEN = (
+    'its lean in gusts has nothing of that of the tree in this wind: check that it is of this '
+    'tree and time, or bring the anemometer nearer'
+)
 
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
@@ -75,11 +95,20 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
 
 
 class LagRange(NamedTuple):
-    """Earliest and latest lag of the wind in steps, and the least change of it that counts."""
+    """
+    Earliest and latest lag of the wind in steps, and the least change of it that counts.
+
+    ``none`` is the largest lag of a sensor that gusts on their way through the crown have [s], and
+    ``is_told`` whether the way of the wind is known: what is late then is the sensor.
+    ``is_doubted`` is whether it was late when it was looked at last.
+    """
 
     earliest: int
     latest: int
     least: int
+    none: float = 0.0
+    is_told: bool = False
+    is_doubted: bool = False
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -87,22 +116,25 @@ NO_LAG = LagRange(0, 0, 1)
 
 
 class Windows(NamedTuple):
-    """Steps in a period of the first sway, and steps over which mountings are compared."""
+    """Steps in a period of the first sway and over which mountings are compared; a step [s]."""
 
     period: int
     compared: int
+    dt: float
 
 
 class FoundMounting(NamedTuple):
     """
     How a sensor is mounted, and its mean difference from the model then, (9,).
 
-    ``lag`` is by how many steps the tree moves later than the model.
+    ``lag`` is by how many steps the tree moves later than the model, ``is_wrong`` whether the
+    sensor is that of another time or wind, so that it is not to be followed.
     """
 
     alignment: Alignment
     bias: Floats
     lag: int = 0
+    is_wrong: bool = False
 
 
 def _mountings(
@@ -111,19 +143,58 @@ def _mountings(
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
+    sign = 0.0
     found = align(sensed, upright, free, *known)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
+    left = SensorLag()
+    if not lag and found.problem != TELLS_LITTLE:
+        model = upright if found.has_gravity else free
+        left = _slow_lag(found.motion(sensed), model, windows, lags)
+        if found.has_gravity and np.isfinite(sensed[:, :3]).all():
+            # Of opposite sign, a lean is mirrored.
+            rival_sign = -math.copysign(1.0, found.scale[0])
+            rival = align(sensed, upright, free, *known, rival_sign)
+            other = _slow_lag(rival.motion(sensed), model, windows, lags)
+            if other.evidence > left.evidence + _MIRRORED:
+                found, left, sign = rival, other, rival_sign
+        steps = round(left.seconds / windows.dt)
+        is_of_wind = left.is_sure and lags.earliest <= steps <= lags.latest
+        if is_of_wind and abs(steps) >= lags.least:
+            lag, left = steps, SensorLag()
     if lag:
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known)
+        found = align(sensed, upright, free, *known, sign)
+    is_free = found.has_gravity and sensor.place.facing is None and not found.problem
+    if is_free and left.turn_error < found.azimuth_error:
+        found = found.turned(-left.turn, left.turn_error)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
     if not found.problem:
         model = upright if found.has_gravity else free
         bias = (found.motion(sensed) - model).mean(axis=0)
-    yield FoundMounting(found, bias, lag)
+    is_wrong, said = False, ''
+    if left.is_by_chance:
+        is_wrong, said = sensor.place.facing is None, _ALIEN
+    elif left.is_sure or (lags.is_doubted and left.over_none > _DOUBTED):
+        is_wrong, said = lags.is_told, f'{left} that of the tree in this wind: check its clock'
+    if is_wrong:
+        found = replace(found, problem=found.problem or said)
+    elif said:
+        found = replace(found, notes=(*found.notes, said))
+    yield FoundMounting(found, bias, lag, is_wrong)
+
+
+def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) -> SensorLag:
+    """Find the lag of a sensor (n, 9) by its lean, or else by the first quantity it measures."""
+    first = int(np.argmax(np.isfinite(moved).all(axis=0)))
+    rows = slice(first, first + 2)
+    frequency = 1.0 / (windows.period * windows.dt)
+    longest = _LONGEST if lags.is_told else LONGEST_WAY
+    return sensor_lag(
+        moved[:, rows], model[:, rows], frequency, windows.dt, longest=longest, none=lags.none
+    )
 
 
 def _lag(
@@ -171,11 +242,15 @@ class SensorTrack:
         First frequency of the model in [Hz].
     dt
         Time step in [s].
+    reach
+        Level distance from the middle of the crown in [m].
 
     """
 
-    def __init__(self, sensor: MotionSensor, frequency: float, dt: float) -> None:
-        self.sensor, self._dt = sensor, dt
+    def __init__(
+        self, sensor: MotionSensor, frequency: float, dt: float, reach: float = 0.0
+    ) -> None:
+        self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
         self.tells_little = False
         """Whether it is in use, and tells too little of any coordinate to correct the tree."""
@@ -190,9 +265,10 @@ class SensorTrack:
         self._computed = np.zeros((len(self._sensed), ROWS))
         period = 1.0 / frequency
         compared = max(_COMPARED, _LEAST_COMPARED * period)
-        self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1))
+        self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(LEARNING / dt)
         self._quantities = sensor.quantities
+        self._is_doubted = False
         self._moved = np.zeros(9)
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
@@ -306,6 +382,7 @@ class SensorTrack:
         """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
+        lags = lags._replace(is_doubted=self._is_doubted)
         return _mountings(sensed, computed.T.copy(), self.sensor, self._windows, lags)
 
     @property
@@ -334,7 +411,9 @@ class SensorTrack:
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
-        if found.problem and native.is_mounted and not native.is_refused:
+        self._is_doubted = mounting.is_wrong
+        is_kept = native.is_mounted and not native.is_refused and not mounting.is_wrong
+        if found.problem and is_kept:
             return
         self.alignment = found
         native.is_awaited, native.is_mounted = 0, not found.problem

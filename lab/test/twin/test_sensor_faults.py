@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
 import pytest
-from tree_sway_lab.twin.gusty_truth import gusty_motion, Outside
+from tree_sway_lab.twin.gusty_truth import gusty_motion, mast_of, Outside
 from tree_sway_lab.twin.sensor_faults import FROM
 from tree_sway_lab.twin.trial import Score, twin_score
 from tree_sway_lab.twin.true_tree import tree_called, TrueMotion
@@ -24,10 +25,10 @@ def truth() -> TrueMotion:
 
 
 @cache
-def scored(fault: str, n_sensors: int = 1) -> Score:
+def scored(fault: str, n_sensors: int = 1, bearing: float | None = None) -> Score:
     return twin_score(
         TREE, SPECIES, truth(), [AT][:n_sensors], in_leaf=False, has_band=False, fault=fault,
-        anemometer_distance=12.6,
+        anemometer_distance=12.6, anemometer_bearing=bearing,
     )  # fmt: skip
 
 
@@ -49,3 +50,16 @@ def test_a_sensor_that_fails_is_left_within_five_seconds(fault: str) -> None:
 def test_a_sensor_of_another_form_is_recognised_and_used(fault: str, note: str) -> None:
     assert any(note in each for each in scored(fault).notes)
     assert scored(fault).error < 0.8 * scored('none', 0).error
+
+
+@pytest.mark.parametrize(
+    ('fault', 'note'),
+    # A record that is stamped early ends before the wind.
+    [('late 2', 'its motion comes'), ('late -2', 'silent')],
+)
+def test_a_sensor_whose_times_are_wrong_is_left_within_two_minutes(fault: str, note: str) -> None:
+    _, bearing = mast_of(Outside())
+    assert np.isnan(scored('none', 1, bearing).told)
+    found = scored(fault, 1, bearing)
+    assert found.told < 120.0
+    assert any(note in each for each in found.notes)

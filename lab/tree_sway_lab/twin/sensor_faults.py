@@ -53,6 +53,11 @@ def _loose(motion: SensedMotion, rng: np.random.Generator) -> SensedMotion:
     return motion._replace(acceleration=acceleration, rate=rate)
 
 
+def _late(lag: float) -> Fault:
+    """Stamp samples by a lag in [s] later than they are."""
+    return lambda motion, rng: motion._replace(time=motion.time + lag)
+
+
 FAULTS: dict[str, Fault] = {
     'none': lambda motion, rng: motion,
     'spikes': _spikes,
@@ -68,7 +73,7 @@ FAULTS: dict[str, Fault] = {
         acceleration=motion.acceleration / _G, rate=np.degrees(motion.rate)
     ),
     'late 0.15': lambda motion, rng: motion._replace(time=motion.time + 0.15),
-    'late 0.5': lambda motion, rng: motion._replace(time=motion.time + 0.5),
+    **{f'late {lag:g}': _late(lag) for lag in (0.2, 0.5, 1.0, 2.0, -1.0, -2.0)},
     'drift 200 ppm': lambda motion, rng: motion._replace(time=motion.time * 1.0002),
     'bias 5 deg/s': lambda motion, rng: motion._replace(rate=motion.rate + np.radians(5.0)),
 }

@@ -168,7 +168,7 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     sensor.now = BEGAN
     session, tips = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')])  # type: ignore[arg-type]
     left = error(tips) / error(alone)
-    assert left < 1.0
+    assert left < 0.5
     status = session.status()['motion']
     (told,) = status['sensors']
     assert told['name'] == f'phone at segment:{SEGMENT}'
@@ -182,8 +182,6 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     learned = session._scene.simulator.learned
     assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
-    if left >= 0.5:
-        pytest.xfail(f'the sensor leaves {left:.2f} of the error, not below 0.5')
 
 
 def test_what_a_page_learns_is_kept_and_gone_on_with(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.core.native.library import Address as Address
     from tree_sway.core.native.library import address as address
     from tree_sway.core.native.library import contiguous as contiguous
     from tree_sway.core.native.library import LastAddress as LastAddress
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from tree_sway.core.native.stand import States as States
     from tree_sway.core.native.structures import NativeCorrection as NativeCorrection
     from tree_sway.core.native.structures import NativeDragged as NativeDragged
+    from tree_sway.core.native.structures import NativeFarWind as NativeFarWind
     from tree_sway.core.native.structures import NativeFilter as NativeFilter
     from tree_sway.core.native.structures import NativeReadings as NativeReadings
     from tree_sway.core.native.structures import NativeSensor as NativeSensor

@@ -58,6 +58,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
         ),
     ),
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
+    'sway_push_farwind': (None, (_pointer, _number, _number, _number, _number, _pointer)),
     # Motion sensors.
     'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
     'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),

@@ -84,3 +84,11 @@ class NativeDragged(Structure):
     """``sway_dragged``."""
 
     _fields_ = _fields('coordinates corrected law drag trust state')
+
+
+class NativeFarWind(Structure):
+    """``sway_farwind``."""
+
+    _fields_ = _fields(
+        'parts stages directions samples is_sample length weights share rest memory whole'
+    )

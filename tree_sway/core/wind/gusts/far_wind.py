@@ -38,6 +38,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.native import Address, contiguous, LIBRARY, NativeFarWind
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
 DECAYS = np.array([3.0, 10.0, 10.0])
@@ -54,8 +55,6 @@ travel (2 pi) tells gusts apart too.
 
 _WAVENUMBERS = np.geomspace(1e-4, 2.0, 300)
 _DIRECTIONS = 36
-_AVERAGED = 600.0
-_SLOWEST = 0.5
 SAMPLES = 1 << 14
 """Number of samples of a drawn field, after which it repeats: 4 km of wind."""
 
@@ -104,53 +103,34 @@ class FarWind:
         *,
         is_sample: bool = False,
     ) -> None:
-        self._is_sample = is_sample
         self._share = share
         self._weights = _weights(places, distance, bearing)
         self._memory = np.zeros((len(LENGTHS) + 4, 3))
-        self._passed = self._memory[: len(LENGTHS)]
-        self._mean, self._variance, self._told, self._run = self._memory[len(LENGTHS) :]
-        self._apart = np.zeros((len(share), 3))
+        self._mean, self._variance, _, self._run = self._memory[len(LENGTHS) :]
+        self._whole = np.zeros(3)
         self._rest: Singles | None = None
         if seed is not None:
             self._rest = _drawn_rest(places, size, self._weights, frequency / _USUAL, seed)
+        self._native = NativeFarWind(
+            parts=len(share), stages=len(LENGTHS), directions=len(self._weights),
+            samples=SAMPLES, is_sample=is_sample and self._rest is not None, length=LENGTHS,
+            weights=self._weights, share=share,
+            rest=np.zeros(0) if self._rest is None else self._rest,
+            memory=self._memory, whole=self._whole,
+        )  # fmt: skip
+        self._apart: Floats | None = None
+        self._apart_at = Address(0)
 
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
         Add the wind [m/s] of a step of dt [s] at the anemometer; return that of the crown, (3,).
 
-        What the wind of each part is beside it is written to `apart`, (g, 3).
+        The array is reused. What the wind of each part is beside it is written to `apart`, (g, 3).
         """
-        memory = self._run
-        wind = (x, y, z)
-        memory[1] = min(memory[1] + dt, max(_AVERAGED, dt))
-        share = dt / memory[1]
-        mean = self._mean
-        mean += share * (wind - mean)
-        east, north, _ = mean.tolist()
-        speed = max(math.hypot(east, north), _SLOWEST)
-        memory[0] += speed * dt
-        beyond = wind - mean
-        self._variance += share * (beyond * beyond - self._variance)
-        keep = np.maximum(-np.expm1(-speed * dt / LENGTHS), min(share, 1.0))
-        passed = self._passed
-        passed += keep[:, None] * (wind - passed)
-        found = self._weights_in(east, north) @ (passed - mean)
-        told = self._share @ found
-        if not self._is_sample:
-            self._told += share * (told * told - self._told)
-            lost = np.maximum(self._variance - self._told, 0.0)
-            found += mean
-            square = np.einsum('gi,gi->g', found, found)
-            # All of u, half of v and w: 0.8 of u and v, as v has 0.64 of the variance of u.
-            more = float(0.8 * (lost[0] + lost[1]) + 0.5 * lost[2])
-            found *= np.sqrt(1.0 + more / np.maximum(square, more + 1e-9))[:, None]
-        else:
-            found += mean
-            found += self._drawn(float(memory[0])) @ self._turned(east, north)
-        whole = self._share @ found
-        np.subtract(found, whole, out=apart)
-        return np.asarray(whole)
+        if apart is not self._apart:
+            self._apart_at, self._apart = contiguous(apart, (len(self._share), 3)), apart
+        LIBRARY.sway_push_farwind(self._native.at, x, y, z, dt, self._apart_at)
+        return self._whole
 
     def others(self, offsets: Ints, along: float, across: float) -> Floats:
         """
@@ -164,24 +144,6 @@ class FarWind:
         turned = np.array([[along], [across], [across]]) * self._turned(east, north)
         first = int(self._run[0] / _SPACING)
         return np.asarray(self._rest[(first + offsets) % SAMPLES] @ turned)
-
-    def _weights_in(self, east: float, north: float) -> Floats:
-        """Weights of each part in a mean wind [m/s], (g, k)."""
-        if len(self._weights) == 1:
-            return self._weights[0]
-        at = math.atan2(north, east) / (2.0 * math.pi) % 1.0 * _DIRECTIONS
-        first = int(at)
-        low = self._weights[first % _DIRECTIONS]
-        high = self._weights[(first + 1) % _DIRECTIONS]
-        return np.asarray(low + (at - first) * (high - low))
-
-    def _drawn(self, run: float) -> Floats:
-        """Drawn wind of each part at a run of the wind [m], over its deviations, (g, 3)."""
-        assert self._rest is not None
-        at = run / _SPACING
-        first = int(at)
-        low = self._rest[first % SAMPLES]
-        return np.asarray(low + (at - first) * (self._rest[(first + 1) % SAMPLES] - low))
 
     def _turned(self, east: float, north: float) -> Floats:
         """Wind per drawn one along the mean wind, across it and up, (3, 3)."""

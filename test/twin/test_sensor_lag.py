@@ -1,0 +1,137 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A sensor that is late is told by its lean in slow gusts, and a right one never."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway.core.arrays import Floats
+from tree_sway.twin.alignment import GRAVITY
+from tree_sway.twin.motion_sensor import MotionSensor
+from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
+from tree_sway.twin.sensor_place import SensorPlace
+from tree_sway.twin.sensor_track import NO_LAG, SensorTrack
+
+DT, F1, LOSS = 1.0 / 20.0, 1.2, 10.0
+
+
+def noise(
+    seconds: float, rng: np.random.Generator, loss: float = LOSS
+) -> tuple[Floats, Floats]:
+    """Draw slow gusts to east and north, and gusts that share ``exp(-loss f)`` of them, (n, 2)."""
+    n = round(seconds / DT)
+    frequency = np.fft.rfftfreq(n, DT)[:, None]
+    lines = rng.normal(size=(2, len(frequency), 2, 2)) @ [1.0, 1j]
+    lines /= (1.0 + 6.0 * frequency * 8.0) ** (5.0 / 6.0)
+    shared = np.exp(-loss * frequency)
+    other = shared * lines[0] + np.sqrt(1.0 - shared**2) * lines[1]
+    slow = lines[0] * np.exp(-LOSS * frequency)
+    first, second = (np.fft.irfft(each, n, axis=0) for each in (slow, other))
+    return first / first.std(), second / second.std()
+
+
+def lag_of(late: float, seconds: float, seed: int = 1, loss: float = LOSS) -> SensorLag:
+    model, sensed = noise(seconds + 10.0, np.random.default_rng(seed), loss)
+    shift = round(late / DT)
+    return sensor_lag(sensed[100 - shift : -100 - shift], model[100:-100], F1, DT)
+
+
+@pytest.mark.parametrize('late', [-2.0, -1.5, 1.5, 2.0])
+def test_a_late_or_early_sensor_is_told_with_its_lag(late: float) -> None:
+    found = lag_of(late, 600.0)
+    assert found.is_sure
+    assert found.seconds == pytest.approx(late, abs=3.0 * found.error)
+    assert found.error < 0.4
+    assert ('after' if late > 0.0 else 'before') in str(found)
+
+
+def test_a_right_sensor_is_not_told_to_be_late() -> None:
+    found = [lag_of(0.0, seconds, seed) for seconds in (100.0, 300.0) for seed in range(100)]
+    assert not any(each.is_sure or each.is_by_chance for each in found)
+    within = [abs(each.seconds) < 2.0 * each.error for each in found]
+    assert np.mean(within) > 0.85
+
+
+def test_a_sensor_is_turned_by_what_it_is_turned_from_the_model() -> None:
+    found = []
+    for seed in range(100):
+        model, sensed = noise(300.0, np.random.default_rng(seed))
+        turned = sensed @ [[0.0, 1.0], [-1.0, 0.0]]
+        found.append(sensor_lag(turned, model, F1, DT))
+    errors = np.array([each.turn - 0.5 * np.pi for each in found])
+    stated = np.array([each.turn_error for each in found])
+    assert np.sqrt(np.mean(np.square(errors))) < np.radians(8.0)
+    assert 0.7 < np.sqrt(np.mean(np.square(errors / stated))) < 1.2
+
+
+def test_motions_of_nothing_in_common_are_told() -> None:
+    found = [lag_of(0.0, 200.0, seed, loss=1e9) for seed in range(100)]
+    assert np.mean([each.is_sure for each in found]) < 0.02
+    assert np.mean([each.is_by_chance for each in found]) > 0.95
+    assert not any(lag_of(0.0, 200.0, seed).is_by_chance for seed in range(100))
+
+
+def test_a_short_motion_tells_nothing() -> None:
+    assert not lag_of(2.0, 20.0).is_sure
+    assert lag_of(2.0, 20.0).error == np.inf
+
+
+def seeing(sensed: Floats, model: Floats) -> SensorTrack:
+    """Return a sensor in use that has seen a lean, (n, 2), beside that of the model."""
+    track = SensorTrack(MotionSensor('phone', SensorPlace(0, 0.5)), F1, DT)
+    track._quantities = ('acceleration',)
+    n = track.native.count = len(model)
+    track._sensed[:n] = np.nan
+    track._sensed[:n, :3] = [0.0, 0.0, GRAVITY]
+    track._sensed[:n, :2] += sensed
+    track._computed[:n, 3:5] = model
+    track.native.is_mounted = track.native.in_use = 1
+    return track
+
+
+def said(track: SensorTrack, *, is_told: bool) -> tuple[str, ...]:
+    """Return what a sensor says after its mounting was found again."""
+    track.take(next(track.search(NO_LAG._replace(is_told=is_told))))
+    assert track.alignment is not None
+    return (*track.alignment.notes, *filter(None, [track.alignment.problem]))
+
+
+@pytest.mark.parametrize('is_told', [True, False])
+def test_a_late_sensor_is_left_where_the_way_of_the_wind_is_known(is_told: bool) -> None:
+    model, sensed = noise(600.0, np.random.default_rng(3))
+    track = seeing(sensed, model)
+    assert said(track, is_told=is_told) == ()
+    assert track.in_use
+    track = seeing(sensed[:-40], model[40:])
+    (told,) = said(track, is_told=is_told)
+    assert told.startswith('its motion comes')
+    assert track.in_use != is_told
+
+
+def test_a_sensor_is_left_when_its_motion_has_nothing_of_the_wind() -> None:
+    model, sensed = noise(300.0, np.random.default_rng(4), 1e9)
+    track = seeing(sensed, model)
+    assert said(track, is_told=True)
+    assert not track.in_use
+
+
+def test_a_mirrored_lean_is_that_of_an_acceleration_of_the_opposite_sign() -> None:
+    model, sensed = noise(300.0, np.random.default_rng(5))
+    track = seeing(sensed, model)
+    assert said(track, is_told=True) == ()
+    track = seeing(sensed, model)
+    track._sensed[:, :3] *= -1.0
+    assert said(track, is_told=True) == ('acceleration of the opposite sign',)
+    assert track.in_use
+
+
+def test_a_late_sensor_stays_late_until_that_is_unlikely() -> None:
+    model, sensed = noise(200.0, np.random.default_rng(3))
+    track = seeing(sensed[:-25], model[25:])
+    assert said(track, is_told=True) == ()
+    track._is_doubted = True
+    assert said(track, is_told=True)
+    assert not track.in_use
+    assert said(seeing(sensed, model), is_told=True) == ()
