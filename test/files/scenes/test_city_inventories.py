@@ -297,7 +297,8 @@ def test_measurements_in_a_list_of_records_are_read(tmp_path: Path) -> None:
     """As pytreedb has them: of each name the first record with a value."""
     measured = [{'source': 'TLS', 'height_m': 22.5}, {'DBH_cm': 25.0, 'height_m': 21.0}]
     path = tmp_path / 'tree.geojson'
-    path.write_text(json.dumps(feature(8.6, 49.0, species='Betula pendula', measurements=measured)))
+    one = feature(8.6, 49.0, species='Betula pendula', measurements=measured)
+    path.write_text(json.dumps(one))
     check(read(path), [('birch', 22.5, 0.25)])
 
 
