@@ -13,6 +13,7 @@ import pytest
 
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import shorter_than
+from tree_sway.errors import FormatError
 from tree_sway.files.column_names import COLUMNS, is_name, name_and_unit, unit_in_name, UNITS
 from tree_sway.files.scenes.inventory.cell_number import stems_number
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
@@ -173,3 +174,9 @@ def test_a_simulation_longer_than_its_wind_says_so(stem: Callable[..., Tree]) ->
     wind = np.zeros((30, 3))
     assert any('0.5 s of the 60 s' in each for each in simulate(stem(), wind, seconds=60.0).notes)
     assert not any('asked for' in each for each in simulate(stem(), wind, seconds=0.5).notes)
+
+
+def test_a_quote_that_is_open_to_the_end_leaves_no_rows():
+    lines = ['"time,u,v', '0,1,2"']
+    with pytest.raises(FormatError, match='a quote is open from the header to the end'):
+        parse_table(lines, 'a.csv')

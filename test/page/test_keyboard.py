@@ -193,3 +193,86 @@ def test_all_that_can_be_operated_has_a_name_in_the_accessibility_tree(
         assert len([name for role, name in named if role == 'button']) >= 13
 
     visit(browser_class, live[0], script)
+
+
+_OF_FOCUS = """(() => {
+  const e = document.activeElement, b = e.getBoundingClientRect();
+  const middle = document.elementFromPoint(0.5 * (b.left + b.right), 0.5 * (b.top + b.bottom));
+  return {
+    name: e.id || e.localName,
+    seen: Math.min(b.left, b.top, innerWidth - b.right, innerHeight - b.bottom) >= -1
+      && (e.contains(middle) || Boolean(middle?.contains(e))),
+  };
+})()"""
+_CARDS = """['head', 'traces', 'panel', 'tools'].map((id) => {
+  const b = document.getElementById(id).getBoundingClientRect();
+  return [b.left, b.top, b.right, b.bottom];
+}).filter(([left, top, right, bottom]) => right > left && bottom > top)"""
+_IS_CLEAR = """(() => {
+  const [low, high] = [treeSway.scene._low, treeSway.scene._high];
+  const [x, y] = low.map((each, c) => 0.5 * (each + high[c]));
+  const cards = ['head', 'traces', 'panel', 'tools']
+    .map((id) => document.getElementById(id).getBoundingClientRect());
+  return [low[2], 0.5 * (low[2] + high[2]), high[2]].every((z) => {
+    const at = treeSway.scene.camera.project([x, y, z]);
+    const [left, top] = [at[0] * innerWidth, at[1] * innerHeight];
+    const isIn = left >= 0 && left <= innerWidth && top >= 0 && top <= innerHeight;
+    const isOn = (b) => b.left < left && left < b.right && b.top < top && top < b.bottom;
+    return isIn && !cards.some(isOn);
+  });
+})()"""
+"""Whether foot, middle and tip of the tree are in the picture, and behind no card."""
+
+
+@pytest.mark.parametrize(
+    ('width', 'height', 'zoom'), [(640, 360, 2.0), (320, 256, 4.0)], ids=['200 %', '400 %']
+)
+def test_a_window_that_is_zoomed_hides_neither_the_tree_nor_a_control(
+    live: tuple[str, SimulatedWind, list[str]],
+    browser_class: Any,
+    width: int,
+    height: int,
+    zoom: float,
+) -> None:
+    """Of 1280 x 720 at 200 %, and of 1280 x 1024 at 400 %."""
+
+    async def script(browser: Browser) -> None:
+        await browser.call(
+            'Emulation.setDeviceMetricsOverride',
+            width=width, height=height, deviceScaleFactor=zoom, mobile=False,
+        )  # fmt: skip
+        await browser.call('Page.reload')  # a window that was opened so, as its panel is closed
+        await browser.until(f'innerWidth === {width} && {LIVE}')
+        await browser.until("!document.getElementById('pull').hidden")
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 2')
+        # A text that comes late makes its card higher, and the tree makes room for it.
+        await browser.run("document.getElementById('warnings').textContent = 'a warning'")
+        await browser.until(_IS_CLEAR)
+        cards = await browser.run(_CARDS)
+        for i, one in enumerate(cards):
+            for other in cards[:i]:
+                apart = one[0] >= other[2] or other[0] >= one[2]
+                assert apart or one[1] >= other[3] or other[1] >= one[3], (one, other)
+        found = set()
+        for is_open in ('false', 'true'):
+            await browser.run(f"document.getElementById('panel').open = {is_open}")
+            wanted = set(await browser.run(CONTROLS))
+            found |= wanted
+            reached = dict[str, dict[str, Any]]()
+            for _ in range(40):
+                await press(browser, 'Tab')
+                end = asyncio.get_running_loop().time() + 2.0
+                while not (at := await browser.run(_OF_FOCUS))['seen']:  # it scrolls there
+                    if asyncio.get_running_loop().time() > end:
+                        break
+                reached.setdefault(at['name'], at)
+            assert wanted <= set(reached)
+            assert [each for name, each in reached.items() if name in wanted - {'view'}
+                    and not each['seen']] == []  # fmt: skip
+        away = {'shown', 'time'} if zoom > 2.0 else set()  # the lines have no room at 400 %
+        assert set(EFFECTS) - away <= found
+        assert await browser.run('document.documentElement.scrollWidth') <= width
+        assert await browser.run('document.documentElement.scrollHeight') <= height
+
+    visit(browser_class, live[0], script)

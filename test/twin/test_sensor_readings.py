@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+import resource
 from types import SimpleNamespace
 from typing import Any
 
@@ -192,3 +194,17 @@ def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() 
         track._next_fit = 10**9
     assert track.alignment is None
     assert not track.in_use
+
+
+def test_the_memory_of_a_sensor_is_there_from_the_beginning() -> None:
+    """It was asked for alone, and came as samples did: a process grew for ten minutes."""
+
+    def resident() -> float:
+        pages = int(Path('/proc/self/statm').read_text().split()[1])
+        return pages * resource.getpagesize()
+
+    before = resident()
+    track = SensorTrack(MotionSensor('a', SensorPlace(0, 0.5)), 1.0, 1e-3)
+    size = track._sensed.nbytes + track._computed.nbytes
+    assert size > 5e7
+    assert resident() - before > 0.8 * size

@@ -276,6 +276,9 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     separator = max(SEPARATORS, key=header.count)
     if any('"' in text for text in texts):
         numbers, texts = whole_rows(numbers, texts, separator)
+        if len(texts) < 2:
+            what = 'no header and rows: a quote is open from the header to the end'
+            raise FormatError(what, where=f'{source}:{numbers[0]}', cure='close it in the header')
     # A line of one cell is a remark, with numbers of its own.
     first = '\n'.join(text for text in texts[1:50] if separator in text.rstrip(separator))
     if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):

@@ -261,8 +261,9 @@ class SensorTrack:
         """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
         self.picked = slice(0, 0)
         """Rows of a sample, (9,), of these."""
-        self._sensed = np.zeros((round(_MEMORY / dt), 9))
-        self._computed = np.zeros((len(self._sensed), ROWS))
+        # Written, not only asked for: its memory is all there from the beginning.
+        self._sensed = np.full((round(_MEMORY / dt), 9), 0.0)
+        self._computed = np.full((len(self._sensed), ROWS), 0.0)
         period = 1.0 / frequency
         compared = max(_COMPARED, _LEAST_COMPARED * period)
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)

@@ -293,6 +293,15 @@ def test_one_feature_of_geojson(tmp_path: Path) -> None:
     check(read(path), [('hornbeam', 12.5, None)])
 
 
+def test_measurements_in_a_list_of_records_are_read(tmp_path: Path) -> None:
+    """As pytreedb has them: of each name the first record with a value."""
+    measured = [{'source': 'TLS', 'height_m': 22.5}, {'DBH_cm': 25.0, 'height_m': 21.0}]
+    path = tmp_path / 'tree.geojson'
+    one = feature(8.6, 49.0, species='Betula pendula', measurements=measured)
+    path.write_text(json.dumps(one))
+    check(read(path), [('birch', 22.5, 0.25)])
+
+
 def test_neighbours_on_both_sides_of_the_date_line_stand_side_by_side(tmp_path: Path) -> None:
     path = tmp_path / 'taveuni.csv'
     rows = ('oak,12,-16.8,179.9999', 'oak,12,-16.8,-179.9999', 'oak,12,-16.8,180.0002')

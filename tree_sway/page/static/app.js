@@ -468,7 +468,11 @@ for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700 && window.innerHeight > 560;
 scene.camera.room = room;
-element("panel").addEventListener("toggle", fit);
+// A button of the bar that the keyboard reaches comes into the bar whole.
+element("tools").addEventListener("focusin", ({ target }) => /** @type {Element} */ (target).scrollIntoView({ inline: "center", block: "nearest" }));
+// A card grows when its text comes, or its panel is opened.
+const sizes = new ResizeObserver(fit);
+for (const id of ["head", "traces", "panel", "tools"]) sizes.observe(element(id));
 window.addEventListener("resize", () => requestAnimationFrame(fit));
 scene.camera.listen(canvas);
 stream.open();

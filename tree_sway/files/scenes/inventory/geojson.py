@@ -63,11 +63,20 @@ def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     """Yield the cells of each feature."""
     is_one = document.get('type') == 'Feature'
     for feature in map(_object, [document] if is_one else _list(document.get('features'))):
-        properties = _object(feature.get('properties'))
+        properties = _flat(_object(feature.get('properties')))
         place = _place(_object(feature.get('geometry')).get('coordinates'))
         taken = _PLACES if place else ()
         cells = {name: each for name, each in properties.items() if name.lower() not in taken}
         yield {name: _text(each) for name, each in cells.items()} | place
+
+
+def _flat(properties: dict[str, Any]) -> dict[str, Any]:
+    """Properties, and those of the records in a list among them, of which the first with one."""
+    inside: dict[str, Any] = {}
+    for each in properties.values():
+        for record in reversed(list(map(_object, _list(each)))):
+            inside |= {name: cell for name, cell in record.items() if cell is not None}
+    return inside | properties
 
 
 def _place(coordinates: Any) -> dict[str, str]:

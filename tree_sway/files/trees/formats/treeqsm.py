@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+import re
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,10 @@ def _is_text(head: str) -> bool:
     lines = [line for line in head.splitlines() if line.strip()][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
+    names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
+    places = {re.sub(r'[^a-z]', '', name): place for place, name in enumerate(_COLUMNS)}
+    if any(places.get(name, place) != place for place, name in enumerate(names)):
+        return False  # a header that names them elsewhere
     narrow = []
     for line in lines:
         row = list(map(finite, _cells(line)))
@@ -171,7 +176,10 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
     columns = []
     for field, width in _FIELDS.items():
         if field not in fields:
-            raise FormatError(f"{name} has no numbers '{field}'", where=source)
+            if field == 'extension':
+                continue  # continuations are found by the diameters, as without its column
+            cure = 'save the QSM struct of TreeQSM'
+            raise FormatError(f"{name} has no numbers '{field}'", where=source, cure=cure)
         try:
             column = numbers(fields[field], field)
         except FormatError as error:

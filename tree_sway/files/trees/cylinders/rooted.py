@@ -1,0 +1,73 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree of nodes that edges join, of which none says where the tree begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.errors import FormatError
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
+
+
+def cylinders_of_edges(
+    point: Floats, edges: Ints, radius: Floats, source: str, *, of_nodes: bool
+) -> Cylinders:
+    """
+    Make the segments of the largest part that hangs together, from its lowest node outwards.
+
+    Parameters
+    ----------
+    point
+        Positions of the nodes in [m], (n, 3).
+    edges
+        Both nodes of each edge, (m, 2).
+    radius
+        Radius in [m] of each node, (n,), if ``of_nodes``, else of each edge, (m,).
+    source
+        Name of the file in errors.
+    of_nodes
+        Whether segments are cones between the radii of their nodes, and not cylinders.
+
+    Raises
+    ------
+    FormatError
+        No edges, an edge to a node that is not there, or edges that close a ring.
+
+    """
+    n = len(point)
+    if len(edges) == 0:
+        raise FormatError('no edges', where=source, cure='join the nodes of each segment')
+    for row in np.flatnonzero(((edges < 0) | (edges >= n)).any(axis=1))[:1]:
+        what = f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes'
+        raise FormatError(what, where=source, cure='number the nodes from 0')
+    graph = csr_array((np.ones(len(edges)), edges.T), shape=(n, n))
+    _, part = connected_components(graph, directed=False)
+    largest = np.argmax(np.bincount(part))
+    inside = np.flatnonzero(part == largest)
+    if np.count_nonzero(part[edges[:, 0]] == largest) >= len(inside):
+        what = 'edges that close a ring, where a tree has none'
+        raise FormatError(what, where=source, cure='remove one edge of the ring')
+    root = inside[np.argmin(point[inside, 2])]
+    order, before = breadth_first_order(graph, root, directed=False)
+    place = np.full(n + 1, -1)  # with one for the parent of the root
+    place[order] = np.arange(len(order))
+    if not of_nodes:
+        own = np.zeros(n)
+        own[np.where(before[edges[:, 0]] == edges[:, 1], edges[:, 0], edges[:, 1])] = radius
+        radius = own
+    parent = place[np.maximum(before[order], -1)]
+    labels = [f'{source}: node {number}' for number in order.tolist()]
+    made = cylinders_of_nodes(
+        point[order], 2.0 * radius[order], parent, labels, source, cones=of_nodes
+    )
+    notes = ['the tree begins at its lowest node']
+    if len(inside) < n:
+        notes.append(f'{n - len(inside)} nodes hang on other parts and are left out')
+    return replace(made, notes=tuple(notes))
