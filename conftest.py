@@ -241,6 +241,14 @@ def _lacks(error):
 
 
 @pytest.fixture
+def short_storms(monkeypatch):
+    """Find strength in winds of one minute in place of ten: figures that are compared alone."""
+    from tree_sway.simulation.rig import Rig
+
+    monkeypatch.setitem(Rig.strength_curve.__kwdefaults__, 'seconds', 60.0)
+
+
+@pytest.fixture
 def installed():
     """Give a function that skips a test of a command whose modules are not installed."""
 

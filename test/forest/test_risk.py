@@ -111,6 +111,7 @@ def test_a_thicker_stem_uses_less_and_leaves_cost() -> None:
 
 
 @pytest.mark.parametrize('exposure', ['open', pytest.param('stand', marks=pytest.mark.long)])
+@pytest.mark.usefixtures('short_storms')
 def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
     exposure: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -126,6 +127,7 @@ def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
     assert strength[part][0] == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.usefixtures('short_storms')
 def test_a_tree_that_no_storm_breaks_has_a_row() -> None:
     result = compute_kind(RiskKind('spruce', 3.0, 15.0))
     assert not result.error

@@ -121,8 +121,8 @@ def test_fast_replays_of_processes_are_the_same_and_say_what_they_are(
     run, observer, statuses, tmp_path, tree_file, rate
 ):
     """Two runs of the nodes as they are launched, each in a process of its own."""
-    wind = gusty(tmp_path, count=200)
-    last = 10**9 + 99 * 10**8
+    wind = gusty(tmp_path, count=140)
+    last = 10**9 + 69 * 10**8
     frames, known = observer.listen(SEGMENT_POSES, raw=True, depth=2000), None
 
     def are_ready():

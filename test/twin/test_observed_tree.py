@@ -354,11 +354,12 @@ def test_a_tree_without_a_band_says_how_to_get_one() -> None:
     assert 'has_band' in str(caught.value.cure)
 
 
-def test_a_step_with_a_sensor_makes_no_arrays() -> None:
+def test_a_step_with_a_sensor_makes_no_arrays(tmp_path: Path) -> None:
     """In a process of its own: threads of others and what traces lines allocate too."""
-    script = 'import test_observed_tree; test_observed_tree.print_memory_of_steps()'
+    np.savez(tmp_path / 'swayed.npz', truth().wind, *measured())
+    script = 'import test_observed_tree as t; t.print_memory_of_steps(*t.np.load({!r}).values())'
     environment = {**os.environ, 'PYTHONPATH': str(Path(__file__).parent)}
-    command = [sys.executable, '-c', script]
+    command = [sys.executable, '-c', script.format(str(tmp_path / 'swayed.npz'))]
     ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert ran.returncode == 0, ran.stderr
     peak, kept = map(int, ran.stdout.split())
@@ -367,18 +368,17 @@ def test_a_step_with_a_sensor_makes_no_arrays() -> None:
     assert kept < 500
 
 
-def print_memory_of_steps() -> None:
+def print_memory_of_steps(wind: Floats, *motion: Floats) -> None:
     """Print the peak of 198 steps over the memory before them, and what they keep [B]."""
     twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
-    wind, motion = [tuple(each) for each in truth().wind.tolist()], measured()
-    rows = [motion.time.tolist(), motion.acceleration.tolist(), motion.rate.tolist()]
-    samples = list(zip(*rows, strict=True))
+    winds = [tuple(each) for each in wind.tolist()]
+    samples = list(zip(*(each.tolist() for each in motion), strict=True))
 
     def sway(first: int, last: int) -> None:
         for k in range(first, last):
             time, acceleration, rate = samples[k]
             twin.offer('phone', time, acceleration=acceleration, rate=rate)
-            twin.step(wind[k], DT)
+            twin.step(winds[k], DT)
 
     sway(0, LEARNED)
     assert twin.observer.is_active

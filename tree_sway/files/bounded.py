@@ -19,7 +19,7 @@ import os
 from pathlib import Path
 import subprocess
 import sys
-from typing import Any
+from typing import Any, IO
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def unpacked_rows(array: np.ndarray[Any, np.dtype[np.uint8]]) -> Iterator[list[s
         yield text.split(_CELL_END)
 
 
-def _main(module: str, name: str, path: str, *words: str) -> None:
+def _main(*words: str) -> None:
     with suppress(ImportError):  # of systems other than Unix, where the parent has a timeout
         import resource
 
@@ -113,13 +113,18 @@ def _main(module: str, name: str, path: str, *words: str) -> None:
             hard = resource.getrlimit(kind)[1]
             unlimited = hard == resource.RLIM_INFINITY
             resource.setrlimit(kind, (most if unlimited else min(most, hard), hard))
+    _answer(sys.stdout.buffer, *words)
+
+
+def _answer(to: IO[bytes], module: str, name: str, path: str, *words: str) -> None:
+    """Write the arrays of a function of a module; end the program with the error it raises."""
     found: dict[str, Any] = {}
     try:
         for each, array in getattr(import_module(module), name)(path, *words):
             found[each] = array
             if len(found) > _MAX_ARRAYS:
                 raise ValueError(f'more than {_MAX_ARRAYS} arrays')
-        np.savez(sys.stdout.buffer, **found)
+        np.savez(to, **found)
     except ModuleNotFoundError as error:
         sys.exit(f'no module {error.name}')
     except TreeSwayError as error:

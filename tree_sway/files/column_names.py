@@ -49,6 +49,8 @@ _SHAPEFILE_NAME = 10
 """Length at which the names of columns of shapefiles are cut off."""
 _SHORTEST_CUT = 8
 """Letters that the beginning of a known name has at least."""
+_LONGEST_NAME = 200
+"""Characters of the longest name whose words are compared with units."""
 _IN = re.compile(r'^(in|en)(?=\w)')
 """Word between a name and its unit."""
 
@@ -179,6 +181,8 @@ def _without_unit(name: str, kind: str) -> tuple[str, str]:
 
     A unit of one letter, or ``in``, is the last word; the first word is one only of a known name.
     """
+    if len(name) > _LONGEST_NAME:  # a header without end
+        return '', ''
     words = re.split(r'[\s_]+|\.(?=\D)', name.strip().lower())
     whole = folded(name)
     found = '', ''

@@ -100,6 +100,7 @@ def test_sensors_sit_on_the_stem_and_then_on_the_stoutest_limbs() -> None:
     assert places[0] == f'{tree.branch_names[0]}:0.6'
 
 
+@pytest.mark.long  # `test/twin/test_observed_tree.py` has this law in every run
 def test_one_sensor_takes_away_most_of_the_error(capsys: pytest.CaptureFixture[str]) -> None:
     words = 'lab twin --easy --model 90 --seconds 45 --sensors 1 --'.split()
     assert main([*words, 'spruce 4 6']) == 0

@@ -49,10 +49,11 @@ def test_a_sound_model_is_stepped_and_placed(arrays):
     assert np.isfinite(stepped(bytes_of(arrays))).all()
 
 
-def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays):
-    sound, rng, refused = bytes_of(arrays), np.random.default_rng(3), 0
+@pytest.mark.parametrize('seed', [3, 4])  # two processes share the many trials of a sanitizer
+def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays, seed):
+    sound, rng, refused = bytes_of(arrays), np.random.default_rng(seed), 0
     header = 16 + 72 * len(arrays)
-    for trial in range(TRIALS):
+    for trial in range(TRIALS // 2):
         content = bytearray(sound)
         # Headers, indices and numbers alike.
         end = header if trial % 3 == 0 else len(content)
@@ -68,7 +69,7 @@ def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays):
         else:
             continue
         assert "array '" in reason
-    assert 0.2 * TRIALS < refused < TRIALS
+    assert 0.1 * TRIALS < refused < TRIALS // 2
 
 
 @pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf, 1e308])

@@ -20,6 +20,8 @@ from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.recording.bag_reader import read_bag  # noqa: E402
 from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 STATE_TYPE, DESCRIPTION_TYPE = 'std_msgs/msg/Float64MultiArray', 'std_msgs/msg/String'
 TYPES = get_typestore(Stores.ROS2_JAZZY)
 SECOND = 1_000_000_000

@@ -11,6 +11,7 @@ import math
 from pathlib import Path
 import sqlite3
 import struct
+import sys
 
 import numpy as np
 import pytest
@@ -23,6 +24,8 @@ from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.source import open_scene
 
 #: Head and rows; then species, height [m] and diameter [m] of each tree, None where not checked.
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 CITIES = {
     'Berlin': (
         'standortnr;art_dtsch;art_bot;gattung;stammumfg;baumhöhe [m];x;y\n'
@@ -404,8 +407,7 @@ def test_spreadsheet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / 'cut.xlsx').write_bytes(path.read_bytes()[:1000])
     with pytest.raises(FormatError, match='not a spreadsheet that can be read'):
         open_scene(tmp_path / 'cut.xlsx')
-    (tmp_path / 'openpyxl.py').write_text("raise ModuleNotFoundError(name='openpyxl')")
-    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setitem(sys.modules, 'openpyxl', None)
     with pytest.raises(MissingDependencyError, match='openpyxl'):
         open_scene(path)
 

@@ -14,6 +14,8 @@ import pytest
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.source import open_scene
 
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 HEADER = ('id', 'species', 'height', 'dbh', 'x', 'y')
 OAK, BIRCH, SPRUCE = (
     (1, 'oak', 12.0, 30.0, 0, 0),

@@ -20,6 +20,8 @@ from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.tree_file import read_tree
 
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 TREES = Path(__file__).parents[4] / 'shared/data/trees'
 OURS = Path(__file__).parents[1] / 'data' / 'tree121.csv'
 

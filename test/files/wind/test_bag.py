@@ -10,6 +10,8 @@ from tree_sway.files.wind.wind_file import read_wind
 rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags is not installed')
 typesys = pytest.importorskip('rosbags.typesys')
 
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
 BEGIN = 1_700_000_000
 

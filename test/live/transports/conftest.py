@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 import socket
 import threading
+import time
 from typing import Any
 
 import pytest
@@ -32,8 +33,11 @@ class Heard:
         return [each.data for each in self.messages]
 
     def until(self, condition: Callable[[], Any]) -> None:
+        end = time.monotonic() + DEADLINE
         with self._more:
-            assert self._more.wait_for(condition, DEADLINE), (self.messages, self.said)
+            while not condition():
+                assert time.monotonic() < end, (self.messages, self.said)
+                self._more.wait(0.05)  # also for what is no message
 
     def _take(self, message: Message) -> None:
         with self._more:

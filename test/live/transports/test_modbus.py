@@ -10,6 +10,7 @@ import threading
 import pytest
 
 from test.live.conftest import modbus  # noqa: F401
+from tree_sway.live.transports import modbus as modbus_transport
 from tree_sway.live.transports.modbus import checksum, Modbus
 
 
@@ -89,7 +90,8 @@ def test_late_answers_without_end_do_not_hold_a_link(hear, server) -> None:
 
 
 @pytest.mark.parametrize('seed', range(5))
-def test_no_answer_breaks_a_link(hear, modbus, seed: int) -> None:  # noqa: F811
+def test_no_answer_breaks_a_link(hear, modbus, monkeypatch, seed: int) -> None:  # noqa: F811
+    monkeypatch.setattr(modbus_transport, '_TIMEOUT', 0.1)
     rng = random.Random(seed)
 
     def answer(request: bytes) -> bytes:

@@ -84,7 +84,7 @@ def test_a_large_message_is_passed_over_and_the_next_is_read(hear, server, answe
         (b'\x20\x02\x00\x63', 'code 99'),
         (HELD + b'\x90\x03\x00\x01\x80', 'refuses the topic'),
         (b'\x30\xff\xff\xff\xff\x01', 'not MQTT'),
-        (b'HTTP/1.1 400 Bad Request\r\n\r\n', 'does not answer|not MQTT|closed|reset'),
+        (b'HTTP/1.1 400 Bad Request\r\n' + b' ' * 99, 'does not answer|not MQTT|closed|reset'),
     ],
 )
 def test_a_refusal_of_a_broker_is_told(hear, server, answering, answer: bytes, said: str) -> None:

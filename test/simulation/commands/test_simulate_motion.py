@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +28,9 @@ from tree_sway.twin.sensor_place import place_on
 DT = 1.0 / 60.0
 
 
-def recorded(folder: Path, seconds: float = 45.0) -> Floats:
-    """Write a wind and the motion of a softer tree in it; return its displacements, (n, 3)."""
+@cache
+def swayed(seconds: float) -> tuple[Floats, dict[str, str]]:
+    """Return the displacements of a softer tree, (n, 3), and tables of its wind and its motion."""
     tree, species = builtin_tree('goldcrest'), species_named('goldcrest')
     softer = replace(species, modulus=0.8 * species.modulus)
     sim = make_simulator(tree, softer, model=40, crown_coherence=0.3)
@@ -43,12 +45,21 @@ def recorded(folder: Path, seconds: float = 45.0) -> Floats:
     sensor = SimulatedSensor(Rotation.from_euler('xyz', [1.0, 2.0, 3.0]), rate=100.0)
     motion = sensor.measured(poses, DT, rng)
     sensed = [motion.time, *motion.acceleration.T, *motion.rate.T]
+    tables = {}
     for name, head, columns in (
         ('wind', 'time,u,v,w', [DT * np.arange(len(wind)), *wind.T]),
         ('motion', 'time,ax,ay,az,gx,gy,gz', sensed),
     ):
         rows = '\n'.join(','.join(f'{x:.9g}' for x in row) for row in zip(*columns, strict=True))
-        (folder / f'{name}.csv').write_text(f'{head}\n{rows}\n', encoding='utf-8')
+        tables[f'{name}.csv'] = f'{head}\n{rows}\n'
+    return tips, tables
+
+
+def recorded(folder: Path, seconds: float = 45.0) -> Floats:
+    """Write a wind and the motion of a softer tree in it; return its displacements, (n, 3)."""
+    tips, tables = swayed(seconds)
+    for name, text in tables.items():
+        (folder / name).write_text(text, encoding='utf-8')
     return tips
 
 

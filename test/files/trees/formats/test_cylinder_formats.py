@@ -12,6 +12,8 @@ from tree_sway.errors import FormatError, TreeError, TreeSwayError
 from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
+pytestmark = pytest.mark.usefixtures('readers_in_this_process')
+
 DATA = Path(__file__).parents[2] / 'data'
 CYLINDER_FILES = ['fork.simpleforest.csv', 'fork.archi.csv', 'fork.treeqsm23.txt',
                   'fork.treeqsm24.txt', 'fork.pytlidar.txt']  # fmt: skip
