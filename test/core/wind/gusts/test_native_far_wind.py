@@ -19,7 +19,7 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def far(bearing: float | None, *, is_sample: bool) -> FarWind:
-    return FarWind(PLACES, np.full(3, 0.5), SHARE, 12.0, bearing, 3, is_sample=is_sample)
+    return FarWind(PLACES, np.full(3, 0.5), SHARE, 1.0, 12.0, bearing, 3, is_sample=is_sample)
 
 
 def by_equations(wind: FarWind, measured: Floats, dts: Floats) -> tuple[Floats, Floats]:
