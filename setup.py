@@ -77,8 +77,8 @@ if 'bdist_wheel' in sys.argv:
 
 NATIVE = 'tree_sway.core.native._sway'
 SOURCES = (
-    'branch_loads', 'far_wind', 'gusts', 'limp_layout', 'model', 'observe', 'place_layout', 'propagate',
-    'room', 'samples', 'stand', 'target',
+    'branch_loads', 'far_wind', 'gusts', 'limp_layout', 'model', 'observe', 'place_layout',
+    'propagate', 'room', 'samples', 'stand', 'target',
 )  # fmt: skip
 #: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
 TARGETS = {

@@ -17,9 +17,7 @@ from tree_sway.twin.sensor_track import NO_LAG, SensorTrack
 DT, F1, LOSS = 1.0 / 20.0, 1.2, 10.0
 
 
-def noise(
-    seconds: float, rng: np.random.Generator, loss: float = LOSS
-) -> tuple[Floats, Floats]:
+def noise(seconds: float, rng: np.random.Generator, loss: float = LOSS) -> tuple[Floats, Floats]:
     """Draw slow gusts to east and north, and gusts that share ``exp(-loss f)`` of them, (n, 2)."""
     n = round(seconds / DT)
     frequency = np.fft.rfftfreq(n, DT)[:, None]

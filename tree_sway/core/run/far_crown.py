@@ -54,7 +54,7 @@ class FarCrown:
 
     @staticmethod
     def _places(tree: Tree, part: Ints) -> tuple[Floats, Floats]:
-        """Middle of each part from the highest point [m], (g, 3), and its root mean square radius [m], (g,)."""
+        """Middle of each part from the highest point, (g, 3), and its rms radius, (g,), in [m]."""
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         total = np.maximum(np.bincount(part, area, N_DELAYS), 1e-12)
         centre = 0.5 * (tree.start + tree.end)

@@ -25,10 +25,10 @@ A sample adds what may be: a drawn field, whose limbs share gusts by the same la
 ``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
 turbulence, and follows the measured one as far as that tells.
 
-Of gusts that are smaller than what they move ``1 / (1 + C k l)`` of the power acts. Up to the first
-frequency of the tree that is a whole part, and above it less: the frequency of a branch falls with
-the square root of its length, so modes at a frequency f move pieces of a length that falls as
-``f^-2``, ``l = size min(1, 2 / (1 + (f / f_1)^2))``.
+Of gusts that are smaller than what they move ``1 / (1 + C k l)`` of the power acts. Up to the
+first frequency of the tree that is a whole part, and above it less: the frequency of a branch
+falls with the square root of its length, so modes at a frequency f move pieces of a length that
+falls as ``f^-2``, ``l = size min(1, 2 / (1 + (f / f_1)^2))``.
 """
 
 from __future__ import annotations
