@@ -42,7 +42,7 @@ class Climate:
     shape: float | None = None
 
     def per_year(self, speed: float) -> float:
-        """How often a year has a mean wind of a speed [m/s] or more at 10 m [-]."""
+        """Return how often a year has a mean wind of a speed [m/s] or more at 10 m."""
         if self.shape is not None:
             return _HOURS * math.exp(-((speed / self.speed) ** self.shape))
         squared = (speed / self.speed) ** 2 * (1.0 + _K * _REDUCED_50)
@@ -51,8 +51,12 @@ class Climate:
     def __str__(self) -> str:
         """Say what it is."""
         if self.shape is not None:
-            return f'hours of a Weibull distribution, scale {self.speed:g} m/s, shape {self.shape:g}'
+            return f'hours of a Weibull distribution, {self.speed:g} m/s, shape {self.shape:g}'
         return f'{self.speed:g} m/s once in 50 years (EN 1991-1-4)'
+
+
+INLAND = Climate()
+"""Zone 1 of the German annex of EN 1991-1-4."""
 
 
 def climate_of(text: str) -> Climate:
@@ -62,7 +66,8 @@ def climate_of(text: str) -> Climate:
         climate = Climate(speed, *shape)
     except (TypeError, ValueError):
         cure = 'give a basic wind, 25, or scale and shape of a Weibull distribution, 4.5,2'
-        raise ParameterError(f"'{text[:40]}' is no climate", where='--climate', cure=cure) from None
+        what = f"'{text[:40]}' is no climate"
+        raise ParameterError(what, where='--climate', cure=cure) from None
     within('--climate', climate.speed, 0.5, 80.0, 'm/s')
     if climate.shape is not None:
         within('--climate', climate.shape, 0.5, 10.0)

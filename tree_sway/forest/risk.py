@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.files.scenes import Inventory, kind_classes
-from tree_sway.forest.climate import beaufort, Climate, SUMMER
+from tree_sway.forest.climate import beaufort, Climate, INLAND, SUMMER
 from tree_sway.forest.cluster import cluster, DEADLINE, run_all
 from tree_sway.forest.risk_kind import (
     compute_kind,
@@ -44,6 +44,10 @@ MOST_KINDS = 64
 RAREST = 10_000
 """Years between winds above which they are not told apart; no record is as long."""
 CLASSES = 5
+_FOUND = (
+    'limited_by', CRITICAL, 'critical_wind_10m [km/h]', 'beaufort', 'low_80 [m/s]',
+    'high_80 [m/s]', 'stem [m/s]', 'roots [m/s]', 'years', 'years_low_80', 'class',
+)  # fmt: skip
 _CROWN = 0.75
 _KM_H = 3.6
 _WIDER = 1.25
@@ -55,7 +59,7 @@ class RiskWork:
 
     inventory: Inventory
     kinds: dict[RiskKind, list[int]]
-    climate: Climate = Climate()
+    climate: Climate = INLAND
 
 
 def risk_work(
@@ -65,7 +69,7 @@ def risk_work(
     *,
     exposure: str = 'open',
     spacing: float | None = None,
-    climate: Climate = Climate(),
+    climate: Climate = INLAND,
 ) -> RiskWork:
     """
     Group the trees of an inventory into at most some kinds; more alike where they are few.
@@ -140,7 +144,7 @@ def rows_of_kind(work: RiskWork, result: KindResult) -> list[Row]:
 
 
 def add_classes(rows: Sequence[Row]) -> None:
-    """Number the fifths of the rows by their critical winds from 1, which fall first."""
+    """Say in which fifth of the rows each falls, by critical winds: 1 falls first."""
     ranked = sorted(
         (row for row in rows if row[CRITICAL] is not None), key=lambda row: row[CRITICAL]
     )
@@ -162,36 +166,36 @@ def _row(work: RiskWork, row: int, result: KindResult) -> Row:
         'diameter [m]': round(diameter, 3) if np.isfinite(diameter) else None,
         'exposure': result.kind.exposure,
     }
-    winds = {
-        (part, curves.in_leaf): _winds(curves, part, height, diameter, result)
+    limits = [
+        (winds[part][1] / _calm(curves, result), part, curves, winds)
         for curves in result.seasons
-        for part in ('stem', 'roots')
-    }
-    rates = {each: work.climate.per_year(wind[1] / _summer(each, result)) for each, wind in winds.items()}
-    first = max(winds, key=lambda each: (rates[each], -winds[each][1])) if winds else None
-    low, middle, high = winds[first] if first is not None else (None, None, None)
-    years = {'years': None, 'years_low_80': None}
-    if first is not None:
-        weakest = work.climate.per_year(winds[first][0] / _summer(first, result))
-        seasons = {each[1]: rates[each] for each in sorted(rates, key=lambda each: rates[each])}
-        years = {'years': _years(sum(seasons.values())), 'years_low_80': _years(weakest)}
-    found |= {
-        'limited_by': '' if first is None else f'{first[0]}, {_season(first[1])}',
-        CRITICAL: _rounded(middle),
-        'critical_wind_10m [km/h]': _rounded(middle, _KM_H),
-        'beaufort': None if middle is None else beaufort(middle),
-        'low_80 [m/s]': _rounded(low),
-        'high_80 [m/s]': _rounded(high),
-        **years,
-        'class': None,
-        'assumed': '; '.join(_assumed(inventory, row, result, middle)),
-    }
-    return found
+        for winds in [_winds(curves, height, diameter, result)]
+        for part in [min(winds, key=lambda each: winds[each][1])]
+    ]
+    if limits:
+        speed, part, curves, winds = min(limits, key=lambda limit: limit[0])
+        low, middle, high = winds[part]
+        per_year = work.climate.per_year
+        found |= {
+            'limited_by': f'{part}, {"in leaf" if curves.in_leaf else "bare"}',
+            CRITICAL: round(middle, 2),
+            'critical_wind_10m [km/h]': round(_KM_H * middle, 2),
+            'beaufort': beaufort(middle),
+            'low_80 [m/s]': round(low, 2),
+            'high_80 [m/s]': round(high, 2),
+            'stem [m/s]': round(winds['stem'][1], 2),
+            'roots [m/s]': round(winds['roots'][1], 2),
+            'years': _years(sum(per_year(limit[0]) for limit in limits)),
+            'years_low_80': _years(per_year(low * speed / middle)),
+        }
+    found |= dict.fromkeys(name for name in _FOUND if name not in found)
+    critical = found[CRITICAL]
+    return found | {'assumed': '; '.join(_assumed(inventory, row, result, critical))}
 
 
-def _summer(limit: tuple[str, bool], result: KindResult) -> float:
-    """Factor of the wind of the season of a limit: that of leaves that fall, or the year's [-]."""
-    return SUMMER if limit[1] and len(result.seasons) > 1 else 1.0
+def _calm(curves: SeasonCurves, result: KindResult) -> float:
+    """Wind of the season over that of the year [-]: leaves that fall meet the summer's."""
+    return SUMMER if curves.in_leaf and len(result.seasons) > 1 else 1.0
 
 
 def _years(rate: float) -> float:
@@ -199,36 +203,32 @@ def _years(rate: float) -> float:
     return float(f'{min(1.0 / max(rate, 1e-9), RAREST):.2g}')
 
 
-def _season(in_leaf: bool) -> str:
-    return 'in leaf' if in_leaf else 'bare'
-
-
 def _winds(
-    curves: SeasonCurves, part: str, height: float, diameter: float, result: KindResult
-) -> tuple[float, float, float]:
-    """Critical wind at 10 m of stem or roots [m/s]: low, middle and high."""
-    curve = curves.stem if part == 'stem' else curves.roots
+    curves: SeasonCurves, height: float, diameter: float, result: KindResult
+) -> dict[str, list[float]]:
+    """Critical winds at 10 m of stem and roots [m/s]: low, middle and high."""
     slenderness = height / diameter if np.isfinite(diameter) else result.slenderness
     load = 2.0 if curves.in_leaf else 1.0
     own = result.exposure.scaled(height)
-    power = (2.0 if part == 'roots' and not own.is_alone else 3.0) - load
-    more = (slenderness / result.slenderness) ** power
     scale = _at_crown(result.exposure.scaled(result.kind.height)) / _at_crown(own)
     scale *= own.at_ten_metres
-    used = (wood_band if part == 'stem' else root_band)(in_leaf=curves.in_leaf)
-    middle, high, low = (
-        min(scale * curve.speed_of(1.0 / (each * more)), FASTEST) for each in used.tolist()
-    )
-    return low, middle, high
+    parts = {
+        'stem': (curves.stem, wood_band, 3.0),
+        'roots': (curves.roots, root_band, 3.0 if own.is_alone else 2.0),
+    }
+    return {
+        part: sorted(
+            min(scale * curve.speed_of(1.0 / (used * more)), FASTEST)
+            for used in band(in_leaf=curves.in_leaf).tolist()
+        )
+        for part, (curve, band, power) in parts.items()
+        for more in [(slenderness / result.slenderness) ** (power - load)]
+    }
 
 
 def _at_crown(exposure: Exposure) -> float:
     """Wind three quarters up a tree over the mean wind of its exposure [-]."""
     return float(exposure.profile().over_anemometer(np.array(_CROWN * exposure.height)))
-
-
-def _rounded(value: float | None, factor: float = 1.0) -> float | None:
-    return None if value is None else round(factor * value, 2)
 
 
 def _assumed(

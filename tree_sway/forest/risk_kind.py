@@ -54,7 +54,7 @@ class RiskKind:
 
 @dataclass(frozen=True)
 class SeasonCurves:
-    """Shares of strength of the stem and of roots by the mean wind of the exposure, leaves or none."""
+    """Shares of strength of the stem and of roots by the mean wind, with leaves or without."""
 
     in_leaf: bool
     stem: ShareCurve

@@ -12,8 +12,8 @@ fail at `ROOT_MOMENT` for each kg of the stem. Of 24 large shade trees, maples o
 were pulled down none came out of the ground: 11 broke in the stem and 13 at a fork (Kane &
 Clouston 2008, Arboriculture & Urban Forestry 34, 101-109), so theirs held more than that. And
 35 % of the reported failures of urban trees are of roots (International Tree Failure Database
-2013, quoted in Arboriculture & Urban Forestry 40, 230-236), so it is not much more. A stem of
-shade trees is a small part of their wood: for each kg of it they would hold much less than spruces.
+2013, quoted in Arboriculture & Urban Forestry 40, 230-236), so it is not much more. The
+stem of a shade tree is a small part of its wood: the rule of stands would not know the limbs.
 
 Bands hold the strength and the load (`strength_band`).
 

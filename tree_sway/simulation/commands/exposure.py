@@ -57,7 +57,8 @@ def touched_species(exposure: Exposure, species: Species, learned: LearnedTree |
 def refuse_spacing_in_the_open() -> None:
     """Raise the `ParameterError` of a spacing where no tree has neighbours."""
     cure = 'add --exposure stand or --exposure edge'
-    raise ParameterError('trees in the open or in a street have no spacing', where='--spacing', cure=cure)
+    what = 'trees in the open or in a street have no spacing'
+    raise ParameterError(what, where='--spacing', cure=cure)
 
 
 def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
