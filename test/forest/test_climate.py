@@ -25,7 +25,8 @@ def test_hours_of_a_weibull_distribution() -> None:
 
 
 def test_beaufort_is_that_of_the_table() -> None:
-    assert [beaufort(speed) for speed in (0.2, 10.7, 10.8, 24.5, 32.7, 60.0)] == [0, 5, 6, 10, 12, 12]
+    forces = {0.2: 0, 10.7: 5, 10.8: 6, 24.5: 10, 32.7: 12, 60.0: 12}
+    assert {speed: beaufort(speed) for speed in forces} == forces
 
 
 @pytest.mark.parametrize('text', ['windy', '', '1,2,3', '0', 'nan', '5,99', '-3'])
