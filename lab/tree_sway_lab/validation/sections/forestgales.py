@@ -44,8 +44,7 @@ _TEXT = (
     'deviation of the logarithm. ForestGALES has two methods, for stands (`fg_rou`) and for '
     'single trees (`fg_tmc`); ours is compared with both, and they with each other. The limit of '
     'a spread is that of one wind for all trees. Its wood breaks at the base of the stem; ours '
-    'where a branch is strained most, which is the stem in the crown or, in pines, a limb near '
-    'the top.'
+    'in the lower half of it.'
 )
 
 
