@@ -30,7 +30,10 @@ _LEFT_OUT = (
     'rot, wounds and forks, wet or shallow soil and pruning are not included; '
     'it is no verdict on a tree'
 )
-_ERRS = 'it errs late: of sound trees in firm soil; beside a storm look at the band (low_80)'
+_ERRS = (
+    'it errs early for sound trees: more fall here than in hurricanes; those with rot or wet soil '
+    'fall before'
+)
 _COLORS = ('#b2182b', '#ef8a62', '#cccccc', '#67a9cf', '#2166ac')
 
 
