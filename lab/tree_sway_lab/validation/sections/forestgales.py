@@ -18,9 +18,14 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files import parse_table
 from tree_sway.files.scenes import Inventory, inventory_of
-from tree_sway.forest import compute_kind, risk_work, Row, rows_of_kind
-from tree_sway.forest.risk import RiskWork
-from tree_sway.forest.risk_kind import KindResult
+from tree_sway.forest import (
+    compute_kind,
+    KindResult,
+    risk_work,
+    RiskWork,
+    Row,
+    rows_of_kind,
+)
 from tree_sway.tables import table_beside
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
