@@ -116,10 +116,12 @@ def _drawn(rows: list[Row], climate: Climate, table: Path) -> str:
         return ''
     figure = new_figure(8.0, 5.0)
     axes = figure.add_subplot()
-    for rank, row in enumerate(drawn):
-        color = _COLORS[row['class'] - 1]
-        axes.plot([rank] * 2, [row['low_80 [m/s]'], row['high_80 [m/s]']], color=color, lw=1.5)
-        axes.plot(rank, row[CRITICAL], 'o', color=color, ms=3.0)
+    low, middle, high = (
+        [row[name] for row in drawn] for name in ('low_80 [m/s]', CRITICAL, 'high_80 [m/s]')
+    )
+    colors = [_COLORS[row['class'] - 1] for row in drawn]
+    axes.vlines(range(len(drawn)), low, high, colors=colors)
+    axes.scatter(range(len(drawn)), middle, c=colors, s=9.0)
     if len(drawn) <= 40:
         axes.set_xticks(range(len(drawn)), [row['name'] for row in drawn], rotation=90)
     if climate.shape is None:
