@@ -16,11 +16,12 @@ import pytest
 from tree_sway.commands import cli
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
+from tree_sway.forest.climate import Climate
 from tree_sway.forest.commands import risk as risk_command
 from tree_sway.forest.risk import risk_work, Row, rows_of_kind
 from tree_sway.forest.risk_kind import compute_kind, KindResult, RiskKind, SeasonCurves
 from tree_sway.simulation.critical_wind import ShareCurve
-from tree_sway.simulation.exposure import Exposure, EXPOSURES
+from tree_sway.simulation.exposure import Exposure
 from tree_sway.simulation.strength_band import wood_band
 
 pytest.importorskip('distributed', reason='needs dask.distributed')
@@ -40,7 +41,7 @@ def inventory(folder: Path, text: str) -> Inventory:
 
 
 def power_result(kind: RiskKind) -> KindResult:
-    """Curves of a kind whose wood breaks at 20 m/s in leaf and whose roots fail at 25 m/s."""
+    """Curves of a kind whose stem breaks at 20 m/s in leaf and whose roots fail at 25 m/s."""
     speed = np.array([10.0, 30.0])
     seasons = [
         SeasonCurves(
@@ -50,7 +51,8 @@ def power_result(kind: RiskKind) -> KindResult:
         )
         for in_leaf, more in ((True, 1.0), (False, 1.5))
     ]
-    return KindResult(kind, tuple(seasons), kind.slenderness or 40.0)
+    exposure = Exposure(kind.exposure, kind.height, anemometer_height=10.0)
+    return KindResult(kind, tuple(seasons), kind.slenderness or 40.0, exposure)
 
 
 def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Path) -> None:
@@ -63,20 +65,20 @@ def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Pat
         for row in rows_of_kind(each, power_result(kind))
     }
     assert rows[2]['critical_wind_10m [m/s]'] == 20.0
-    assert rows[2]['limited_by'] == 'wood, in leaf'
-    assert rows[2]['roots_in_leaf [m/s]'] == 25.0
-    assert rows[2]['wood_bare [m/s]'] == 30.0
+    assert rows[2]['limited_by'] == 'stem, in leaf'
+    assert rows[2]['roots [m/s]'] == 25.0
     assert rows[2]['critical_wind_10m [km/h]'] == 72.0
-    top = math.log(20.0 / 0.03) / math.log(10.0 / 0.03)
-    assert rows[2]['critical_wind_top [m/s]'] == pytest.approx(20.0 * top, abs=0.01)
-    # Load d^2 in leaf and d bare, by U^2; section modulus d^3, mass of the stem d^2.
-    assert rows[3]['wood_in_leaf [m/s]'] == pytest.approx(20.0 * 1.1**0.5, abs=0.01)
-    assert rows[3]['roots_in_leaf [m/s]'] == 25.0
-    assert rows[3]['wood_bare [m/s]'] == pytest.approx(30.0 * 1.1, abs=0.01)
-    assert rows[3]['roots_bare [m/s]'] == pytest.approx(37.5 * 1.1**0.5, abs=0.01)
+    assert rows[2]['beaufort'] == 8
+    # Leaves meet the summer's wind: 20 m/s is as rare as 23.8 m/s, bare it stands until 30 m/s.
+    per_year = Climate().per_year(20.0 / 0.84) + Climate().per_year(30.0)
+    assert rows[2]['years'] == pytest.approx(1.0 / per_year, rel=0.05)
+    assert rows[2]['years_low_80'] < 0.2 * rows[2]['years']
+    # Load d^2 in leaf, by U^2; section modulus d^3, of the stem and of roots.
+    assert rows[3]['stem [m/s]'] == pytest.approx(20.0 * 1.1**0.5, abs=0.01)
+    assert rows[3]['roots [m/s]'] == pytest.approx(25.0 * 1.1**0.5, abs=0.01)
     # The crown of a higher tree is in faster wind.
     higher = math.log(0.75 * 20.0 / 0.03) / math.log(0.75 * 21.0 / 0.03)
-    assert rows[4]['wood_in_leaf [m/s]'] == pytest.approx(20.0 * higher, abs=0.01)
+    assert rows[4]['stem [m/s]'] == pytest.approx(20.0 * higher, abs=0.01)
     assert 'stem by height' in rows[4]['assumed']
     low, high = rows[2]['low_80 [m/s]'], rows[2]['high_80 [m/s]']
     _, least, most = wood_band(in_leaf=True)
@@ -92,7 +94,7 @@ def test_kinds_are_few_in_a_large_inventory(tmp_path: Path) -> None:
         height = rng.uniform(4.0, 30.0)
         lines.append(f'{rng.choice(species)},{height:.1f},{height * rng.uniform(1.2, 4.0):.0f}')
     work = risk_work(inventory(tmp_path, '\n'.join(lines)))
-    assert len(work.kinds) <= 96
+    assert len(work.kinds) <= 64
     assert sorted(row for rows in work.kinds.values() for row in rows) == list(range(20_000))
 
 
@@ -100,17 +102,15 @@ def test_kinds_are_few_in_a_large_inventory(tmp_path: Path) -> None:
 def test_a_thicker_stem_uses_less_and_leaves_cost() -> None:
     slender, thick = (compute_kind(RiskKind('oak', 12.0, ratio)) for ratio in (60.0, 40.0))
     for one, other in zip(slender.seasons, thick.seasons, strict=True):
-        assert one.wood.share[0] > other.wood.share[0]
+        assert one.stem.share[0] > other.stem.share[0]
     in_leaf, bare = thick.seasons
-    # Leaves grow with the section of the stem, as the strength of roots does; bare branches less.
-    assert slender.seasons[0].roots.share[0] == pytest.approx(in_leaf.roots.share[0], rel=0.1)
     assert slender.seasons[1].roots.share[0] > 1.05 * bare.roots.share[0]
-    assert in_leaf.wood.speed_of(1.0) < bare.wood.speed_of(1.0)
-    again = compute_kind(RiskKind('oak', 12.0, 60.0)).seasons[0].wood
-    np.testing.assert_array_equal(again.share, slender.seasons[0].wood.share)
+    assert in_leaf.stem.speed_of(1.0) < bare.stem.speed_of(1.0)
+    again = compute_kind(RiskKind('oak', 12.0, 60.0)).seasons[0].stem
+    np.testing.assert_array_equal(again.share, slender.seasons[0].stem.share)
 
 
-@pytest.mark.parametrize('exposure', ['open', pytest.param('stand', marks=pytest.mark.long)])
+@pytest.mark.parametrize('exposure', ['street', pytest.param('stand', marks=pytest.mark.long)])
 @pytest.mark.usefixtures('short_storms')
 def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
     exposure: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -118,13 +118,14 @@ def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
     text = 'x,y,species,height,dbh\n0,0,spruce,12,17\n'
     work = risk_work(inventory(tmp_path, text), exposure=exposure)
     (kind,) = work.kinds
-    (row,) = rows_of_kind(work, compute_kind(kind))
-    wind = row['critical_wind_10m [m/s]' if exposure == 'open' else 'critical_wind_top [m/s]']
+    result = compute_kind(kind)
+    (row,) = rows_of_kind(work, result)
+    wind = row['critical_wind_10m [m/s]'] / result.exposure.scaled(12.0).at_ten_metres
     words = ['info', str(tmp_path / 'trees.csv'), '--exact', '--exposure', exposure]
     assert cli.main([*words, '--count', '1', '--speed', str(wind), '--json']) == 0
     strength = json.loads(capsys.readouterr().out)['strength']
-    part = row['limited_by'].partition(',')[0]
-    assert strength[part][0] == pytest.approx(1.0, abs=0.05)
+    shares = {'stem': strength['stem'], 'roots': strength['roots'][0]}
+    assert shares[row['limited_by'].partition(',')[0]] == pytest.approx(1.0, abs=0.05)
 
 
 @pytest.mark.usefixtures('short_storms')
@@ -132,7 +133,7 @@ def test_a_tree_that_no_storm_breaks_has_a_row() -> None:
     result = compute_kind(RiskKind('spruce', 3.0, 15.0))
     assert not result.error
     (in_leaf,) = result.seasons
-    assert in_leaf.wood.speed_of(1.0) > 40.0
+    assert in_leaf.stem.speed_of(1.0) > 40.0
 
 
 @pytest.mark.long
@@ -145,21 +146,35 @@ def test_a_spruce_of_a_stand_breaks_where_forestgales_says_and_an_open_one_befor
     strength = math.pi / 32.0 * 0.9 * 36.0e6 * diameter**3
     published = math.sqrt(strength / (111.91 * diameter**2 * height))
     over_published = {}
-    for exposure in EXPOSURES:
+    for exposure in ('open', 'edge', 'stand'):
         result = compute_kind(RiskKind('spruce', height, slenderness, exposure=exposure))
         (in_leaf,) = result.seasons
         top = float(result.exposure.profile().over_anemometer(np.array(height)))
-        over_published[exposure] = top * in_leaf.wood.speed_of(1.0) / published
+        over_published[exposure] = top * in_leaf.stem.speed_of(1.0) / published
     print(f'wind at the top that breaks the wood, over ForestGALES: {over_published}')
     assert over_published['stand'] == pytest.approx(1.0, abs=0.15)
     assert over_published['edge'] < 0.75 * over_published['stand']
     assert 0.5 < over_published['open'] < 0.85
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ('species', 'height', 'dbh'), [('plane', 18.0, 0.6), ('maple', 12.0, 0.35)]
+)
+def test_the_median_street_tree_stands_where_hurricanes_left_most_trees(
+    species: str, height: float, dbh: float
+) -> None:
+    """13 % were lost at 177 km/h, a mean of one minute (Duryea et al. 2007), 0.9 of it in ten."""
+    result = compute_kind(RiskKind(species, height, height / dbh, exposure='street'))
+    bare = result.seasons[1]
+    town = min(bare.stem.speed_of(1.0), bare.roots.speed_of(1.0))
+    assert town * result.exposure.at_ten_metres > 0.9 * 177.0 / 3.6
+
+
 def test_each_tree_has_the_exposure_of_its_row_or_of_the_argument(tmp_path: Path) -> None:
     text = 'species,height,exposure\noak,20,Stand\noak,20,\noak,20,open\noak,20,forest\n'
     trees = inventory(tmp_path, text)
-    assert any("'forest' is none of open, edge, stand" in note for note in trees.notes)
+    assert any("'forest' is none of open, street, edge, stand" in note for note in trees.notes)
     work = risk_work(trees, exposure='edge', spacing=4.0)
     found = {row: (kind.exposure, kind.spacing) for kind in work.kinds for row in work.kinds[kind]}
     assert found == {0: ('stand', 4.0), 1: ('edge', 4.0), 2: ('open', 0.0), 3: ('edge', 4.0)}
@@ -171,7 +186,6 @@ def test_a_wind_at_the_top_of_a_stand_is_stated_above_its_displacement(tmp_path:
     kind = RiskKind('oak', 20.0, 40.0, exposure='stand')
     result = replace(power_result(kind), exposure=exposure)
     rows = rows_of_kind(type(risk_work(trees))(trees, {kind: [0, 1]}), result)
-    assert [row['critical_wind_top [m/s]'] for row in rows] == [20.0, 20.0]
     assert [row['exposure'] for row in rows] == ['stand', 'stand']
     for row, height in zip(rows, (20.0, 30.0), strict=True):
         d, z0 = exposure.displacement, exposure.profile().roughness
@@ -229,20 +243,19 @@ def test_the_command_writes_a_row_per_tree_in_the_order_of_the_inventory(
             for name in ('low_80 [m/s]', 'critical_wind_10m [m/s]', 'high_80 [m/s]')
         )
         assert 3.0 < low < middle < high <= 80.0
-        parts = [
-            float(row[f'{part}_{season} [m/s]'])
-            for part in ('wood', 'roots')
-            for season in ('in_leaf', 'bare')
-            if row[f'{part}_{season} [m/s]']
-        ]
-        assert middle == min(parts)
+        assert middle == min(float(row[f'{part} [m/s]']) for part in ('stem', 'roots'))
+        assert row['class'] in '12345'
     assert rows[1]['assumed'].startswith('height by stem')
-    assert (rows[2]['wood_bare [m/s]'] == '') == is_real
+    assert table.with_suffix('.png').read_bytes()[:4] == b'\x89PNG'
+    assert said.out.splitlines()[-1].startswith('it errs early')
     first = table.read_bytes()
     assert cli.main(words) == 2
     assert 'exists' in capsys.readouterr().err
     assert cli.main([*words, '--force']) == 0
     assert table.read_bytes() == first
+    assert cli.main([*words, '--force', '--sort']) == 0
+    winds = [float(row['critical_wind_10m [m/s]']) for row in written(table)]
+    assert winds == sorted(winds)
 
 
 def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
@@ -270,7 +283,8 @@ def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
         (['-o', 'risk.txt'], 'end it with .csv'),
         (['--workers', '0'], '--workers'),
         (['--spacing', '0'], '--spacing'),
-        (['--spacing', '3'], 'trees in the open have no spacing'),
+        (['--spacing', '3'], 'in a street have no spacing'),
+        (['--climate', 'mild'], 'is no climate'),
         (['--scheduler', 'nowhere'], 'write tcp://host:8786'),
     ],
 )

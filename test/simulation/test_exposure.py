@@ -67,6 +67,17 @@ def test_the_wind_at_ten_metres_does_not_depend_on_where_the_anemometer_is():
     )
 
 
+def test_a_street_has_the_wind_and_the_gusts_of_eurocode_terrain_three():
+    """EN 1991-1-4: c_r(10 m) = 1.007 in II and 0.755 in III; I_v 0.285 there at a point."""
+    street = Exposure('street', 20.0, crown_width=10.0)
+    assert street.at_ten_metres == pytest.approx(1.007 / 0.755, rel=0.002)
+    scale = 300.0 * (12.0 / 200.0) ** (0.67 + 0.05 * math.log(0.3))
+    background = 1.0 / (1.0 + 0.9 * (30.0 / scale) ** 0.63)
+    assert street.intensity == pytest.approx(0.285 * math.sqrt(background), rel=0.05)
+    small = Exposure('street', 20.0, crown_width=1.0)
+    assert small.intensity > street.intensity
+
+
 def test_an_anemometer_above_a_stand_sees_more_wind_than_its_top():
     low = Exposure('stand', **SITKA).profile()
     high = Exposure('stand', **SITKA, anemometer_height=40.0).profile()
@@ -78,10 +89,10 @@ def test_an_anemometer_above_a_stand_sees_more_wind_than_its_top():
 
 def test_crowns_that_touch_damp_a_tree_in_leaf_unless_its_damping_was_measured():
     oak = species_named('oak')
-    alone, edge, inside = (
+    alone, street, edge, inside = (
         Exposure(kind, **SITKA).in_contact(oak).damping_in_leaf for kind in EXPOSURES
     )
-    assert alone == oak.damping_in_leaf
+    assert alone == street == oak.damping_in_leaf
     assert edge == pytest.approx(1.25 * alone)
     assert inside == pytest.approx(1.5 * alone)
     stand = Exposure('stand', **SITKA)

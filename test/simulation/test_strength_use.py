@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ import pytest
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import ROOT_MOMENT, species_named
+from tree_sway.growth import grow
+from tree_sway.simulation.exposure import Exposure
 from tree_sway.simulation.rig import Rig
 from tree_sway.simulation.wood_strain import WoodStrain
 
@@ -66,8 +69,13 @@ def test_strength_used_is_stress_over_that_of_rupture(stem):
     assert low < used.base_moment < high
     assert used.wood[2] / used.wood[1] > high / low  # that of wood is in it as well
     moment = np.linalg.norm(record.base_moment, axis=1).max()
+    assert used.roots[0] == pytest.approx(moment / (oak.rupture * math.pi / 32.0 * 0.03**3))
+    assert used.stem == pytest.approx(used.wood[0])  # it is bent most at its base
+    in_a_stand = Exposure('stand', height=tree.height).profile()
+    record = Rig(PlacedTree('a', tree, species=oak), STILL, profile=in_a_stand).run(STEADY)
+    moment = np.linalg.norm(record.base_moment, axis=1).max()
     capacity = ROOT_MOMENT * oak.density * tree.volume.sum()
-    assert used.roots[0] == pytest.approx(moment / capacity)
+    assert record.strength.roots[0] == pytest.approx(moment / capacity)
     assert used.branch in str(used)
     assert 'roots' in str(used)
 
@@ -84,3 +92,14 @@ def test_more_wind_uses_more_strength(stem):
     curve = rig.strength_curve([2.0, 4.0, 8.0], rng=np.random.default_rng(1), seconds=5.0)
     shares = [each.wood[0] for each in curve]
     assert shares[0] < 0.4 * shares[1] < 0.16 * shares[2]
+
+
+def test_the_stem_alone_is_read_as_with_its_limbs():
+    """And no limb, however much it is strained, counts for the fall of the tree."""
+    tree = grow('lime', 6.0, rng=np.random.default_rng(1))
+    rig = Rig(PlacedTree('a', tree, species=species_named('lime')), STILL, model=20)
+    whole, stem = (rig.run(8.0 * STEADY[:60], strained=n).strength for n in (None, 1))
+    assert stem.stem == pytest.approx(whole.stem, rel=1e-9)
+    assert stem.roots[0] == pytest.approx(whole.roots[0], rel=1e-9)
+    assert stem.branch == 'stem'
+    assert whole.stem <= stem.wood[0] <= whole.wood[0]

@@ -7,8 +7,11 @@ Trees of a kind have one species, and heights and stems near each other. Each is
 a tree as its kind, but larger, uses the same share in the same wind at its crown, which is taken
 three quarters up, among neighbours that grow in proportion. Leaves, and with them the load, follow
 the section d^2 of the stem (pipe model, `leaf_traits`; d^2 h U^2 in Hale et al. 2012); bare
-branches are in proportion to d. The strength of the stem is that of its section modulus, d^3, and
-that of roots is of the mass of the stem, d^2.
+branches are in proportion to d. The strength of the stem is that of its section modulus, d^3, as
+is that of roots; in a stand that of roots is of the mass of the stem, d^2.
+
+Years between winds are those of a `Climate`. A tree without leaves in winter meets the winds of
+the whole year bare, and those of the summer in leaf: the rates of both add up.
 """
 
 from __future__ import annotations
@@ -20,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.files.scenes import Inventory, kind_classes
+from tree_sway.forest.climate import beaufort, Climate, INLAND, SUMMER
 from tree_sway.forest.cluster import cluster, DEADLINE, run_all
 from tree_sway.forest.risk_kind import (
     compute_kind,
@@ -31,10 +35,19 @@ from tree_sway.simulation import Exposure, root_band, wood_band
 
 Row = dict[str, Any]
 
+CRITICAL = 'critical_wind_10m [m/s]'
+
 FASTEST = 80.0
 """Critical wind above which trees are not told apart [m/s]; no storm has such a mean wind."""
-MOST_KINDS = 96
+MOST_KINDS = 64
 """Number of kinds up to which trees are told apart, so that large inventories take minutes."""
+RAREST = 10_000
+"""Years between winds above which they are not told apart; no record is as long."""
+CLASSES = 5
+_FOUND = (
+    'limited_by', CRITICAL, 'critical_wind_10m [km/h]', 'beaufort', 'low_80 [m/s]',
+    'high_80 [m/s]', 'stem [m/s]', 'roots [m/s]', 'years', 'years_low_80', 'class',
+)  # fmt: skip
 _CROWN = 0.75
 _KM_H = 3.6
 _WIDER = 1.25
@@ -46,6 +59,7 @@ class RiskWork:
 
     inventory: Inventory
     kinds: dict[RiskKind, list[int]]
+    climate: Climate = INLAND
 
 
 def risk_work(
@@ -55,6 +69,7 @@ def risk_work(
     *,
     exposure: str = 'open',
     spacing: float | None = None,
+    climate: Climate = INLAND,
 ) -> RiskWork:
     """
     Group the trees of an inventory into at most some kinds; more alike where they are few.
@@ -71,6 +86,8 @@ def risk_work(
         Exposure of trees for which the inventory has none, one of `EXPOSURES`.
     spacing
         Mean distance between the trees of a stand in [m]; 0.18 of their height if None.
+    climate
+        How often its winds come.
 
     """
     keys = [inventory.wood[each].key for each in inventory.species]
@@ -90,11 +107,11 @@ def risk_work(
         sizes = zip(classes.height.tolist(), classes.slenderness.tolist(), strict=True)
         for row, (key, (height, slenderness)) in enumerate(zip(keys, sizes, strict=True)):
             where = exposures[row]
-            apart = 0.0 if spacing is None or where == 'open' else spacing
+            apart = 0.0 if spacing is None or Exposure(where).is_alone else spacing
             kind = RiskKind(key, height, slenderness, seed, where, apart)
             kinds.setdefault(kind, []).append(row)
         if len(kinds) <= most or heights > 20.0:
-            return RiskWork(inventory, kinds)
+            return RiskWork(inventory, kinds, climate)
         heights = heights * _WIDER
         slendernesses = slendernesses * _WIDER**0.5
 
@@ -123,10 +140,20 @@ def is_result(result: Any, kind: RiskKind) -> bool:
 
 def rows_of_kind(work: RiskWork, result: KindResult) -> list[Row]:
     """Return the rows of all trees of a kind."""
-    return [_row(work.inventory, row, result) for row in work.kinds[result.kind]]
+    return [_row(work, row, result) for row in work.kinds[result.kind]]
 
 
-def _row(inventory: Inventory, row: int, result: KindResult) -> Row:
+def add_classes(rows: Sequence[Row]) -> None:
+    """Say in which fifth of the rows each falls, by critical winds: 1 falls first."""
+    ranked = sorted(
+        (row for row in rows if row[CRITICAL] is not None), key=lambda row: row[CRITICAL]
+    )
+    for rank, row in enumerate(ranked):
+        row['class'] = 1 + CLASSES * rank // len(ranked)
+
+
+def _row(work: RiskWork, row: int, result: KindResult) -> Row:
+    inventory = work.inventory
     height = float(inventory.height[row])
     diameter = float(inventory.diameter[row])
     found: Row = {
@@ -139,64 +166,69 @@ def _row(inventory: Inventory, row: int, result: KindResult) -> Row:
         'diameter [m]': round(diameter, 3) if np.isfinite(diameter) else None,
         'exposure': result.kind.exposure,
     }
-    winds = {
-        (part, curves.in_leaf): _winds(curves, part, height, diameter, result)
+    limits = [
+        (winds[part][1] / _calm(curves, result), part, curves, winds)
         for curves in result.seasons
-        for part in ('wood', 'roots')
-    }
-    first = min(winds, key=lambda each: winds[each][1]) if winds else None
-    low, middle, high = winds[first] if first is not None else (None, None, None)
-    exposure = result.exposure.scaled(height)
-    top = float(exposure.profile().over_anemometer(np.array(height))) / exposure.at_ten_metres
-    found |= {
-        'critical_wind_10m [m/s]': _rounded(middle),
-        'critical_wind_10m [km/h]': _rounded(middle, _KM_H),
-        'critical_wind_top [m/s]': _rounded(middle, top),
-        'critical_wind_top [km/h]': _rounded(middle, top * _KM_H),
-        'low_80 [m/s]': _rounded(low),
-        'high_80 [m/s]': _rounded(high),
-        'limited_by': '' if first is None else f'{first[0]}, {_season(first[1])}',
-    }
-    for in_leaf in (True, False):
-        for part in ('wood', 'roots'):
-            name = f'{part}_{_season(in_leaf).replace(" ", "_")}'
-            of_part = winds.get((part, in_leaf), (None, None, None))
-            for what, value in zip(('_low_80', '', '_high_80'), of_part, strict=True):
-                found[f'{name}{what} [m/s]'] = _rounded(value)
-    found['assumed'] = '; '.join(_assumed(inventory, row, result, middle))
-    return found
+        for winds in [_winds(curves, height, diameter, result)]
+        for part in [min(winds, key=lambda each: winds[each][1])]
+    ]
+    if limits:
+        speed, part, curves, winds = min(limits, key=lambda limit: limit[0])
+        low, middle, high = winds[part]
+        per_year = work.climate.per_year
+        found |= {
+            'limited_by': f'{part}, {"in leaf" if curves.in_leaf else "bare"}',
+            CRITICAL: round(middle, 2),
+            'critical_wind_10m [km/h]': round(_KM_H * middle, 2),
+            'beaufort': beaufort(middle),
+            'low_80 [m/s]': round(low, 2),
+            'high_80 [m/s]': round(high, 2),
+            'stem [m/s]': round(winds['stem'][1], 2),
+            'roots [m/s]': round(winds['roots'][1], 2),
+            'years': _years(sum(per_year(limit[0]) for limit in limits)),
+            'years_low_80': _years(per_year(low * speed / middle)),
+        }
+    found |= dict.fromkeys(name for name in _FOUND if name not in found)
+    critical = found[CRITICAL]
+    return found | {'assumed': '; '.join(_assumed(inventory, row, result, critical))}
 
 
-def _season(in_leaf: bool) -> str:
-    return 'in leaf' if in_leaf else 'bare'
+def _calm(curves: SeasonCurves, result: KindResult) -> float:
+    """Wind of the season over that of the year [-]: leaves that fall meet the summer's."""
+    return SUMMER if curves.in_leaf and len(result.seasons) > 1 else 1.0
+
+
+def _years(rate: float) -> float:
+    """Years between winds of a rate per year, to two digits."""
+    return float(f'{min(1.0 / max(rate, 1e-9), RAREST):.2g}')
 
 
 def _winds(
-    curves: SeasonCurves, part: str, height: float, diameter: float, result: KindResult
-) -> tuple[float, float, float]:
-    """Critical wind at 10 m of wood or roots [m/s]: low, middle and high."""
-    curve = curves.wood if part == 'wood' else curves.roots
+    curves: SeasonCurves, height: float, diameter: float, result: KindResult
+) -> dict[str, list[float]]:
+    """Critical winds at 10 m of stem and roots [m/s]: low, middle and high."""
     slenderness = height / diameter if np.isfinite(diameter) else result.slenderness
     load = 2.0 if curves.in_leaf else 1.0
-    power = (3.0 if part == 'wood' else 2.0) - load
-    more = (slenderness / result.slenderness) ** power
     own = result.exposure.scaled(height)
     scale = _at_crown(result.exposure.scaled(result.kind.height)) / _at_crown(own)
     scale *= own.at_ten_metres
-    used = (wood_band if part == 'wood' else root_band)(in_leaf=curves.in_leaf)
-    middle, high, low = (
-        min(scale * curve.speed_of(1.0 / (each * more)), FASTEST) for each in used.tolist()
-    )
-    return low, middle, high
+    parts = {
+        'stem': (curves.stem, wood_band, 3.0),
+        'roots': (curves.roots, root_band, 3.0 if own.is_alone else 2.0),
+    }
+    return {
+        part: sorted(
+            min(scale * curve.speed_of(1.0 / (used * more)), FASTEST)
+            for used in band(in_leaf=curves.in_leaf).tolist()
+        )
+        for part, (curve, band, power) in parts.items()
+        for more in [(slenderness / result.slenderness) ** (power - load)]
+    }
 
 
 def _at_crown(exposure: Exposure) -> float:
     """Wind three quarters up a tree over the mean wind of its exposure [-]."""
     return float(exposure.profile().over_anemometer(np.array(_CROWN * exposure.height)))
-
-
-def _rounded(value: float | None, factor: float = 1.0) -> float | None:
-    return None if value is None else round(factor * value, 2)
 
 
 def _assumed(
@@ -218,7 +250,8 @@ def _assumed(
         said.append(result.note)
     if critical is not None and critical >= FASTEST:
         said.append(f'above {FASTEST:g} m/s')
-    if result.kind.exposure != 'open' and not result.error:
+    if not result.exposure.is_alone and not result.error:
         said.append(f'trees {result.exposure.scaled(inventory.height[row]).spacing:.2g} m apart')
-    shelter = 'no shelter' if result.kind.exposure == 'open' else 'as high as its neighbours'
-    return [*said, 'grown crown', shelter, 'roots of a mean soil']
+    shelter = 'no shelter' if result.exposure.is_alone else 'as high as its neighbours'
+    roots = 'roots as strong as the stem' if result.exposure.is_alone else 'roots of a mean soil'
+    return [*said, 'grown crown', shelter, 'sound wood', roots]

@@ -3,10 +3,9 @@
 """
 Strength that the tree of a kind uses by wind speed, in leaf and bare, in any process.
 
-A tree is grown by species, height and stem, set up, and blown by gusts of three mean winds: the
-first is usual, the others are near those at which its roots and its wood reach their strength. In
-the open the wind rises with height as over grass and its mean is that at 10 m; at the edge of a
-stand and inside it, it is that of `exposure`, and its mean that at the top of the trees.
+A tree is grown by species, height and stem, set up, and blown by gusts of two mean winds: the
+first is usual, the other near that at which it falls. Its mean is that at 10 m in the open and in
+a street, and that at the top of the trees at the edge of a stand and inside it (`exposure`).
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ import numpy as np
 from tree_sway.core.setup import standing_tree
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import rooted, Tree
-from tree_sway.errors import TreeSwayError
+from tree_sway.errors import TreeError, TreeSwayError
 from tree_sway.files.trees import TreeFile
 from tree_sway.growth import BREAST_HEIGHT, grow, stem_range
 from tree_sway.simulation import Exposure, exposure_of, Rig, ShareCurve, STATION_HEIGHT
 
 _MODEL = 20
-_RATE = 20.0
-"""Steps per second [Hz]; longer than those in which hanging twigs are solved, which take much."""
-_FIRST = 15.0
+_RATE = 10.0
+"""Steps per second [Hz]; stems sway less than once a second."""
+_FIRST = 25.0
 _SLOWEST = 4.0
 _FASTEST = 40.0
 _USUAL_POWER = 1.5
@@ -55,10 +54,10 @@ class RiskKind:
 
 @dataclass(frozen=True)
 class SeasonCurves:
-    """Shares of strength of wood and of roots by the mean wind of the exposure, leaves or none."""
+    """Shares of strength of the stem and of roots by the mean wind, with leaves or without."""
 
     in_leaf: bool
-    wood: ShareCurve
+    stem: ShareCurve
     roots: ShareCurve
 
 
@@ -99,10 +98,16 @@ def _computed(kind: RiskKind) -> KindResult:
             note = f'a stem of {wanted:.3g} m would buckle: of {diameter:.3g} m, scaled'
     rng = np.random.default_rng(kind.seed)
     tree = grow(kind.species, kind.height, diameter, rng=rng)
-    tree, thickening = standing_tree(tree, species, in_leaf=True)
-    if thickening is not None:
+    try:
+        return _blown(kind, tree, note)
+    except TreeError:
         limbs = 'grown limbs that could not carry themselves are thickened'
-        note = f'{note}; {limbs}' if note else limbs
+        tree, _ = standing_tree(tree, species, in_leaf=True)
+        return _blown(kind, tree, f'{note}; {limbs}' if note else limbs)
+
+
+def _blown(kind: RiskKind, tree: Tree, note: str) -> KindResult:
+    species = species_named(kind.species)
     whole = TreeFile(tree, rooted(tree, species), kind.species)
     seasons = (True,) if species.leaves.is_evergreen else (True, False)
     exposure = exposure_of(
@@ -120,31 +125,27 @@ def _computed(kind: RiskKind) -> KindResult:
 def _season(tree: TreeFile, seed: int, in_leaf: bool, exposure: Exposure) -> SeasonCurves:
     ground = float(tree.tree.start[0, 2])
     rig = Rig(tree, model=_MODEL, in_leaf=in_leaf, profile=exposure.profile(ground))
-    shares = {_FIRST: _shares(rig, exposure, _FIRST, seed)}
-    for part in (0, 1, 0):  # wood, roots, and wood again by a better guess
-        curve = _curve(shares, part)
-        if len(shares) == 1:
-            guess = _FIRST * float(max(curve.share[0], 1e-3)) ** (-1.0 / _USUAL_POWER)
-        else:
-            guess = curve.speed_of(1.0)
-        speed = float(np.clip(guess, _SLOWEST, _FASTEST))
-        if all(abs(speed / known - 1.0) > 0.05 for known in shares):
-            shares[speed] = _shares(rig, exposure, speed, seed)
-    if len(shares) == 1:
-        shares[2.0 * _FIRST] = _shares(rig, exposure, 2.0 * _FIRST, seed)
+    shares = dict[float, tuple[float, float]]()
+    speed = _FIRST
+    for _ in range(2):
+        shares[speed] = _shares(rig, exposure, speed, seed)
+        guess = speed * max(*shares[speed], 1e-3) ** (-1.0 / _USUAL_POWER)
+        apart = max(guess, 1.1 * speed) if guess > speed else min(guess, speed / 1.1)
+        speed = float(np.clip(apart, _SLOWEST, _FASTEST))
     return SeasonCurves(in_leaf, _curve(shares, 0), _curve(shares, 1))
 
 
 def _shares(rig: Rig, exposure: Exposure, speed: float, seed: int) -> tuple[float, float]:
-    """Shares of wood and roots in the largest gust of ten minutes of a mean wind [m/s]."""
+    """Shares of stem and roots in the largest gust of ten minutes of a mean wind [m/s]."""
     (used,) = rig.strength_curve(
         [speed],
         rng=np.random.default_rng(seed),
         rate=_RATE,
         height=exposure.turbulence_height,
-        intensity=None if exposure.kind == 'open' else exposure.intensity,
+        intensity=exposure.intensity,
+        strained=1,
     )
-    return float(used.wood[0]), float(used.roots[0])
+    return used.stem, float(used.roots[0])
 
 
 def _curve(shares: dict[float, tuple[float, float]], part: int) -> ShareCurve:

@@ -1,10 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Where a tree stands: alone in the open, at the edge of a stand, or inside it.
+Where a tree stands: alone in the open, in a street, at the edge of a stand, or inside it.
 
 Open: a log profile over grass, U ~ ln(z / z0) with z0 = 0.03 m, and its mean wind at the top of
 the tree, or 10 m above the ground where the tree is higher, as weather stations measure it.
+
+Street: the log profile of suburbs, terrain III of EN 1991-1-4 (2005) with z0 = 0.3 m, and its mean
+wind 10 m above the ground. The same weather has a mean wind in terrains II and III that is as
+z0^0.07 ln(z / z0) (equations 4.3 to 4.5 there).
+
+In the open and in a street one gust is smaller than the whole crown: the deviation of the wind is
+that of its mean over the crown, by the background factor B of EN 1991-1-4 (equation B.3).
 
 Stand: a tree as high as its neighbours. Displacement d, roughness z0 and friction velocity u* over
 the wind U_h at the top follow from the streamlined frontal area of the crowns per ground area
@@ -49,11 +56,17 @@ Frequency n at which n S(n) of the wind along itself is largest: n L / U of Kaim
 HART_BECKING = 0.18
 """Spacing of a stand over its height [-]."""
 
-EXPOSURES = ('open', 'edge', 'stand')
+EXPOSURES = ('open', 'street', 'edge', 'stand')
 """Kinds of exposure."""
 
 STATION_HEIGHT, GRASS = 10.0, 0.03
 """Height of weather stations and roughness of open grass in [m] (WMO guide no. 8)."""
+
+COUNTRY, _SUBURB = 0.05, 0.3
+"""Roughness of the terrains II and III of EN 1991-1-4 in [m]."""
+
+_ALONE = {'open': GRASS, 'street': _SUBURB}
+"""Roughness by the kinds of exposure without a stand in [m]."""
 
 ATTENUATION = 2.7
 """
@@ -64,10 +77,10 @@ Boundary-Layer Meteorology 15, 81-93).
 _CD1, _CW, _CS, _CR, _LARGEST, _KARMAN = 7.5, 2.0, 0.003, 0.3, 0.6, 0.4
 """Constants of Raupach (1994), and the frontal area from which u* / U_h no longer grows."""
 
-_GUSTS = {'open': 2.4, 'edge': 1.8, 'stand': 1.8}
+_GUSTS = {'open': 2.4, 'street': 2.4, 'edge': 1.8, 'stand': 1.8}
 """Deviation of the wind over u* [-]: Panofsky & Dutton 1984; Raupach, Finnigan & Brunet 1996."""
 
-CONTACT = {'open': 1.0, 'edge': 1.25, 'stand': 1.5}
+CONTACT = {'open': 1.0, 'street': 1.0, 'edge': 1.25, 'stand': 1.5}
 """
 Damping of a tree in leaf whose crown touches those of its neighbours over that of it alone [-].
 
@@ -88,7 +101,7 @@ class Exposure:
     Parameters
     ----------
     kind
-        ``open``, ``edge`` or ``stand``.
+        One of `EXPOSURES`.
     height
         Height of the tree, and of the stand around it, in [m].
     spacing
@@ -123,6 +136,11 @@ class Exposure:
             within(name, getattr(self, name), 0.0, high, 'm', above=True)
 
     @property
+    def is_alone(self) -> bool:
+        """Whether no stand is around the tree."""
+        return self.kind in _ALONE
+
+    @property
     def frontal_area(self) -> float:
         """Streamlined frontal area of the crowns over ground, L [-]."""
         return self.crown_width * self.drag * self.crown_depth / self.spacing**2
@@ -130,8 +148,8 @@ class Exposure:
     @property
     def friction_ratio(self) -> float:
         """Friction velocity over the wind at the reference height [-]."""
-        if self.kind == 'open':
-            return _KARMAN / math.log(self.reference_height / GRASS)
+        if self.is_alone:
+            return _KARMAN / math.log(self.reference_height / _ALONE[self.kind])
         return math.sqrt(_CS + 0.5 * _CR * min(self.frontal_area, _LARGEST))
 
     @property
@@ -145,12 +163,23 @@ class Exposure:
         """Height above the ground of the mean wind in [m]."""
         if self.anemometer_height is not None:
             return self.anemometer_height
+        if self.kind == 'street':
+            return STATION_HEIGHT
         return min(self.height, STATION_HEIGHT) if self.kind == 'open' else self.height
 
     @property
     def intensity(self) -> float:
-        """Turbulence intensity at the reference height [-]."""
-        return _GUSTS[self.kind] * self.friction_ratio
+        """
+        Turbulence intensity at the reference height [-], of the wind over the crown.
+
+        Alone the factor B is of the crown, with the scale of EN 1991-1-4 at 0.6 of the height.
+        """
+        point = _GUSTS[self.kind] * self.friction_ratio
+        if not self.is_alone:
+            return point
+        power = 0.67 + 0.05 * math.log(_ALONE[self.kind])
+        scale = 300.0 * (0.6 * self.height / 200.0) ** power
+        return point / math.sqrt(1.0 + 0.9 * ((self.crown_width + self.height) / scale) ** 0.63)
 
     @property
     def turbulence_height(self) -> float:
@@ -160,7 +189,7 @@ class Exposure:
         At the top of a stand eddies follow its height: the peak is that of Kaimal's spectrum with
         an integral scale of 1.67 times the height.
         """
-        if self.kind == 'open':
+        if self.is_alone:
             return self.reference_height
         integral_scale = _OPEN_PEAK / _STAND_PEAK * self.height
         return integral_scale / (_INTEGRAL_SCALE * turbulence_scale(1.0))
@@ -184,11 +213,15 @@ class Exposure:
         """
         Wind at 10 m over that at the reference height [-].
 
-        In the open it is 10 m above the ground, at the edge of a stand or inside it 10 m above
+        In the open it is 10 m above the ground, from a street that of the same weather over the
+        terrain II of EN 1991-1-4, at the edge of a stand or inside it 10 m above
         the displacement d of the stand, as ForestGALES states its winds (Hale et al. 2015).
         """
         if self.kind == 'open':
             return math.log(STATION_HEIGHT / GRASS) / math.log(self.reference_height / GRASS)
+        if self.kind == 'street':
+            country = math.log(STATION_HEIGHT / COUNTRY) * (COUNTRY / _SUBURB) ** 0.07
+            return country / math.log(self.reference_height / _SUBURB)
         profile = self.profile()
         z0 = profile.roughness
         top = float(profile.over_anemometer(np.array(self.height)))
@@ -208,8 +241,9 @@ class Exposure:
 
     def profile(self, ground: float = 0.0) -> WindProfile:
         """Return the profile over the height above the ground, that is at a height in [m]."""
-        if self.kind == 'open':
-            return WindProfile('log', self.reference_height, roughness=GRASS, ground=ground)
+        if self.is_alone:
+            roughness = _ALONE[self.kind]
+            return WindProfile('log', self.reference_height, roughness=roughness, ground=ground)
         d = self.displacement
         psi = math.log(_CW) - 1.0 + 1.0 / _CW
         roughness = (self.height - d) * math.exp(psi - _KARMAN / self.friction_ratio)
@@ -238,6 +272,7 @@ class Exposure:
         """Where the tree stands, for people."""
         return {
             'open': 'in the open',
+            'street': 'in a street',
             'edge': f'at the edge of a stand, trees {self.spacing:.2g} m apart',
             'stand': f'in a stand, trees {self.spacing:.2g} m apart',
         }[self.kind]
@@ -263,7 +298,7 @@ def exposure_of(
     tree, species
         The tree.
     kind
-        ``open``, ``edge`` or ``stand``.
+        One of `EXPOSURES`.
     spacing
         Mean distance between trees in [m]; if None, 0.18 of the height, that of stands thinned as
         foresters recommend (Hart-Becking spacing of 16 to 20 %).

@@ -186,8 +186,9 @@ class Rig:
         rate: float = 60.0,
         seconds: float | None = None,
         branches: Sequence[int] | None = None,
+        strained: int | None = None,
     ) -> SwayRecord:
-        """Sway the tree in a wind from rest, as `simulate`."""
+        """Sway the tree in a wind from rest, as `simulate`; ``strained`` as in `WoodStrain`."""
         tree = self.tree
         simulator = self.simulator
         observed = self.observed
@@ -207,7 +208,7 @@ class Rig:
             for picture in self.film.pictures:
                 self.filmed.film(*picture)
         before = replace(simulator.counts)
-        gauge = StrengthGauge(self.reductions)
+        gauge = StrengthGauge(self.reductions, strained)
         per_rotation = moment_per_rotation(self.reductions)
         poses = np.empty((tree.n_segments, 7))
         rows = list[tuple[Floats, ...]]()
@@ -258,6 +259,7 @@ class Rig:
     def strength_curve(
         self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 600.0,
         rate: float = 30.0, height: float = 10.0, intensity: float | None = None,
+        strained: int | None = None,
     ) -> list[StrengthUse]:  # fmt: skip
         """
         Find the shares of strength used in the largest gust of each of some mean speeds.
@@ -279,6 +281,8 @@ class Rig:
             Steps per second [Hz].
         height, intensity
             Height and intensity of the turbulence, as in `Turbulence`.
+        strained
+            Number of branches whose wood is looked at, the stem first; all if None.
 
         """
         used = []
@@ -287,7 +291,7 @@ class Rig:
                 speed, rate=rate, duration=seconds, rng=deepcopy(rng), height=height,
                 intensity=intensity,
             )  # fmt: skip
-            record = self.run(wind, rate=rate, branches=())
+            record = self.run(wind, rate=rate, branches=(), strained=strained)
             used.append(record.strength)
         return used
 

@@ -26,6 +26,8 @@ class WoodStrain:
     ----------
     reductions
         Reductions of the tree; the one for the model of its settings is used.
+    n_branches
+        Branches that are read, the first; the first is the stem. All if None.
 
     """
 
@@ -34,14 +36,14 @@ class WoodStrain:
     height: Floats
     """Height of each place above the base of the tree at rest in [m], (2 m,)."""
 
-    def __init__(self, reductions: TreeReductions) -> None:
+    def __init__(self, reductions: TreeReductions, n_branches: int | None = None) -> None:
         """Find the curvature by each coordinate."""
         reduced = reductions.reduced(reductions.settings.model)
         tree = reduced.tree
         at_base = []
         in_middle = []
         radii = []
-        for number, model in enumerate(reduced.models):
+        for number, model in enumerate(reduced.models[:n_branches]):
             beam = model.beam
             base_diameter = tree.base_diameter[tree.segments_of(number)]
             bent = [_bending_of_wood(beam, field.curvature) for field in model.fields]
@@ -52,15 +54,16 @@ class WoodStrain:
             radii.append(0.5 * beam.over_segments(beam.diameter))
         blocks = [sparse.block_diag(each, format='csr') for each in (at_base, in_middle)]
         self._curvature = sparse.vstack(blocks, format='csr')
-        self._radius = np.concatenate([0.5 * tree.base_diameter, *radii])
-        branch = np.repeat(reduced.branch, [len(radius) for radius in radii])
+        branch = np.repeat(reduced.branch[: len(radii)], [len(radius) for radius in radii])
         self.branch = np.tile(branch, 2)
-        middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
-        self.height = np.concatenate([tree.start[:, 2], middle]) - tree.start[0, 2]
+        start = tree.start[: len(branch), 2]
+        self._radius = np.concatenate([0.5 * tree.base_diameter[: len(branch)], *radii])
+        middle = 0.5 * (start + tree.end[: len(branch), 2])
+        self.height = np.concatenate([start, middle]) - start[0]
 
     def of(self, rotations: Floats) -> Floats:
         """Largest strain over the section at each place, (2 m,), by key rotations (N,)."""
-        curvature = (self._curvature @ rotations).reshape(-1, 3)
+        curvature = (self._curvature @ rotations[: self._curvature.shape[1]]).reshape(-1, 3)
         return np.asarray(np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius)
 
 

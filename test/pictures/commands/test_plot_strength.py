@@ -165,10 +165,10 @@ def test_each_tree_of_an_inventory_is_grown_by_itself_if_asked(tmp_path, capsys)
     ('words', 'said'),
     [
         (['info', '--spacing', '3'], '--spacing: it would change nothing'),
-        (['info', '--speed', '9', '--spacing', '3'], 'trees in the open have no spacing'),
+        (['info', '--speed', '9', '--spacing', '3'], 'in a street have no spacing'),
         (['info', '--anemometer-height', '20'], '--anemometer-height: it would change nothing'),
         (['plot', '--exposure', 'edge', '-o', 'x.png'], '--exposure: it would change nothing'),
-        (['simulate', '--spacing', '3', '-o', 'x.csv'], 'trees in the open have no spacing'),
+        (['simulate', '--spacing', '3', '-o', 'x.csv'], 'in a street have no spacing'),
     ],
 )
 def test_an_exposure_that_would_change_nothing_is_refused(words, said, tmp_path, capsys):

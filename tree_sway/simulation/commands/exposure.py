@@ -22,8 +22,8 @@ def add_exposure_arguments(
     add = parser.add_argument_group('exposure').add_argument
     add(
         '--exposure', choices=EXPOSURES, default='open',
-        help='where the trees stand: in the open, at the edge of a stand or inside it; it sets '
-        'the wind over the height (%(default)s)',
+        help='where the trees stand: in the open, in a street, at the edge of a stand or inside '
+        'it; it sets the wind over the height (%(default)s)',
     )  # fmt: skip
     add(
         '--spacing', type=float, metavar='D',
@@ -40,12 +40,13 @@ def add_exposure_arguments(
 
 def chosen_exposure(arguments: argparse.Namespace, tree: Tree, species: Species) -> Exposure:
     """Return the exposure of the arguments for a tree; refuse a spacing of no stand."""
-    if arguments.spacing is not None and arguments.exposure == 'open':
-        refuse_spacing_in_the_open()
-    return exposure_of(
+    exposure = exposure_of(
         tree, species, arguments.exposure, spacing=arguments.spacing,
         anemometer_height=arguments.anemometer_height,
     )  # fmt: skip
+    if arguments.spacing is not None and exposure.is_alone:
+        refuse_spacing_in_the_open()
+    return exposure
 
 
 def touched_species(exposure: Exposure, species: Species, learned: LearnedTree | None) -> Species:
@@ -56,7 +57,8 @@ def touched_species(exposure: Exposure, species: Species, learned: LearnedTree |
 def refuse_spacing_in_the_open() -> None:
     """Raise the `ParameterError` of a spacing where no tree has neighbours."""
     cure = 'add --exposure stand or --exposure edge'
-    raise ParameterError('trees in the open have no spacing', where='--spacing', cure=cure)
+    what = 'trees in the open or in a street have no spacing'
+    raise ParameterError(what, where='--spacing', cure=cure)
 
 
 def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
@@ -72,6 +74,5 @@ def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
 
 
 def turbulence_of(exposure: Exposure) -> dict[str, Any]:
-    """Height and intensity of simulated turbulence; in the open the class of IEC 61400-1."""
-    intensity = None if exposure.kind == 'open' else exposure.intensity
-    return {'height': exposure.turbulence_height, 'intensity': intensity}
+    """Height and intensity of simulated turbulence."""
+    return {'height': exposure.turbulence_height, 'intensity': exposure.intensity}

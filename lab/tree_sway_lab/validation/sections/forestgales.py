@@ -18,7 +18,14 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files import parse_table
 from tree_sway.files.scenes import Inventory, inventory_of
-from tree_sway.forest import compute_kind, risk_work, Row, rows_of_kind
+from tree_sway.forest import (
+    compute_kind,
+    KindResult,
+    risk_work,
+    RiskWork,
+    Row,
+    rows_of_kind,
+)
 from tree_sway.tables import table_beside
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
@@ -27,7 +34,7 @@ Tree = dict[str, Any]
 TREES: list[Tree] = table_beside(__file__, 'forestgales.csv')
 METHODS = {'fg_rou': '', 'fg_tmc': 'tree_', 'ours': 'our_'}
 """Methods of ForestGALES and ours: how their columns begin."""
-PARTS = {'breaks': 'wood', 'overturns': 'roots'}
+PARTS = {'breaks': 'stem', 'overturns': 'roots'}
 LIMITS = {'breaks': (0.8, 1.25), 'overturns': (0.67, 1.5)}
 """Between which the median of ours over ForestGALES must be: wood, and roots of a mean soil."""
 
@@ -42,8 +49,7 @@ _TEXT = (
     'deviation of the logarithm. ForestGALES has two methods, for stands (`fg_rou`) and for '
     'single trees (`fg_tmc`); ours is compared with both, and they with each other. The limit of '
     'a spread is that of one wind for all trees. Its wood breaks at the base of the stem; ours '
-    'where a branch is strained most, which is the stem in the crown or, in pines, a limb near '
-    'the top.'
+    'in the lower half of it.'
 )
 
 
@@ -67,7 +73,7 @@ def row_of_stand(tree: Tree) -> Row:
     """Return the row of `risk` for the mean tree of a stand."""
     work = risk_work(inventory_with([tree]), exposure=tree['exposure'], spacing=tree['spacing'])
     (kind,) = work.kinds
-    (row,) = rows_of_kind(work, compute_kind(kind))
+    (row,) = rows_at_the_top(work, compute_kind(kind))
     return row
 
 
@@ -75,8 +81,18 @@ def rows_of_inventory(trees: Sequence[Tree], effort: Effort) -> list[Row]:
     """Return the rows of `risk` for trees of a stand, in their order."""
     work = risk_work(inventory_with(trees), exposure='stand')
     results = effort.each(compute_kind, list(work.kinds))
-    rows = [row for result in results for row in rows_of_kind(work, result)]
+    rows = [row for result in results for row in rows_at_the_top(work, result)]
     return sorted(rows, key=lambda row: int(row['line']))
+
+
+def rows_at_the_top(work: RiskWork, result: KindResult) -> list[Row]:
+    """Return the rows of a kind with the wind at the top of each tree over that at 10 m [-]."""
+    rows = rows_of_kind(work, result)
+    for row in rows:
+        exposure = result.exposure.scaled(row['height [m]'])
+        top = exposure.profile().over_anemometer(np.array(exposure.height))
+        row['top'] = float(top) / exposure.at_ten_metres
+    return rows
 
 
 def inventory_with(trees: Sequence[Tree]) -> Inventory:
@@ -90,9 +106,8 @@ def with_ours(trees: Sequence[Tree], rows: Sequence[Row]) -> list[Tree]:
     """Return trees with the winds at the top of their rows of `risk`, in leaf [m/s]."""
     found = list[Tree]()
     for tree, row in zip(trees, rows, strict=True):
-        over_ten_metres = row['critical_wind_top [m/s]'] / row['critical_wind_10m [m/s]']
-        ours = {f'our_{what}': row[f'{part}_in_leaf [m/s]'] for what, part in PARTS.items()}
-        found.append(tree | {name: wind * over_ten_metres for name, wind in ours.items()})
+        ours = {f'our_{what}': row[f'{part} [m/s]'] * row['top'] for what, part in PARTS.items()}
+        found.append(tree | ours)
     return found
 
 
