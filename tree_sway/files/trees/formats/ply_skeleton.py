@@ -124,4 +124,4 @@ def _tables(data: bytes, order: str, elements: Elements) -> dict[str, Floats]:
     return tables
 
 
-FORMAT = FileFormat('ply', (), contains(r'\Aply\s*\n'), _read, FITTED)
+FORMAT = FileFormat('ply', (), contains(r'\A[p]ly\s*\n'), _read, FITTED)
