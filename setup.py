@@ -33,7 +33,7 @@ HOUSES = (
 #: Kinds of objects that have a picture, and the function that draws each.
 DRAWN = {
     'Tree': 'of_tree', 'TreeFile': 'of_tree', 'WindRecord': 'of_wind', 'SwayRecord': 'of_sway',
-    'MotionRecord': 'of_motion',
+    'MotionRecord': 'of_motion', 'html': 'as_html',
 }  # fmt: skip
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 

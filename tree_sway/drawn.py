@@ -9,30 +9,19 @@ that makes a figure of matplotlib of it.
 
 from __future__ import annotations
 
-import base64
-from html import escape
 from importlib.metadata import entry_points
-import io
 from typing import Any
 
 
 class Drawn:
     """An object of a kind that somebody draws."""
 
-    def plot(self) -> Any:
-        """Return a figure of it; a `ModuleNotFoundError` without matplotlib."""
-        kind = type(self).__name__
-        for point in entry_points(group='tree_sway.pictures', name=kind):
+    def plot(self, kind: str = '') -> Any:
+        """Return a figure of it, as of a kind; None where nothing that draws it is installed."""
+        for point in entry_points(group='tree_sway.pictures', name=kind or type(self).__name__):
             return point.load()(self)
-        raise ModuleNotFoundError(f'nothing that draws a {kind} is installed', name='tree_sway')
+        return None
 
-    def _repr_html_(self) -> str | None:
+    def _repr_html_(self) -> Any:
         """Return its line of text above its picture, for a notebook; None without matplotlib."""
-        try:
-            figure = self.plot()
-        except ModuleNotFoundError:
-            return None
-        picture = io.BytesIO()
-        figure.savefig(picture, format='png', dpi=80)
-        data = base64.b64encode(picture.getvalue()).decode()
-        return f'{escape(repr(self))}<br><img src="data:image/png;base64,{data}">'
+        return self.plot('html')

@@ -107,11 +107,11 @@ NAMED = {
     'TreeQSM': 'treeqsm-text', 'SimpleForest': 'simpleforest', 'aRchi': 'archi', 'MTG': 'mtg',
     'SWC': 'swc', 'RayCloudTools': 'treefile', 'PyTLidar': 'treeqsm-text', 'TOA5': 'toa5',
     'NMEA': 'nmea', 'METAR': 'metar', 'rosbag2': 'bag', 'Gill': 'sonic',
-    'netCDF': 'netcdf',
+    'netCDF': 'netcdf', 'PLY': 'ply', 'rTwig': 'rtwig', 'treegraph': 'treegraph',
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(
-    r'\b(FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
+    r'\b(FBX|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
     r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile)\b',
     re.IGNORECASE,
 )

@@ -4,12 +4,16 @@
 
 from __future__ import annotations
 
+import base64
+from html import escape
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.tree import Tree
+from tree_sway.drawn import Drawn
 from tree_sway.files.motion import MotionRecord
 from tree_sway.files.trees import TreeFile
 from tree_sway.files.wind import WindRecord
@@ -69,3 +73,15 @@ def of_motion(record: MotionRecord) -> Figure:
         axes.set(ylabel=name)
     every[-1].set(xlabel='time [s]')
     return labelled(figure, Path(record.source).name)
+
+
+def as_html(drawn: Drawn) -> str | None:
+    """Return the line of text of an object above its picture; None without matplotlib."""
+    try:
+        figure = drawn.plot()
+    except ModuleNotFoundError:
+        return None
+    picture = io.BytesIO()
+    figure.savefig(picture, format='png', dpi=80)
+    data = base64.b64encode(picture.getvalue()).decode()
+    return f'{escape(repr(drawn))}<br><img src="data:image/png;base64,{data}">'

@@ -26,7 +26,7 @@ def test_no_tip_moves_further_in_a_frame_than_with_every_segment_solved(kind):
 
 
 def test_twigs_that_no_step_can_follow_are_held_and_not_flung():
-    tree, wind = kind_called('willow'), wind_called('60', 1.0)
+    tree, wind = kind_called('willow'), wind_called('80', 1.0)
     model = judged_simulator('full', tree)
     # The wind itself goes 1 m in a frame.
     assert largest_move(record_tips(model, tree, wind, FRAME)) < 2.0

@@ -250,7 +250,8 @@ class LimpPageSolver(PageSolver):
         u = u - np.sum(u * along, axis=1)[:, None] * along
         drag = (self.area * np.linalg.norm(u, axis=1))[:, None] * u / self.root
 
-        count = ceil(min(max(h * fastest / 0.3, 1 / 8), 1) * self.m)
+        oldest = 0.27 if speed < 15 else 0.1
+        count = ceil(min(max(h * fastest / oldest, 1 / 8), 1) * self.m)
         rows = (self.next + np.arange(count)) % self.m
         self.next = (self.next + count) % self.m
         motion = self.motion(self.v)

@@ -24,7 +24,7 @@ def test_content_decides_and_suffix_breaks_ties(tmp_path):
 def test_format_by_name():
     assert read_tree(DATA / 'segments.csv', format='csv').tree.n_branches == 2
     with pytest.raises(
-        ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, mtg, npz, csv"
+        ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, rtwig, mtg, ply"
     ):
         read_tree(DATA / 'segments.csv', format='dwg')
     with pytest.raises(FormatError):
@@ -42,7 +42,7 @@ def test_options_are_checked():
 def test_unknown_content(tmp_path):
     (tmp_path / 'x.bin').write_bytes(b'\x00\x01\x02')
     with pytest.raises(
-        FormatError, match='unknown tree format; give one of archi, simpleforest, mtg'
+        FormatError, match='unknown tree format; give one of archi, simpleforest, rtwig, mtg'
     ):
         read_trees(tmp_path / 'x.bin')
     with pytest.raises(FormatError, match='no such file; check the path'):

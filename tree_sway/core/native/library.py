@@ -29,10 +29,10 @@ FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sw
 """The library, which programs in other languages may link."""
 
 _pointer, _size, _number = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double
-_whole = ctypes.c_int64
+_whole, _status = ctypes.c_int64, ctypes.c_int
 
 SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
-    'sway_version': (ctypes.c_int, ()),
+    'sway_version': (_status, ()),
     'sway_interface': (ctypes.c_uint32, ()),
     'sway_target': (ctypes.c_char_p, ()),
     'sway_model_open': (_pointer, (_pointer, _size, _pointer, _size)),
@@ -44,9 +44,9 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     ),
     'sway_stand_close': (None, (_pointer,)),
     'sway_state': (_pointer, (_pointer, _pointer, _pointer)),
-    'sway_tune': (ctypes.c_int, (_pointer, _size, _pointer, _pointer)),
-    'sway_set_step': (ctypes.c_int, (_pointer, _number)),
-    'sway_step': (ctypes.c_int, (_pointer, _size, _size, _size, _pointer, _pointer)),
+    'sway_tune': (_status, (_pointer, _size, _pointer, _pointer)),
+    'sway_set_step': (_status, (_pointer, _number)),
+    'sway_step': (_status, (_pointer, _size, _size, _size, _pointer, _pointer)),
     'sway_place': (None, (_pointer, _size, _pointer, _size, _pointer)),
     'sway_keys': (None, (_pointer, _size, _size, _pointer)),
     'sway_place_keys': (None, (_pointer, _size, _size, _pointer, _pointer)),
@@ -60,8 +60,8 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
     'sway_push_farwind': (None, (_pointer, _number, _number, _number, _number, _pointer)),
     # Motion sensors.
-    'sway_keep_sample': (ctypes.c_int, (_pointer, _number, _pointer, _pointer)),
-    'sway_read_samples': (ctypes.c_int, (_pointer, _number, _number, _pointer)),
+    'sway_keep_sample': (_status, (_pointer, _number, _pointer, _pointer)),
+    'sway_read_samples': (_status, (_pointer, _number, _number, _pointer)),
     'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
     'sway_judge': (None, (_pointer, _number)),
     'sway_correct': (None, (_pointer, _pointer, _size)),
@@ -75,7 +75,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
         None, (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
     'sway_step_branches': (
-        ctypes.c_int64,
+        _whole,
         (_pointer, _size, _pointer, _pointer, _number, _number, _number, _number),
     ),
     'sway_rest_branches': (
@@ -87,20 +87,16 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
 
 def _opened() -> ctypes.CDLL:
     cure = 'pip install . in the source of tree_sway_ros; it needs a C++ compiler'
-    other = 'the native core is of other sources than the library'
     try:
         library = ctypes.CDLL(str(FILE))
     except OSError as error:
         raise MissingDependencyError('the native core is not built', cure=cure) from error
-    for name, (result, arguments) in SIGNATURES.items():
-        function = getattr(library, name, None)
-        if function is None:
-            raise MissingDependencyError(other, cure=cure)
-        function.restype = result
-        function.argtypes = arguments
+    functions = [getattr(library, name, None) for name in SIGNATURES]
     # A structure with another field would be read wrongly without a word.
-    if library.sway_interface() != INTERFACE:
-        raise MissingDependencyError(other, cure=cure)
+    if None in functions or library.sway_interface() != INTERFACE:
+        raise MissingDependencyError('the native core is of other sources', cure=cure)
+    for function, called in zip(functions, SIGNATURES.values(), strict=True):
+        function.restype, function.argtypes = called  # type: ignore[union-attr]
     return library
 
 
