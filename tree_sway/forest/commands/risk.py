@@ -34,6 +34,9 @@ _ERRS = (
     'it errs early for sound trees: more fall here than in hurricanes; those with rot or wet soil '
     'fall before'
 )
+_NAMED = 40
+"""Most trees whose names are drawn."""
+
 _COLORS = ('#b2182b', '#ef8a62', '#cccccc', '#67a9cf', '#2166ac')
 
 
@@ -114,19 +117,23 @@ def _drawn(rows: list[Row], climate: Climate, table: Path) -> str:
     drawn = sorted((row for row in rows if row[CRITICAL] is not None), key=lambda r: r[CRITICAL])
     if not drawn or find_spec('matplotlib') is None:
         return ''
-    figure = new_figure(8.0, 5.0)
+    figure = new_figure(8.0, min(max(0.25 * len(drawn), 1.0), 8.0) + 1.5)
     axes = figure.add_subplot()
     low, middle, high = (
         [row[name] for row in drawn] for name in ('low_80 [m/s]', CRITICAL, 'high_80 [m/s]')
     )
+    places = range(len(drawn))
     colors = [_COLORS[row['class'] - 1] for row in drawn]
-    axes.vlines(range(len(drawn)), low, high, colors=colors)
-    axes.scatter(range(len(drawn)), middle, c=colors, s=9.0)
-    if len(drawn) <= 40:
-        axes.set_xticks(range(len(drawn)), [row['name'] for row in drawn], rotation=90)
+    axes.hlines(places, low, high, colors=colors)
+    axes.scatter(middle, places, c=colors, s=12.0)
+    names = [f'{row["name"]}, {row["species"]}' for row in drawn] if len(drawn) <= _NAMED else []
+    axes.set_yticks(places[: len(names)], names)
+    axes.set(
+        xlim=(0.0, None), xlabel='mean wind at 10 m that fells it, and 80 % of such trees [m/s]'
+    )
     if climate.shape is None:
-        axes.axhline(climate.speed, color='black', lw=0.8)
-    axes.set_ylabel(f'critical mean wind at 10 m [m/s]; line: {climate}')
+        axes.axvline(climate.speed, color='black', lw=0.8)
+    axes.set_title(f'{"black: " * (climate.shape is None)}{climate}', fontsize='medium')
     figure.tight_layout()
     return f', {save_figure(figure, table.with_suffix(".png"))}'
 
