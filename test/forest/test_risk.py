@@ -130,6 +130,14 @@ def test_the_critical_wind_is_that_at_which_info_says_that_all_strength_is_used(
 
 
 @pytest.mark.usefixtures('short_storms')
+def test_a_wind_that_was_not_stepped_is_said(tmp_path: Path) -> None:
+    work = risk_work(inventory(tmp_path, 'species,height,dbh\noak,15,45'))
+    (row,) = rows_of_kind(work, compute_kind(next(iter(work.kinds))))
+    assert row['critical_wind_10m [m/s]'] > 55.0
+    assert 'carried on from slower winds' in row['assumed']
+
+
+@pytest.mark.usefixtures('short_storms')
 def test_a_tree_that_no_storm_breaks_has_a_row() -> None:
     result = compute_kind(RiskKind('spruce', 3.0, 15.0))
     assert not result.error

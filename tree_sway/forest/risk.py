@@ -250,6 +250,10 @@ def _assumed(
         said.append(result.note)
     if critical is not None and critical >= FASTEST:
         said.append(f'above {FASTEST:g} m/s')
+    elif critical is not None:
+        fastest = max(float(each.stem.speed[-1]) for each in result.seasons)
+        if critical > fastest * result.exposure.at_ten_metres:
+            said.append('carried on from slower winds')
     if not result.exposure.is_alone and not result.error:
         said.append(f'trees {result.exposure.scaled(inventory.height[row]).spacing:.2g} m apart')
     shelter = 'no shelter' if result.exposure.is_alone else 'as high as its neighbours'
