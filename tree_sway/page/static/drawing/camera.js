@@ -43,8 +43,9 @@ export class Camera {
     const seen = tall * Math.cos(this.elevation) + wide * Math.abs(Math.sin(this.elevation));
     const [left, top, right, bottom] = this.room();
     const [across, down] = [right - left, bottom - top].map((each) => Math.max(0.2, each));
-    const half = 0.54 * Math.max(seen / down, wide / this.aspect / across, 0.7 * this._size);
-    this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
+    // A crown is round: its box has corners that it does not reach.
+    const half = 0.54 * Math.max(seen / down, (isTree ? 0.75 : 1) * wide / this.aspect / across, isTree ? 0 : 0.7 * this._size);
+    this.distance = half / HALF + (isTree ? 0.25 : wide > 3 * tall ? 0.1 : 0.4) * wide;
     this.pan(0.5 * this.aspect * (left + right - 1), 0.5 * (top + bottom - 1));
     this.isHome = true;
   }

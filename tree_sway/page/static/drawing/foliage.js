@@ -14,9 +14,11 @@ const LARGEST_CARDS = 2.5;
 /** Length of a small card with a tuft, and its distance from its shoot, over those of other small cards. */
 const [TUFTS, TUFTS_BESIDE] = [1.25, 0.7];
 /** Length of a small card over that of a full one: this power of how many more there are, and its least value. */
-const [SMALLER, LEAST_CARD] = [0.57, 0.08];
+const [SMALLER, LEAST_CARD] = [0.45, 0.08];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
+/** How much a cluster is lit as a ball rather than as part of the crown. */
+const ROUNDED = 1.2;
 /** Number of different small cards. */
 const VARIETY = 200;
 /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
@@ -88,7 +90,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
-      const light = turned(back, towards);
+      const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - shoot.at[c])));
       const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));

@@ -3,9 +3,13 @@
 // Shaders in parts: `#part NAME BASE` begins one, which `gl.js` compiles after its base. Poses come from a
 // texture, two texels per segment.
 
-#part seen
+#part tones
 precision highp float;
 precision highp int;
+// Tones of light: deep shade is lifted and full sun held back, as in a photograph.
+vec3 toned(vec3 c) { return 1.06 * pow(c, vec3(0.65)); }
+
+#part seen tones
 uniform mat4 camera;
 uniform float ground;
 uniform vec3 light; // towards the sun
@@ -48,8 +52,7 @@ in float segment; // of its tree
 uint rowOf() { return 2u * uint(start + segment); }
 vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
 
-#part noise
-precision highp float;
+#part noise tones
 float hash(vec2 p) {
   uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
   uint n = (q.x ^ q.y) * 1597334673u;
@@ -149,7 +152,7 @@ void main() {
   base = mix(base, paint.rgb, paint.a);
   float open = 0.5 + 0.5 * tone.y;
   vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0);
-  base = mix(base * lit, vec3(1.0, 0.45, 0.1), 0.75 * mark);
+  base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
 
@@ -189,7 +192,7 @@ void main() {
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.8 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
+  vec3 n = normalize(0.45 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
   edge = min(1.0, 0.3 + 3.0 * abs(dot(flat_, back)));
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
@@ -206,7 +209,7 @@ void main() {
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
-  vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
+  vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : toned(up + direct));
   float clear = clearness(p);
   lit = clear * (1.0 - paint.a) * whole;
   veil = (1.0 - clear) * horizon + clear * (paint.a * paint.rgb * whole + shine);
@@ -228,7 +231,7 @@ void main() {
   float cells = exp2(floor(0.5 - log2(small)));
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
   float mixed = max(0.0, log2(180.0 * small));
-  float least = mix(0.5, 0.15 + 0.6 * chance, min(1.0, 0.3 * mixed));
+  float least = mix(0.5, 0.06 + 0.88 * chance, min(1.0, 0.3 * mixed));
   if (edge * leaf.a < least) discard;
   color = vec4(leaf.rgb / max(leaf.a, 0.01) * lit + veil, 1.0);
 }
