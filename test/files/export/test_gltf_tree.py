@@ -20,7 +20,7 @@ from tree_sway.files.export import breeze, gltf_tree
 from tree_sway.files.export.gltf_tree import morphing_tree, skinned_tree
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_export import write_gltf, write_tree
-from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
+from tree_sway.files.export.tree_mesh import crown_mesh, wood_mesh
 from tree_sway.growth.builtin import builtin_tree
 
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
@@ -107,7 +107,7 @@ def test_nodes_are_driven_by_the_poses_of_the_segments(simulator, leaves):
             nodes[k]['translation'], nodes[k]['rotation'] = poses[i, :3], poses[i, 3:]
         for primitive, ours in zip(
             mesh['primitives'],
-            (wood_mesh(tree), leaf_mesh(leaves, look_of(tree.species).spray)),
+            (wood_mesh(tree), crown_mesh(tree, leaves, look_of(tree.species).spray, 4)),
             strict=True,
         ):
             drawn = skinned_vertices(document, arrays, primitive)
@@ -191,6 +191,25 @@ def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     assert np.linalg.norm(moved - change) < 0.05 * np.linalg.norm(moved) + 1e-4
 
 
+def test_a_viewer_bounds_a_tree_that_morphs_by_little_more_than_it_is(morphing):
+    """The box of three.js: that of rest, and on each side the largest motion of a target."""
+    document, arrays = morphing
+    lows, highs, tops, feet = [], [], [], []
+    for primitive in document['meshes'][0]['primitives']:
+        at = arrays[primitive['attributes']['POSITION']]
+        targets = [np.abs(arrays[each['POSITION']]).max(axis=0) for each in primitive['targets']]
+        moved = np.max(targets, axis=0)
+        feet.append(at.min(axis=0))
+        tops.append(at.max(axis=0))
+        lows.append(feet[-1] - moved)
+        highs.append(tops[-1] + moved)
+    bound, tree = (np.max(b, axis=0) - np.min(a, axis=0) for a, b in ((lows, highs), (feet, tops)))
+    assert bound.max() < 1.2 * tree.max()
+    # Blender draws weights up to 10.
+    (animation,) = document['animations']
+    assert 0.1 < np.abs(arrays[animation['samplers'][0]['output']]).max() < 10.0
+
+
 def test_more_segments_than_joints(simulator, monkeypatch):
     monkeypatch.setattr(gltf_tree, '_MAX_JOINTS', 10)
     with pytest.raises(FormatError, match='997 segments, more than the 10 joints of a skin'):
@@ -248,6 +267,16 @@ def test_a_large_tree_is_at_most_six_megabytes():
     leaves = leaf_clusters(tree, np.random.default_rng(0), count=1500)
     for document in (skinned_tree(tree, leaves), morphing_tree(simulator, leaves)):
         assert len(document.glb()) < 6e6
+
+
+@pytest.mark.parametrize('species', ['oak', 'birch', 'spruce', 'willow'])
+def test_far_leaves_cover_as_much_as_near_ones(species):
+    """As a renderer halves a picture with distance, and draws what is left of its alpha."""
+    alpha = np.asarray(Image.open(io.BytesIO(leaf_picture(species))).convert('RGBA'))[..., 3] / 255
+    near = (alpha > gltf_tree._CUTOFF).mean()
+    while len(alpha) > 16:
+        alpha = alpha.reshape(len(alpha) // 2, 2, -1, 2).mean(axis=(1, 3))
+        assert (alpha > gltf_tree._CUTOFF).mean() > 0.9 * near
 
 
 VALIDATE = """

@@ -11,7 +11,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.look import Spray
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.files.export.tree_mesh import BARK_HEIGHT, leaf_mesh, SIDES, wood_mesh
+from tree_sway.files.export.tree_mesh import BARK_HEIGHT, crown_mesh, leaf_mesh, SIDES, wood_mesh
 from tree_sway.files.trees.tree_file import read_tree
 from tree_sway.growth.builtin import builtin_tree
 
@@ -81,6 +81,27 @@ def test_leaves_lie_as_their_clusters(tree):
         [np.linalg.norm(each, axis=1) for each in across], axis=0
     )
     assert np.abs(angle).max() < 0.7  # they cross each other
+
+
+def test_a_crown_of_smaller_shoots_is_above_the_ground_and_lit_from_outside(tree):
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=200)
+    spray = Spray(1.5, 0.5, (0.0, 1.2))
+    whole, parted = leaf_mesh(leaves, spray), crown_mesh(tree, leaves, spray, 4)
+    assert len(whole.points) < len(parted.points) <= 4 * len(whole.points)
+    points = parted.placed(tree.rest_poses)
+    assert points[:, 2].min() >= tree.start[0, 2]
+    turns = Rotation.from_quat(tree.rest_poses[parted.segment, 3:])
+    normals = turns.apply(parted.normals)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-12)
+    away = points - points.mean(axis=0)
+    away /= np.linalg.norm(away, axis=1)[:, None]
+    assert np.einsum('ij,ij->i', normals, away).mean() > 0.6
+
+    def area(mesh):
+        a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+
+    assert 0.7 < area(parted) / area(whole) <= 1.05
 
 
 def test_a_texture_goes_on_along_each_branch(tree):

@@ -28,7 +28,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
-from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
+from tree_sway.files.export.tree_mesh import crown_mesh, TreeMesh, wood_mesh
 
 _GENERATOR = 'tree_sway'
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
@@ -39,8 +39,18 @@ Share of a coordinate's unit at which the slope of a target is computed: between
 storm.
 """
 _SECONDS = 20.0
-_CUTOFF = 0.4
-"""Least alpha of a picture of leaves that is drawn."""
+_CUTOFF = 0.2
+"""
+Least alpha of a picture of leaves that is drawn: less than a small picture has on the average, so
+that far crowns are no balder than near ones.
+"""
+_MOVED = 0.1
+"""
+Largest motion by a weight of 1 over half the size of the tree: viewers that bound a tree by its
+targets see one little larger than it is.
+"""
+_SHOOTS, _FEW_SHOOTS = 4, 1
+"""Shoots per cluster of leaves with a skin, and with morph targets, which each vertex has."""
 
 
 def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument:
@@ -61,7 +71,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     inverse = document.add_array(_inverse_matrices(poses))
     skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
-    for material, mesh in _meshes(tree, leaves):
+    for material, mesh in _meshes(tree, leaves, _SHOOTS):
         points = mesh.placed(poses)
         normals = _normals(mesh, poses)
         primitive = _primitive(
@@ -96,9 +106,9 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
-    the basis and the amplitude of the coordinate in a ``storm``. Positions are integers which the
-    node scales (KHR_mesh_quantization); so that small ones suffice, a weight of 1 moves some
-    vertex by half the size of the tree, and the vertices of a ring of wood move together. An
+    the basis and the amplitude of the coordinate in a ``storm``. Targets are integers which the
+    node scales (KHR_mesh_quantization): a weight of 1 moves some vertex by a twentieth of the size
+    of the tree. So that small integers suffice, the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
     tree = simulator.tree
@@ -106,12 +116,12 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     storm = basis.scale / MARGIN
     document = GltfDocument(_GENERATOR)
     rest = tree.rest_poses
-    meshes = _meshes(tree, leaves)
+    meshes = _meshes(tree, leaves, _FEW_SHOOTS)
     steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
     changes = [[_change(material, mesh, step) for step in steps] for material, mesh in meshes]
     places = [mesh.placed(rest) for _, mesh in meshes]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
-    size = 0.5 * float((high - low).max())
+    size = _MOVED * 0.5 * float((high - low).max())
     middle = 0.5 * (low + high)
     greatest = np.array([[np.abs(change).max() for change in each] for each in changes]).max(
         axis=0
@@ -125,7 +135,9 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
             material,
             tree.species,
             mesh,
-            POSITION=_add_shares(document, (points - middle) / size, np.int16, bounds=True),
+            POSITION=document.add_array(
+                ((points - middle) / size).astype(np.float32), target=ARRAY_BUFFER, bounds=True
+            ),
             NORMAL=_add_shares(document, _normals(mesh, rest), np.int8),
         )
         primitive['targets'] = [
@@ -159,11 +171,11 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     return document
 
 
-def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh]]:
+def _meshes(tree: Tree, leaves: LeafClusters | None, shoots: int) -> list[tuple[str, TreeMesh]]:
     wood = ('bark', wood_mesh(tree))
     if leaves is None:
         return [wood]
-    return [wood, ('leaves', leaf_mesh(leaves, look_of(tree.species).spray))]
+    return [wood, ('leaves', crown_mesh(tree, leaves, look_of(tree.species).spray, shoots))]
 
 
 def _normals(mesh: TreeMesh, poses: Floats) -> Floats:

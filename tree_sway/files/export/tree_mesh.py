@@ -24,6 +24,12 @@ _CORNERS = np.array([[0.0, -0.5], [1.0, -0.5], [1.0, 0.5], [0.0, 0.5]])
 _ROLL, _YAW, _BOW = 0.3, 0.35, 0.1
 """How far cards of clusters differ [rad], and how low a card ends over its length [-]."""
 
+_SPREAD = 0.4
+"""Distance of the outermost shoot from the middle of its cluster, over the size of that [-]."""
+
+_FLAT, _SKYWARD = 0.5, 0.4
+"""Part of a card's own normal in that by which it is lit, and of the sky, beside the crown's."""
+
 
 @dataclass(frozen=True)
 class TreeMesh:
@@ -100,14 +106,72 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     """
     turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
     parts = [_cards(leaves, spray, turns, card) for card in range(min(cards, len(spray.rolls)))]
-    points, normals = (np.concatenate(each).reshape(-1, 3) for each in zip(*parts, strict=True))
-    n = len(points) // 4
+    points, normals = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return _card_mesh(points, normals, np.tile(leaves.segment.astype(np.int64), len(parts)))
+
+
+def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> TreeMesh:
+    """
+    Return the cards of a whole crown, each cluster of leaves as several smaller shoots.
+
+    They are lit as a crown is, by normals that point away from its middle, and none reaches below
+    the foot of the tree.
+    """
+    mesh = leaf_mesh(_parted(leaves, shoots), spray)
+    poses = tree.rest_poses
+    corners = mesh.placed(poses).reshape(-1, 4, 3)
+    segment = mesh.segment[::4]
+    number = (np.cumsum(tree.segment_parent < 0) - 1)[segment]  # of the tree in a forest
+    centre = corners.mean(axis=1)
+    middle = np.stack([np.bincount(number, each) for each in centre.T], axis=1)
+    middle /= np.maximum(np.bincount(number), 1)[:, None]
+    foot = tree.start[tree.segment_parent < 0, 2][number]
+    away = _unit(centre - middle[number])
+    away[:, 2] += _SKYWARD
+    outward = Rotation.from_quat(poses[segment, 3:]).inv().apply(away)[:, None]
+    own = mesh.normals.reshape(-1, 4, 3)
+    own = own * np.where((own * outward).sum(axis=2, keepdims=True) < 0.0, -1.0, 1.0)
+    normals = _unit(_FLAT * own + outward)
+    is_above = corners[..., 2].min(axis=1) >= foot
+    points = mesh.points.reshape(-1, 4, 3)
+    return _card_mesh(points[is_above], normals[is_above], segment[is_above])
+
+
+def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
+    """Return clusters of the same area in parts that are spread about the shoot of each."""
+    number = np.tile(np.arange(shoots), len(leaves.segment))
+    around = 2.4 * number + np.repeat(leaves.phase, shoots)
+    # The first part stays in the middle, where the shoot is.
+    far = _SPREAD * np.sqrt(number / max(1, shoots - 1))
+    along = _SPREAD * (2.0 * (number + 0.5) / shoots - 1.0)
+    aside = np.stack([along, far * np.cos(around), far * np.sin(around)], axis=1)
+    size = np.repeat(leaves.size, shoots)
+    turns = Rotation.from_quat(np.repeat(leaves.orientation[:, [1, 2, 3, 0]], shoots, axis=0))
+    lean = Rotation.from_rotvec(aside[:, [0, 2, 1]] * [0.0, -1.0, 1.0])
+    return LeafClusters(
+        segment=np.repeat(leaves.segment, shoots),
+        offset=np.repeat(leaves.offset, shoots, axis=0) + turns.apply(size[:, None] * aside),
+        orientation=(turns * lean).as_quat()[:, [3, 0, 1, 2]],
+        size=size / np.sqrt(shoots),
+        frequency=np.repeat(leaves.frequency, shoots),
+        phase=around % (2.0 * np.pi),
+    )
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Vectors of length 1, (..., 3)."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1), 1e-9)[..., None])
+
+
+def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
+    """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
+    n = len(points)
     two = np.array([[0, 1, 2], [0, 2, 3]])
     return TreeMesh(
-        points,
-        normals,
+        points.reshape(-1, 3),
+        normals.reshape(-1, 3),
         np.tile(_CORNERS + np.array([0.0, 0.5]), (n, 1)),
-        np.tile(np.repeat(leaves.segment.astype(np.int64), 4), len(parts)),
+        np.repeat(segment, 4),
         (4 * np.arange(n)[:, None, None] + two).reshape(-1, 3),
     )
 

@@ -23,12 +23,14 @@ from tree_sway.core.species import look_of
 from tree_sway.core.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
-from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
+from tree_sway.files.export.tree_mesh import crown_mesh, TreeMesh, wood_mesh
 
 _SECONDS = 10.0
 _STEADY = 8.0
 _SETTLED = 30.0
 _MAX_GROUPS = 4
+_SHOOTS = 4
+"""Shoots per cluster of leaves."""
 
 
 def usd_of_tree(
@@ -75,7 +77,8 @@ def usd_of_tree(
         _mesh('Wood', wood_mesh(tree), rest, look.bark, name),
     ]
     if leaves is not None:
-        parts.append(_mesh('Leaves', leaf_mesh(leaves, look.spray), rest, look.green, name))
+        crown = crown_mesh(tree, leaves, look.spray, _SHOOTS)
+        parts.append(_mesh('Leaves', crown, rest, look.green, name))
     return '\n'.join([*parts, '}\n'])
 
 
@@ -165,7 +168,7 @@ def _material(kind: str, picture: str, color: tuple[float, float, float], root: 
     linear = ', '.join(f'{c**2.2:.3f}' for c in color)
     opacity = [
         f'float inputs:opacity.connect = <{here}/Picture.outputs:a>',
-        'float inputs:opacityThreshold = 0.4',
+        'float inputs:opacityThreshold = 0.2',
     ]
     return '\n'.join(
         [
