@@ -87,6 +87,26 @@ test("the camera stays above the ground, whatever room the cards leave it", () =
   }
 });
 
+test("a tree fills most of the picture, and a stand is seen from its edge", () => {
+  const camera = new Camera();
+  for (const aspect of [0.75, 1, 1.6]) {
+    camera.aspect = aspect;
+    for (const [wide, tall] of [[16, 18], [5, 20], [10, 12]]) {
+      camera.home([[-wide / 2, -wide / 2, 0], [wide / 2, wide / 2, tall]]);
+      camera.update();
+      const [foot, top] = [0, tall].map((z) => camera.project([0, 0, z])[1]);
+      const [left, right] = [-1, 1].map((side) => camera.project([-0.28 * side * wide, 0.41 * side * wide, tall / 2])[0]);
+      assert.ok(Math.max(foot - top, Math.abs(right - left)) > 0.6);
+      assert.ok(top > 0 && foot < 1 && Math.min(left, right) > 0);
+    }
+  }
+  camera.home([[0, 0, 0], [300, 200, 20]]);
+  camera.update();
+  const [x, y, z] = camera.eye;
+  const outside = Math.hypot(Math.max(0, -x, x - 300), Math.max(0, -y, y - 200));
+  assert.ok(outside < 2 * 20 && z > 1 && z < 20, `${camera.eye}`);
+});
+
 test("levels grow to the whole tree, and the highest segment is of all of them", () => {
   const { levels } = crowd();
   assert.deepEqual([levels[0].branches, levels[0].segments], [0, 1]);
@@ -98,6 +118,7 @@ test("levels grow to the whole tree, and the highest segment is of all of them",
 
 test("far trees are coarse, near ones fine, those out of sight nothing, all within the budget", () => {
   const { levels, camera, detail } = crowd();
+  camera.set([-0.6, 0.2, 300, 75, 30, 0.5]);
   detail.choose(camera.update(), 800, 8000);
   assert.ok(detail.level.every((level) => level >= 0));
   assert.ok(detail.segments <= 1000 + 8000);

@@ -77,6 +77,8 @@ class Look:
         Width of a spray over its length [-].
     spray_size
         Size of a spray over that of the others for the same leaf area [-].
+    depth
+        Depth of a cluster of leaves over its width [-]: small where leaves lie in layers.
     bark, twig
         Colours of the stem and of thin twigs.
     bark_pattern
@@ -93,6 +95,7 @@ class Look:
     droop: float = 0.1
     spray_width: float = 0.75
     spray_size: float = 1.0
+    depth: float = 0.8
     bark: Color = (0.42, 0.35, 0.28)
     twig: Color = (0.34, 0.28, 0.20)
     bark_pattern: str = 'furrows'

@@ -6,6 +6,8 @@
 const HALF = Math.tan((16 * Math.PI) / 180);
 /** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
+/** Distance from the edge of a stand, over its height. */
+const NEARBY = 1.6;
 
 export class Camera {
   azimuth = -0.6;
@@ -17,7 +19,7 @@ export class Camera {
   eye = /** @type {Vector} */ ([0, 0, 0]);
   /** Part of the picture that nothing covers: left, top, right and bottom, 0 to 1. @type {() => number[]} */
   room = () => [0, 0, 1, 1];
-  /** Whether it shows all of the scene, as nobody has moved it. */
+  /** Whether it shows the scene, as nobody has moved it. */
   isHome = true;
   _size = 1;
   _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
@@ -29,23 +31,24 @@ export class Camera {
     this.target = [x, y, z];
   }
 
-  /** Show all of a scene. @param {number[][]} box its lowest and its highest corner */
+  /** Show a scene, a stand of trees from its edge. @param {number[][]} box its lowest and its highest corner */
   home([low, high] = this._box) {
     this._box = [low, high];
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const tall = high[2] - low[2];
     this._size = Math.hypot(wide, tall);
     this.azimuth = -0.6;
-    // A tree is seen from the ground, against the sky; a plant or a stand from higher up.
+    // A tree is seen from the ground, against the sky; a plant from higher up; a stand from its edge, between its trees.
     const isTree = tall > TALL && wide < 2 * tall;
-    this.elevation = isTree ? -0.07 : Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
+    const isStand = wide > 3 * tall;
     this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
-    const seen = tall * Math.cos(this.elevation) + wide * Math.abs(Math.sin(this.elevation));
     const [left, top, right, bottom] = this.room();
     const [across, down] = [right - left, bottom - top].map((each) => Math.max(0.2, each));
     // A crown is round: its box has corners that it does not reach.
-    const half = 0.54 * Math.max(seen / down, (isTree ? 0.75 : 1) * wide / this.aspect / across, isTree ? 0 : 0.7 * this._size);
-    this.distance = half / HALF + (isTree ? 0.25 : wide > 3 * tall ? 0.1 : 0.4) * wide;
+    const [round, deep] = isTree ? [0.75, 0] : [1, 0.16];
+    const half = 0.54 * Math.max((tall + deep * wide) / down, (round * wide) / this.aspect / across);
+    this.distance = isStand ? 0.6 * Math.min(high[0] - low[0], 1.5 * (high[1] - low[1])) + NEARBY * tall : half / HALF + 0.3 * wide;
+    this.elevation = isTree ? -0.07 : isStand ? (0.2 * tall) / this.distance : deep;
     this.pan(0.5 * this.aspect * (left + right - 1), 0.5 * (top + bottom - 1));
     this.isHome = true;
   }

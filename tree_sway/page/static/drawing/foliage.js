@@ -6,15 +6,15 @@
 import { STRIDE } from "../placing.js";
 import { multiply, turned } from "../quaternions.js";
 import { lookOf, seeded } from "./looks.js";
-import { leafPlace } from "./mesh.js";
+import { leafPlace, reachOf } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
 const LARGEST_CARDS = 2.5;
-/** Length of a small card with a tuft, and its distance from its shoot, over those of other small cards. */
-const [TUFTS, TUFTS_BESIDE] = [1.25, 0.7];
-/** Length of a small card over that of a full one: this power of how many more there are, and its least value. */
-const [SMALLER, LEAST_CARD] = [0.45, 0.08];
+/** Distance of a small card with a tuft from its shoot, over that of other small cards. */
+const TUFTS_BESIDE = 0.7;
+/** Least length of a small card over that of a full one. */
+const LEAST_CARD = 0.08;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -26,10 +26,11 @@ const VARIETY = 200;
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
 /** Length below which a limb under the crown is dead, over that of the longest. */
 const DEAD = 0.1;
-/** Length below which a branch without leaves stays bare, over the size of a shoot. */
-const STUB = 4;
-/** Droop from which on a tree weeps, and its THIN, as a curtain of leaves hides the boughs. */
-const [WEEPS, THIN_WEEPING] = [0.8, 8];
+/** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
+ * clothed all along. */
+const [STUB, LONG] = [4, 1.6];
+/** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging shoots hide the boughs. */
+const [WEEPS, CURTAIN] = [0.8, 7];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
@@ -148,14 +149,12 @@ function leafyShoot(kind, rest, i) {
  * their branches. @param {Kind} kind @param {Float32Array} rest
  * @param {number} highest segment, up to which the stem goes */
 export function deadWood({ arrays, nBranches }, rest, highest) {
-  const { branch_first: first, branch_parent: parents, segment_length: length } = arrays;
+  const { branch_first: first, branch_parent: parents } = arrays;
   const stem = new Set();
   for (let part = first.findIndex((from) => from > highest) - 1; part >= 0; part = parents[part]) stem.add(part);
   const isLimb = (/** @type {number} */ branch) => !stem.has(branch) && stem.has(parents[branch]);
-  const limbs = Array.from(parents, (_, branch) => branch).filter(isLimb).map((branch) => {
-    const reach = Array.from(length.subarray(first[branch], first[branch + 1])).reduce((sum, each) => sum + each, 0);
-    return { branch, reach, base: rest[STRIDE * first[branch] + 2] };
-  });
+  const limbs = Array.from(parents, (_, branch) => branch).filter(isLimb)
+    .map((branch) => ({ branch, reach: reachOf(arrays, branch), base: rest[STRIDE * first[branch] + 2] }));
   const longest = limbs.reduce((most, each) => (each.reach > most.reach ? each : most), { reach: 0, base: 0 });
   const dead = new Set(limbs.filter(({ reach, base }) => reach < DEAD * longest.reach && base < longest.base).map(({ branch }) => branch));
   const segments = new Set();
@@ -177,9 +176,10 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const frequency = arrays.leaf_frequency[0];
   /** @type {Shoot[]} */
   const shoots = [];
-  const weeps = (look.droop ?? 0) > WEEPS;
+  const droop = look.droop ?? 0;
+  const weeps = droop > WEEPS;
   const size = weeps ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
-  const leafiest = thickest * (weeps ? THIN_WEEPING : THIN);
+  const leafiest = thickest * (THIN + CURTAIN * Math.max(0, droop));
   const share = (size / mean) ** 2;
   /** @param {number} segment @param {number} along [m] */
   const add = (segment, along) => {
@@ -192,10 +192,11 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A short stub stays bare: its few leaves would float in the air.
-    const reach = Array.from(length.subarray(first[branch], end + 1)).reduce((sum, each) => sum + each, 0);
-    if (reach > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
-    for (let segment = first[branch]; segment < end; segment++) {
-      if (leafy.has(segment) || radius[2 * segment] > leafiest) continue;
+    if (reachOf(arrays, branch) <= STUB * size && !leafy.has(end)) continue;
+    add(end, length[end] - 0.5 * size);
+    for (let segment = first[branch]; segment <= end; segment++) {
+      // A cluster clothes no long shoot from its foot on.
+      if ((leafy.has(segment) && length[segment] < LONG * size) || radius[2 * segment] > leafiest) continue;
       const count = Math.ceil(length[segment] / ((weeps ? 0.7 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
@@ -219,11 +220,10 @@ function cardsOf(look, mean, clusters, cards, most) {
     const along = leavesAlong(look, larger * length * mean);
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
   }
-  // Small cards hide each other less.
-  const finer = look.form === "tufts" ? TUFTS : 1;
-  const small = finer * length * Math.max(LEAST_CARD, (rolls.length / each) ** SMALLER);
+  // As much area as the full ones have.
+  const small = length * Math.max(LEAST_CARD, Math.sqrt(rolls.length / each));
   if (look.has_needles || small * mean > 1.6 * leaf) {
-    const along = leavesAlong(look, small * mean, true);
+    const along = leavesAlong(look, small * mean);
     return { each, along, spray: { rolls, width: pictureWidth(look, along, true), length: small }, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
@@ -252,13 +252,13 @@ function spreadCorners(look, { length, width }, random) {
   const whole = look.spray.length;
   // Tufts stand about their shoots, with sky between one shoot and the next.
   const wide = look.spray.width * whole * (look.form === "tufts" ? TUFTS_BESIDE : 1);
-  const isFlat = look.has_needles && look.form !== "tufts";
+  const deep = look.depth ?? 0.8;
   const some = () => random() + random() - 1;
-  const middle = [whole * (0.5 + 0.5 * some()), wide * some(), (isFlat ? 0.55 : 0.8) * wide * some()];
+  const middle = [whole * (0.42 + 0.42 * some()), wide * some(), deep * wide * some()];
   const away = unit(middle.map((each) => each + 0.25 * whole * some()));
   const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
   const beside = cross(upright, away);
-  const roll = (isFlat ? 0.9 : 1.5) * some();
+  const roll = 1.9 * deep * some();
   const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
     .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));
   const at = (/** @type {number} */ u, /** @type {number} */ v) =>

@@ -49,12 +49,15 @@ function branchOrder({ arrays, nBranches }, highest) {
   for (let top = first.findIndex((from) => from > highest) - 1; top >= 0; top = parents[top]) isTop[top] = 1;
   const area = new Float64Array(nBranches);
   for (let b = 0; b < nBranches; b++) {
-    const length = Array.from(arrays.segment_length.subarray(first[b], first[b + 1])).reduce((a, c) => a + c);
-    const own = isTop[b] ? Infinity : length * arrays.segment_radius[2 * first[b]];
+    const own = isTop[b] ? Infinity : reachOf(arrays, b) * arrays.segment_radius[2 * first[b]];
     area[b] = parents[b] < 0 ? Infinity : Math.min(own, area[parents[b]]);
   }
   return Int32Array.from(parents, (_, b) => b).sort((a, b) => area[b] - area[a] || a - b);
 }
+
+/** Length of a branch [m]. @param {Kind["arrays"]} arrays @param {number} branch */
+export const reachOf = ({ branch_first: first, segment_length: length }, branch) =>
+  length.subarray(first[branch], first[branch + 1]).reduce((sum, each) => sum + each, 0);
 
 /** Place of a cluster of leaves at rest [m]. @param {Kind} kind @param {Float32Array} rest @param {number} i */
 export function leafPlace({ arrays }, rest, i) {

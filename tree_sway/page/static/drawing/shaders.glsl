@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 1.06 * pow(c, vec3(0.65)); }
+vec3 toned(vec3 c) { return 1.16 * pow(c, vec3(0.7)); }
 
 #part seen tones
 uniform mat4 camera;
@@ -106,7 +106,8 @@ void main() {
     thickness += 2.0;
   } else {
     vec3 across = turned(q, vec3(0.0, ring.yz));
-    p += root.w * across;
+    // The shadow is wider at the foot of a stem, where the sky is hidden too.
+    p += root.w * (1.0 + 1.6 * step(0.5, shadowArea.w) * max(0.0, 1.0 - 40.0 * (p.z - ground) * shadowTop)) * across;
     normal = across;
   }
   at = skin.xy;
@@ -139,9 +140,10 @@ void main() {
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
   if (tone.x > 0.4) {
-    // Ridges of thick wood have a bright and a dark side.
-    float slope = rough.r - texture(relief, (at + vec2(0.03, 0.01)) * vec2(1.0, 0.5)).r;
-    n = normalize(n + tone.x * slope * normalize(vec3(-n.y, n.x, 1e-3)));
+    // Ridges of thick wood have a bright and a dark side, and an upper and a lower one.
+    float slope = rough.r - texture(relief, (at + vec2(0.03, 0.0)) * vec2(1.0, 0.5)).r;
+    float rise = rough.r - texture(relief, (at + vec2(0.0, 0.03)) * vec2(1.0, 0.5)).r;
+    n = normalize(n + tone.x * (1.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
   }
   vec3 own = barkColor;
   if (footHeight > 0.0) {
@@ -150,8 +152,8 @@ void main() {
   }
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
-  float open = 0.5 + 0.5 * tone.y;
-  vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0);
+  float open = (0.5 + 0.5 * tone.y) * (0.5 + 0.5 * smoothstep(0.0, 0.05, high));
+  vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x);
   base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
@@ -194,7 +196,7 @@ void main() {
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
   vec3 n = normalize(0.45 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
-  edge = min(1.0, 0.3 + 3.0 * abs(dot(flat_, back)));
+  edge = min(1.0, 4.0 * abs(dot(flat_, back)));
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
@@ -202,10 +204,10 @@ void main() {
   float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.5 + 0.5 * open);
   vec3 up = sky * (0.2 + 0.8 * open) * (0.8 + 0.2 * n.z * side);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
+  vec3 through = vec3(1.15, 1.25, 0.5) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
   // Greens vary. In autumn shaded leaves, and some others, turn last.
-  vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
+  vec3 hue = vec3(1.05, 0.97, 1.1) + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;

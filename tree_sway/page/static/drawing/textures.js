@@ -15,8 +15,6 @@ const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
  * the picture. */
 export const [CLUMP, CLUMP_FILLED] = [12, 1.3];
-/** Length of a leaf on a large card over its real one, at most. */
-const LARGER = 1.4;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -38,10 +36,10 @@ export const leafShare = ({ form }, along, isFlowering) =>
   (isFlowering && form === "digitate" && along === 1 ? LEAF_SHARE : 1);
 
 /** Number of leaves along the picture for cards of a length, so that none is drawn much larger than it is.
- * @param {Look} look @param {number} long length of a card [m] @param {boolean} [isSpread] of small cards */
-export function leavesAlong(look, long, isSpread = false) {
+ * @param {Look} look @param {number} long length of a card [m] */
+export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
-  const wanted = long / ((isSpread ? 1 : LARGER) * look.leaf_size);
+  const wanted = long / look.leaf_size;
   return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
@@ -58,7 +56,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else if (isClump && (along >= CLUMP || !hasLeaflets)) brush.clump(1 / along);
+  else if (isClump && along > (hasLeaflets ? 8 : 5)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
