@@ -9,7 +9,10 @@ const { scene, connection } = page();
 connection.close();
 window.requestAnimationFrame = () => 0; // nothing else is drawn from now on
 Object.assign(scene.canvas.style, Object.fromEntries(new URLSearchParams(location.search)));
-scene.camera.zoom(1.15);
+// The cards of the page are not in the picture.
+scene.camera.room = () => [0, 0, 1, 1];
+scene.resize();
+scene.camera.home();
 
 let picture = /** @type {Blob | null} */ (null);
 for (;;) {

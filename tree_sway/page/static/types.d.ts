@@ -285,6 +285,8 @@ interface Look {
   has_needles: boolean;
   /** How far shoots hang: 0 not at all, 1 half-way down. */
   droop?: number;
+  /** Depth of a cluster over its width: small where leaves lie in layers. */
+  depth?: number;
   /** Whether a single tree stands in a pot. */
   is_potted: boolean;
   spray: Spray;

@@ -19,6 +19,8 @@ const LEAST_CARD = 0.08;
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 1.2;
+/** How much lighter or darker a card is than others. */
+const UNEVEN = 0.12;
 /** Number of different small cards. */
 const VARIETY = 200;
 /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
@@ -70,7 +72,6 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
-  const uneven = look.has_needles ? 0.07 : 0.14;
   const candle = candleCorners(CANDLE * wholeLeaf(look));
   const { lowest, soil } = lowestLeaves(look, rest[2], high[2]);
   const values = /** @type {number[]} */ ([]);
@@ -92,7 +93,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - shoot.at[c])));
-      const tint = 1 + uneven * Math.sin(7 * shoot.phase + 2 * card);
+      const tint = 1 + UNEVEN * Math.sin(7 * shoot.phase + 2 * card);
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
