@@ -57,7 +57,7 @@ function branchOrder({ arrays, nBranches }, highest) {
 
 /** Length of a branch [m]. @param {Kind["arrays"]} arrays @param {number} branch */
 export const reachOf = ({ branch_first: first, segment_length: length }, branch) =>
-  length.subarray(first[branch], first[branch + 1]).reduce((sum, each) => sum + each, 0);
+  Array.from(length.subarray(first[branch], first[branch + 1])).reduce((sum, each) => sum + each, 0);
 
 /** Place of a cluster of leaves at rest [m]. @param {Kind} kind @param {Float32Array} rest @param {number} i */
 export function leafPlace({ arrays }, rest, i) {

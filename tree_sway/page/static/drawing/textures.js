@@ -355,7 +355,7 @@ class Brush {
 
   /** One leaf from its stalk on. @param {number} long @param {number} light */
   leaf(long, light) {
-    const { context, look, random } = this;
+    const { context, look } = this;
     const color = this.color(light, light > 0.9 ? 0.12 : 0);
     context.fillStyle = color;
     const blade = () => {
