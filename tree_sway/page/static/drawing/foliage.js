@@ -193,11 +193,10 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A short stub stays bare: its few leaves would float in the air.
-    if (reachOf(arrays, branch) <= STUB * size && !leafy.has(end)) continue;
-    add(end, length[end] - 0.5 * size);
+    if (reachOf(arrays, branch) > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment <= end; segment++) {
       // A cluster clothes no long shoot from its foot on.
-      if ((leafy.has(segment) && length[segment] < LONG * size) || radius[2 * segment] > leafiest) continue;
+      if (radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
       const count = Math.ceil(length[segment] / ((weeps ? 0.7 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }

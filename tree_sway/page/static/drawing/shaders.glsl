@@ -207,7 +207,7 @@ void main() {
   vec3 through = vec3(1.15, 1.25, 0.5) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
   // Greens vary. In autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(1.05, 0.97, 1.1) + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y);
+  vec3 hue = vec3(1.0, 0.99, 1.06) + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
