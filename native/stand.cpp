@@ -251,8 +251,10 @@ int sway_set_step(sway_stand *stand, double dt) {
     OwnStep &own = stand->steps[i];
     own.step.dt = dt / own.scale;
     const Kind &kind = stand->kinds[own.model];
-    if (kind.model->sizes.is_stepped)
-      fill_step(*kind.model, kind.tuning.stiffness, kind.tuning.damping, own.step.dt, own.step);
+    const sway_model &model = *kind.model;
+    if (model.sizes.is_stepped)
+      fill_step(model.sizes.coordinates, model.padded, kind.tuning.stiffness, kind.tuning.damping,
+                own.step.dt, own.step);
   }
   for (size_t i = 0; i < stand->n_models; i++) stand->kinds[i].tuning.n_set++;
   return 0;

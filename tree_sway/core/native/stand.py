@@ -19,7 +19,7 @@ from tree_sway.errors import ParameterError
 
 _ROOM = 300
 _LARGE = 100_000
-"""Segments of a stand beyond which each frame is shared among processors."""
+"""Trees times segments of the largest beyond which each frame is shared among processors."""
 
 _MOST_THREADS = 8
 """Threads beyond which the memory is the limit."""
@@ -62,7 +62,7 @@ class NativeStand:
     """
     Trees of some models, each at a place.
 
-    A stand of more than 100,000 segments is stepped and placed by as many threads as the process
+    A stand of some 100,000 segments or more is stepped and placed by as many threads as the process
     has processors, up to eight; their number does not change a bit of the result.
 
     Parameters
@@ -96,8 +96,8 @@ class NativeStand:
         trees['speed'] = speeds
         handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
-        segments = np.array([each.sizes.segments for each in models])
-        self._n_rooms = _threads() if segments[kinds].sum() > _LARGE else 1
+        largest = max((each.sizes.segments for each in models), default=0)
+        self._n_rooms = _threads() if largest * len(trees) > _LARGE else 1
         handle = LIBRARY.sway_stand_open(
             handles, len(models), address(trees), len(trees), self._n_rooms, error, _ROOM
         )
