@@ -26,6 +26,9 @@ namespace {
 
 using namespace sway;
 
+// Whether all forces are constant and steps short, as on a page: less is found then.
+constexpr bool IS_HELD = ON_TABLES;
+
 // A step of length 1 of unit inertia: q by q and v by v, and the differences of the exponential.
 struct Differences {
   double g, d, s, p, q, p_minus_q;
@@ -77,7 +80,7 @@ Discriminant discriminant_of(double inertia, double damping, double stiffness, d
   const double low =
       (damped.high - (high - taken)) + (-stiff.high - taken) + damped.low - stiff.low;
   const double whole = high + low, scale = 0.5 * h / inertia;
-  if (!(fabs(whole) > 1e-250 && fabs(whole) < 1e250 && scale < 1e100)) {
+  if (IS_HELD || !(fabs(whole) > 1e-250 && fabs(whole) < 1e250 && scale < 1e100)) {
     const double rough = alpha < 1e150 ? alpha * alpha - kappa : alpha * (alpha - kappa / alpha);
     return {rough, {rough < 0.0 ? sqrt(-rough) : 0.0, 0.0}};
   }
@@ -115,6 +118,7 @@ Differences by_series(double alpha, double kappa) {
 
 // What follows from g, s and p where kappa is not small.
 void close(double alpha, double kappa, Differences &by) {
+  if (IS_HELD) return;
   by.q = (1.0 - by.s - 2.0 * alpha * by.p) / kappa;
   by.p_minus_q = (by.s + 2.0 * alpha * by.p - by.g) / kappa;
 }
@@ -149,6 +153,7 @@ Differences by_decay(double alpha, double kappa, double sigma) {
   by.d = (slow * exp(slow) - fast * exp(fast)) / apart;
   by.p = (phi1(slow) - phi1(fast)) / apart;
   close(alpha, kappa, by);
+  if (IS_HELD) return by;
   by.q = (phi2(slow) - phi2(fast)) / apart;
   if (slow >= -1.0) by.p_minus_q = by.p - by.q;
   return by;
@@ -157,9 +162,9 @@ Differences by_decay(double alpha, double kappa, double sigma) {
 Differences differences(double inertia, double damping, double stiffness, double h) {
   const double alpha = 0.5 * damping * h / inertia, kappa = stiffness * h * h / inertia;
   const Discriminant of = discriminant_of(inertia, damping, stiffness, h, alpha, kappa);
-  const double sigma = sqrt(fmax(of.delta, 0.0));
-  if (alpha + fmax(sigma, of.phase.high) <= SMALL) return by_series(alpha, kappa);
-  return of.delta <= 0.0 ? by_phase(alpha, kappa, of.phase) : by_decay(alpha, kappa, sigma);
+  const double sigma = of.delta > 0.0 ? sqrt(of.delta) : 0.0;  // or the phase is 0
+  if (alpha + sigma + of.phase.high <= SMALL) return by_series(alpha, kappa);
+  return of.delta > 0.0 ? by_decay(alpha, kappa, sigma) : by_phase(alpha, kappa, of.phase);
 }
 
 // Write the six coefficients of a coordinate, rows of `stride` numbers.
