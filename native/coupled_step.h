@@ -41,7 +41,7 @@ static void fill_coupled(const sway_model &model, const Tuning &tuning, double d
   const Limp &limp = model.limp;
   const int64_t M = model.padded;
   const double h = dt / static_cast<double>(n_parts);
-  fill_step(model, tuning.stiffness, tuning.damping, h, law.part);
+  fill_step(model.sizes.coordinates, M, tuning.stiffness, tuning.damping, h, law.part);
   law.part.dt = h;
   law.n_parts = n_parts;
   int64_t n_coupled = 0;  // its own, so that two threads at once write no row past the last

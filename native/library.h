@@ -20,6 +20,20 @@ extern "C" {
  * Whoever calls what is declared here compares it, as memory is shared. */
 SWAY_API uint32_t sway_interface(void);
 
+/* Coefficients of oscillators q'' + k2 q' + k1 q = f of stiffness k1 [1/s^2] and damping k2 [1/s]
+ * (count) over a step of dt [s] under a constant force, and over half of it, to where the load of the
+ * wind is found: rows (6, count) for the displacement by displacement, rate and force, then for the
+ * rate. */
+SWAY_API void sway_steps(const double *stiffness, const double *damping, size_t count, double dt,
+                         double *whole, double *half);
+
+/* Coefficients (count, 8) of oscillators I x'' + k2 x' + k1 x = M(t) over a step of dt [s] in which M
+ * changes from M0 to M1 along a line: x by x, v, M0 and M1, then v by the same. An oscillator without
+ * inertia has its first-order limit, one without damping too its static response. Returns the first
+ * whose numbers are all zero, which is not moved, or -1. */
+SWAY_API int64_t sway_propagators(const double *inertia, const double *damping,
+                                  const double *stiffness, size_t count, double dt, double *out);
+
 /* The branches of a tree for the load of the wind on them, parents before their children. In the
  * frames of their bases at rest, which are that of the tree; k is the most key rotations that a
  * branch has. */

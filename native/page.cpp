@@ -151,7 +151,9 @@ SWAY_API void page_place(page_placer *placer, const float *coordinates, double x
 // Write the coefficients of a step of `dt` [s] of a model, and of half of it to where the load is
 // found: rows of `padded` numbers (6, padded), as `Step` has them. Returns `padded`.
 SWAY_API size_t page_steps(const sway_model *model, double dt, double *whole, double *half) {
-  if (whole) fill_step(*model, model->stiffness, model->own_damping, dt, {whole, half, dt});
+  if (whole)
+    fill_step(model->sizes.coordinates, model->padded, model->stiffness, model->own_damping, dt,
+              {whole, half, dt});
   return static_cast<size_t>(model->padded);
 }
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "gusts.h"
+#include "past_caches.h"
 #include "propagate.h"
 #include "text.h"
 
@@ -14,6 +15,9 @@ namespace {
 
 // Largest relative difference of scales of trees that have the same time step.
 constexpr double FINEST_SCALE = 0.01;
+
+// Segments whose poses are more than caches hold.
+constexpr int64_t BEYOND_CACHES = 100000;
 
 struct Tree {
   int64_t model, step;  // numbers of its model and its step
@@ -48,6 +52,7 @@ struct sway_stand {
   double *states;
   size_t stride, width;
   bool has_crowns;
+  bool is_large;  // beyond the caches
 };
 
 namespace {
@@ -144,8 +149,10 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     open_room(stand.memory, models, stand.n_models, stand.rooms[i]);
   for (size_t i = 0; i < stand.n_models; i++)
     if (is_limp(*models[i]) && !stand.limp) stand.limp = stand.memory.take<LimpTree>(stand.n_trees);
+  int64_t n_segments = 0;
   for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
     const sway_tree &given = trees[i];
+    n_segments += models[given.model]->sizes.segments;
     Tree &tree = stand.trees[i];
     tree.model = given.model;
     tree.speed = given.speed;
@@ -157,6 +164,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     if (stand.limp && is_limp(*models[given.model]))
       open_limp(stand.memory, *models[given.model], stand.limp[i]);
   }
+  stand.is_large = n_segments > BEYOND_CACHES;
   return !stand.memory.is_short;
 }
 
@@ -243,8 +251,10 @@ int sway_set_step(sway_stand *stand, double dt) {
     OwnStep &own = stand->steps[i];
     own.step.dt = dt / own.scale;
     const Kind &kind = stand->kinds[own.model];
-    if (kind.model->sizes.is_stepped)
-      fill_step(*kind.model, kind.tuning.stiffness, kind.tuning.damping, own.step.dt, own.step);
+    const sway_model &model = *kind.model;
+    if (model.sizes.is_stepped)
+      fill_step(model.sizes.coordinates, model.padded, kind.tuning.stiffness, kind.tuning.damping,
+                own.step.dt, own.step);
   }
   for (size_t i = 0; i < stand->n_models; i++) stand->kinds[i].tuning.n_set++;
   return 0;
@@ -283,12 +293,16 @@ int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const 
 
 void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count, double *poses) {
   Room &own = stand->rooms[room];
+  const bool is_large = PASSES_CACHES && stand->is_large;
   for (size_t i = 0; i < count; i++) {
     const Tree &tree = stand->trees[rows[2 * i]];
     const sway_model &model = *stand->kinds[tree.model].model;
     stand->frame->find_keys(model, state_of(*stand, rows[2 * i]), own);
-    stand->frame->place(model, tree.place, own, poses + 7 * rows[2 * i + 1]);
+    double *out = poses + 7 * rows[2 * i + 1];
+    stand->frame->place(model, tree.place, own, is_large ? own.poses : out);
+    if (is_large) write_past_caches(own.poses, 7 * model.sizes.segments, out);
   }
+  if (is_large) end_of_writes();
 }
 
 void sway_keys(sway_stand *stand, size_t room, size_t tree, double *keys) {

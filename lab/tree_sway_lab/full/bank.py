@@ -94,9 +94,9 @@ class Law(NamedTuple):
     limit: Floats
     """Moment at which the load on each key rotation is clamped in [N m], (N,)."""
     whole: Floats
-    """Propagator of a step, (m, 8)."""
+    """Propagator of a step under a constant force, (6, m)."""
     half: Floats
-    """Propagator to the middle of a step as `middle_of_step`, (m, 8)."""
+    """Propagator to the middle of a step, (6, m)."""
     springs: Floats
     """Stiffness and damping of the coordinates, then memory of `_add_inertia`, (5 + q, m)."""
     inertia_slopes: Floats
@@ -143,15 +143,11 @@ class FullBank(ModalCoordinates):
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
-        middle = self.law.middle_of_step(dt)
-        self.half[:] = 0.0
-        self.half[:, [0, 1, 2, 4, 5, 6]] = middle.T
         self._fastest[0] = MOST_TURN / dt
         self._enough[0] = ENOUGH * min(1.0, dt / WITHIN)
         self._springs[0], self._springs[1] = self.stiffness, self.damping
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
-        velocity = self.half[:, 6] + self.half[:, 7]
-        compliance = np.einsum('bm,m->b', self.participation, velocity)  # not by threads
+        compliance = np.einsum('bm,m->b', self.participation, self.half[5])  # not by threads
         self.loads['compliance'][block, slot] = compliance
 
     def advance(self, wx: float, wy: float, wz: float) -> int:
@@ -232,11 +228,9 @@ def _to_middle(motion: Motion, keys: Keys, law: Law) -> None:
     """Find key rotations and rates at the middle of the step, under the last step's load."""
     eta, rate, force = motion.eta, motion.rate, motion.force
     for k in range(len(eta)):
-        half = law.half[k]
-        by_force = (half[2] + half[3]) * force[k]
-        rate_by_force = (half[6] + half[7]) * force[k]
-        motion.middle[k] = half[0] * eta[k] + half[1] * rate[k] + by_force
-        motion.middle_rate[k] = half[4] * eta[k] + half[5] * rate[k] + rate_by_force
+        c = law.half[:, k]
+        motion.middle[k] = c[0] * eta[k] + c[1] * rate[k] + c[2] * force[k]
+        motion.middle_rate[k] = c[3] * eta[k] + c[4] * rate[k] + c[5] * force[k]
     _expand_both(law.shapes, motion.middle, motion.middle_rate, keys)
 
 
@@ -364,9 +358,9 @@ def _to_end(motion: Motion, law: Law) -> None:
     """Move every coordinate exactly, over a step under its force."""
     eta, rate = motion.eta, motion.rate
     for k in range(len(eta)):
-        whole, before, load = law.whole[k], eta[k], motion.force[k]
-        eta[k] = whole[0] * before + whole[1] * rate[k] + (whole[2] + whole[3]) * load
-        rate[k] = whole[4] * before + whole[5] * rate[k] + (whole[6] + whole[7]) * load
+        c, before, load = law.whole[:, k], eta[k], motion.force[k]
+        eta[k] = c[0] * before + c[1] * rate[k] + c[2] * load
+        rate[k] = c[3] * before + c[4] * rate[k] + c[5] * load
 
 
 @part

@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x3245ccef
+INTERFACE = 0x41778449
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -67,6 +67,9 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_correct': (None, (_pointer, _pointer, _size)),
     'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),
     'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
+    # Oscillators.
+    'sway_steps': (None, (_pointer, _pointer, _size, _number, _pointer, _pointer)),
+    'sway_propagators': (_whole, (_pointer, _pointer, _pointer, _size, _number, _pointer)),
     # Loads of winds on branches.
     'sway_wind_moments': (
         None, (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),

@@ -4,10 +4,9 @@
 One oscillator over one step, exactly.
 
 `propagator` gives the eight coefficients that advance ``I x'' + k2 x' + k1 x = M(t)`` over a step
-for a moment that changes linearly (Higham 2008, Functions of Matrices, 10.7), to the last digits
-for any damping and any step; `guards` are the limits within which a branch on two axes stays
-bounded. The model ``branch``, observers and methods of the laboratory step with these; the table's
-coordinates by the same equation in ``native/propagate.cpp``.
+for a moment that changes linearly, to the last digits for any damping and any step; the law is in
+``native/propagate.cpp`` (Higham 2008, Functions of Matrices, 10.7). `guards` are the limits within
+which a branch on two axes stays bounded.
 """
 
 from typing import TYPE_CHECKING
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from tree_sway.core.oscillators.propagation import fill_propagator as fill_propagator
     from tree_sway.core.oscillators.propagation import held_propagator as held_propagator
     from tree_sway.core.oscillators.propagation import propagator as propagator
+    from tree_sway.core.oscillators.propagation import step_propagators as step_propagators
     from tree_sway.core.oscillators.step_guards import guards as guards
     from tree_sway.core.oscillators.step_guards import LOAD_MAX as LOAD_MAX
 else:

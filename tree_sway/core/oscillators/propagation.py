@@ -9,11 +9,7 @@ a moment M that changes linearly from M0 to M1 (first-order hold)::
     x1 = c0 x + c1 v + c2 M0 + c3 M1
     v1 = c4 x + c5 v + c6 M0 + c7 M1
 
-Symbols: alpha = k2 h / 2 I, kappa = k1 h^2 / I, and mu1, mu2 = -alpha +- sqrt(alpha^2 - kappa),
-the two eigenvalues times h. With e[..] for the divided differences of the exponential, everything
-follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham
-2008, Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds
-without cancellation.
+``native/propagate.cpp`` finds them without cancellation.
 """
 
 from __future__ import annotations
@@ -21,18 +17,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each, refuse_time_step
-from tree_sway.core.oscillators.exponential import (
-    exponential_differences,
-    phi1,
-    phi2,
-    scaled_discriminant,
-)
+from tree_sway.core.native import contiguous, LIBRARY
 from tree_sway.errors import ParameterError
-
-Floats = NDArray[np.float64]
 
 _NO_MOTION = 'inertia, damping and stiffness are all zero'
 
@@ -80,6 +70,21 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     return out
 
 
+def fill_propagator(
+    inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
+) -> int:
+    """
+    Refill coefficients (n, 8) in place, for a new step [s].
+
+    Arguments are those of `propagator`, not checked. Returned is the index of the first oscillator
+    whose coefficients are all zero (its row is set to no motion), or -1.
+    """
+    count = len(out)
+    given = [np.ascontiguousarray(each) for each in (inertia, damping, stiffness)]
+    at = [contiguous(each, (count,)) for each in given]
+    return int(LIBRARY.sway_propagators(*at, count, dt, contiguous(out, (count, 8))))
+
+
 def held_propagator(damping: Floats, stiffness: Floats, dt: float) -> Floats:
     """
     Coefficients of oscillators of unit inertia whose force F is constant over a step.
@@ -98,85 +103,19 @@ def held_propagator(damping: Floats, stiffness: Floats, dt: float) -> Floats:
         (2, 3, n).
 
     """
-    c = propagator(1.0, damping, stiffness, dt).T
-    return np.array([[c[0], c[1], c[2] + c[3]], [c[4], c[5], c[6] + c[7]]])
+    return step_propagators(damping, stiffness, dt)[0]
 
 
-def fill_propagator(
-    inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
-) -> int:
+def step_propagators(damping: Floats, stiffness: Floats, dt: float) -> tuple[Floats, Floats]:
     """
-    Refill coefficients (n, 8) in place, for a new step [s]; computed in float64.
+    Coefficients as `held_propagator`, over a step and over half of it, (2, 3, n) each.
 
-    Arguments are those of `propagator`, not checked. Returned is the index of the first oscillator
-    whose coefficients are all zero (its row is set to no motion), or -1.
+    The half goes to where the load of the wind is found. Of an oscillator that swings nearly once
+    a step or more it is an implicit Euler step, whose rate always follows the force.
     """
-    i = inertia
-    c = damping
-    k = stiffness
-    longest = max(dt, 1.0)
-    with np.errstate(all='ignore'):
-        is_damped_finitely = c * dt < 1e150 * i
-        largest_of_inertia = np.maximum(k * dt, longest) * longest / i
-        has_inertia = (i > 0.0) & is_damped_finitely & (largest_of_inertia < 1e300)
-        largest_of_damping = np.maximum(k, 1.0) * longest / c
-        is_overdamped = ~has_inertia & (c > 0.0) & (largest_of_damping < 1e300)
-        is_static = ~has_inertia & ~is_overdamped & (k > 0.0)
-        out[:] = 0.0
-        out[has_inertia] = _second_order(i[has_inertia], c[has_inertia], k[has_inertia], dt).T
-        out[is_overdamped] = _first_order(c[is_overdamped], k[is_overdamped], dt).T
-        out[is_static] = _static(k[is_static], dt).T
-    refused = np.flatnonzero(~(has_inertia | is_overdamped | is_static))
-    out[refused, 0] = 1.0
-    return int(refused[0]) if len(refused) else -1
-
-
-def _second_order(i: Floats, c: Floats, k: Floats, h: float) -> Floats:
-    """Oscillators with inertia, (8, n): divided differences to moment coefficients."""
-    alpha = 0.5 * c * h / i
-    kappa = k * h * h / i
-    discriminant = scaled_discriminant(i, c, k, h, alpha, kappa)
-    g, d, s, p, q, p_minus_q = exponential_differences(alpha, kappa, *discriminant)
-    angle_by_moment = h * h / i
-    velocity_by_moment = h / i
-    return np.stack(
-        [
-            g,
-            h * s,
-            angle_by_moment * p_minus_q,
-            angle_by_moment * q,
-            -kappa * s / h,
-            d,
-            velocity_by_moment * (s - p),
-            velocity_by_moment * p,
-        ]
-    )
-
-
-def _first_order(c: Floats, k: Floats, h: float) -> Floats:
-    """No inertia, (8, n): k2 x' + k1 x = M, so that the velocity follows from the moments."""
-    z = -k / c * h
-    none = np.zeros_like(c)
-    decay = np.exp(z)
-    whole = phi1(z)
-    of_end = phi2(z)
-    of_start = whole - of_end
-    return np.stack(
-        [
-            decay,
-            none,
-            h / c * of_start,
-            h / c * of_end,
-            -k / c * decay,
-            none,
-            z * of_start / c,
-            whole / c,
-        ]
-    )
-
-
-def _static(k: Floats, h: float) -> Floats:
-    """No inertia and no damping, (8, n): the response to the moment, ``x = M / k1``."""
-    none = np.zeros_like(k)
-    rate = 1.0 / (k * h)
-    return np.stack([none, none, none, 1.0 / k, none, none, -rate, rate])
+    count = len(damping)
+    given = [np.ascontiguousarray(each, dtype=np.float64) for each in (stiffness, damping)]
+    whole, half = np.zeros((2, 2, 3, count))
+    at = [contiguous(each, (count,)) for each in given]
+    LIBRARY.sway_steps(*at, count, dt, contiguous(whole), contiguous(half))
+    return whole, half

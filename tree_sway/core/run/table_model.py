@@ -135,12 +135,11 @@ class TableOscillators:
 
     @property
     def whole(self) -> Floats:
-        """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
+        """Coefficients of a force that is added to a step, rows of `ModalCoordinates.whole`."""
         count = self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
-        per_force = self.modal.law.middle_of_step(self.modal.dt)[5]
-        implicit = 1.0 - self._state.diagonal[self.number, :count] * per_force
-        return np.asarray(self.modal.whole / implicit[:, None])
+        implicit = 1.0 - self._state.diagonal[self.number, :count] * self.modal.half[5]
+        return np.asarray(self.modal.whole / implicit)
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
