@@ -37,7 +37,7 @@ from tree_sway.core.setup.static_responses import direction, WindMoments
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
 
-BEYOND = 1.1
+_BEYOND = 1.1
 """Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
 _AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
@@ -65,7 +65,7 @@ def load_table(
     coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw
 ) -> dict[str, Any]:
     """Find the arrays and numbers of the table of a `SwayModel`."""
-    found = WindTable(coordinates, wind_moments, drag_law).arrays
+    found = _WindTable(coordinates, wind_moments, drag_law).arrays
     return {
         name: each if np.ndim(each) == 0 else np.ascontiguousarray(each, dtype=TYPES[name])
         for name, each in found.items()
@@ -104,7 +104,7 @@ class _Standing(NamedTuple):
         )
 
 
-class WindTable:
+class _WindTable:
     """
     Loads of all uniform winds on a tree, computed once.
 
@@ -144,7 +144,7 @@ class WindTable:
         table['harmonics'], table['limit'] = fit_harmonics(wind_moments, bank.shapes)
         self._fill_standing(table)
         self._fill_aslant(table)
-        table['most_pressure'] = float(BEYOND * self._pressures[-1])
+        table['most_pressure'] = float(_BEYOND * self._pressures[-1])
         energy = table['equilibrium'][:, -1] ** 2 @ bank.stiffness
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
