@@ -31,8 +31,10 @@ from tree_sway.core.drag import DragLaw, fill_harmonics, N_HARMONICS
 from tree_sway.core.model import N_AZIMUTHS, N_LEVELS, TYPES
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
+from tree_sway.core.setup.load_derivatives import LoadSlopes
 from tree_sway.core.setup.modal_arrays import Coordinates
-from tree_sway.core.setup.static_responses import direction, WindMoments
+from tree_sway.core.setup.static_responses import direction
+from tree_sway.core.setup.wind_moments import WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
@@ -129,7 +131,7 @@ class _WindTable:
         self._shapes = bank.shapes
         self._moments = wind_moments
         self._inertia_slopes = bank.inertia_slopes
-        self._slopes = wind_moments.slopes(bank.shapes)
+        self._slopes = LoadSlopes(wind_moments, bank.shapes)
         self._stiffness = bank.stiffness
         self._root = np.sqrt(bank.stiffness)
         self._damping = bank.damping
@@ -138,7 +140,7 @@ class _WindTable:
         self._still = np.zeros(len(bank.shapes))
         self.arrays = table = dict[str, Any]()
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
-        each = 2 if len(wind_moments.branches) <= _LARGE else 3
+        each = 2 if wind_moments.n_branches <= _LARGE else 3
         self._azimuths = _AZIMUTHS[::each]
         table['motion'] = bank.mean_square_motion
         table['harmonics'], table['limit'] = fit_harmonics(wind_moments, bank.shapes)

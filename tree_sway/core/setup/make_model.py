@@ -26,7 +26,6 @@ from tree_sway.core.setup.modal_arrays import Coordinates, modal_arrays
 from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.setup.stream_basis import (
     arrays_of_stream,
     basis_of_responses,
@@ -35,6 +34,7 @@ from tree_sway.core.setup.stream_basis import (
 )
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
 from tree_sway.core.setup.threads import one_thread
+from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.wind.gusts import delays_of, N_DELAYS, parts_of
 
 

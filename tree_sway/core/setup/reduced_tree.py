@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.drag import DragLaw
-from tree_sway.core.model import Places
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.branch_model import BranchModel, TreeBeams
 from tree_sway.core.setup.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
-from tree_sway.core.setup.branch_places import places_of
+from tree_sway.core.setup.branch_places import Places, places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree, Reduction
 from tree_sway.core.setup.threads import one_thread

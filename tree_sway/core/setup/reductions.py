@@ -25,7 +25,7 @@ from tree_sway.core.tree import Tree
 if TYPE_CHECKING:
     from tree_sway.core.setup.modes import Modes
     from tree_sway.core.setup.reduced_tree import ReducedTree, TreeReducer
-    from tree_sway.core.setup.static_responses import WindMoments
+    from tree_sway.core.setup.wind_moments import WindMoments
 
 FASTEST_LIMP, _LEAST_SPAN = 60.0, 4.0
 """
@@ -174,7 +174,7 @@ class TreeReductions:
     @cached_property
     def wind_moments(self) -> WindMoments:
         """Return the loads of the tree that is reduced with its subtrees."""
-        from tree_sway.core.setup.static_responses import WindMoments
+        from tree_sway.core.setup.wind_moments import WindMoments
 
         return WindMoments(self.with_subtrees.branches)
 
