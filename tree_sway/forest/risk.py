@@ -65,14 +65,15 @@ class RiskWork:
 def risk_work(
     inventory: Inventory,
     seed: int = 0,
-    most: int = _MOST_KINDS,
     *,
     exposure: str = 'open',
     spacing: float | None = None,
     climate: Climate = INLAND,
 ) -> RiskWork:
     """
-    Group the trees of an inventory into at most some kinds; more alike where they are few.
+    Group the trees of an inventory into kinds, at most `_MOST_KINDS` for each exposure.
+
+    There are two for each species if those are more.
 
     Parameters
     ----------
@@ -80,8 +81,6 @@ def risk_work(
         The trees.
     seed
         Seed of grown trees and gusts.
-    most
-        Number of kinds, or two for each species if those are more, for each exposure.
     exposure
         Exposure of trees for which the inventory has none, one of `EXPOSURES`.
     spacing
@@ -92,7 +91,7 @@ def risk_work(
     """
     keys = [inventory.wood[each].key for each in inventory.species]
     exposures = [each or exposure for each in inventory.exposures]
-    most = max(most, 2 * len(set(keys))) * len(set(exposures))
+    most = max(_MOST_KINDS, 2 * len(set(keys))) * len(set(exposures))
     heights = 1.5
     slendernesses = 1.2
     while True:

@@ -35,8 +35,8 @@ class ModelCache(Protocol):
 class PreparedModels:
     """Models in memory, in front of the cache that the program has chosen."""
 
-    def __init__(self, behind: ModelCache | None = None) -> None:
-        self.behind = behind
+    def __init__(self) -> None:
+        self.behind: ModelCache | None = None
         """Cache that is asked after the models in memory; none if None."""
         self._given: dict[str, _Arrays] = {}
 
