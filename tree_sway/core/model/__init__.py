@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tree_sway.core.model.records import MAX_COORDINATES as MAX_COORDINATES
     from tree_sway.core.model.records import MOST_IN_ALL as MOST_IN_ALL
     from tree_sway.core.model.records import N_AZIMUTHS as N_AZIMUTHS
+    from tree_sway.core.model.records import N_HARMONICS as N_HARMONICS
     from tree_sway.core.model.records import N_LEVELS as N_LEVELS
     from tree_sway.core.model.records import room_for_fields as room_for_fields
     from tree_sway.core.model.records import WIDTH as WIDTH

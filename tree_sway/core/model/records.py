@@ -31,6 +31,9 @@ ROOMS = 2, MOST_IN_ALL, MAX_COORDINATES
 N_AZIMUTHS, N_LEVELS = 24, 7
 """Azimuths of the wind and levels of the lean in the table."""
 
+N_HARMONICS = 21
+"""Spherical harmonics in which a load is expanded: all of odd degree up to 5."""
+
 
 class Branch:
     """Data of one branch for stepping and placing it."""

@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.checks import GREATEST
-from tree_sway.core.drag import DragLaw, N_HARMONICS
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, ROOMS
+from tree_sway.core.drag import DragLaw
+from tree_sway.core.model.records import N_AZIMUTHS, N_HARMONICS, N_LEVELS, ROOMS
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree

@@ -27,12 +27,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.drag import DragLaw, fill_harmonics, N_HARMONICS
+from tree_sway.core.drag import DragLaw
 from tree_sway.core.model import N_AZIMUTHS, N_LEVELS, TYPES
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
 from tree_sway.core.setup.load_derivatives import LoadSlopes
 from tree_sway.core.setup.modal_arrays import Coordinates
+from tree_sway.core.setup.spherical_harmonics import harmonics_at
 from tree_sway.core.setup.static_responses import direction
 from tree_sway.core.setup.wind_moments import WindMoments
 
@@ -334,12 +335,3 @@ def _without_gain(damping: Floats) -> Floats:
     work, axes = np.linalg.eigh(0.5 * (damping + np.swapaxes(damping, -1, -2)))
     gain = (axes * np.maximum(work, 0.0)[..., None, :]) @ np.swapaxes(axes, -1, -2)
     return np.asarray(damping - gain)
-
-
-def harmonics_at(directions: Floats) -> Floats:
-    """Harmonics of unit vectors (k, 3), (k, h)."""
-    out = np.zeros((N_HARMONICS, len(directions)))
-    x, y, z = directions.T
-    fill_harmonics(x, y, z, out)
-    return out.T
-
