@@ -17,7 +17,7 @@ from tree_sway.growth import BUILTIN_TREES, grow
 from tree_sway.simulation import simulate as simulate_tree
 from tree_sway.simulation import SwayRecord, WindSamples
 
-GROWN = frozenset(species_keys()) - frozenset(BUILTIN_TREES)
+_GROWN = frozenset(species_keys()) - frozenset(BUILTIN_TREES)
 """Names of species that stand for a tree."""
 
 HEIGHT = 10.0
@@ -46,7 +46,7 @@ def simulate(
         An error of reading, or of `tree_sway.simulation.simulate`.
 
     """
-    if isinstance(tree, str) and tree in GROWN and not Path(tree).exists():
+    if isinstance(tree, str) and tree in _GROWN and not Path(tree).exists():
         tree = grow(tree, HEIGHT, name=f'{tree} of {HEIGHT:g} m')
     elif isinstance(tree, str | Path):
         tree = open_tree(tree)

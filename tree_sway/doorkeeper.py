@@ -26,7 +26,7 @@ _PAUSE = 1.0
 
 _OWN_NAMES = ('localhost',)
 
-MakeProtocol = Callable[[], asyncio.BaseProtocol]
+_MakeProtocol = Callable[[], asyncio.BaseProtocol]
 
 
 class Doorkeeper:
@@ -57,7 +57,7 @@ class Doorkeeper:
         return sum(map(_is_open, (*self._strangers, *self._known)))
 
     async def admit(
-        self, listener: socket.socket, make: MakeProtocol, tls: ssl.SSLContext | None
+        self, listener: socket.socket, make: _MakeProtocol, tls: ssl.SSLContext | None
     ) -> None:
         """Accept sockets until cancelled, and connect each to a protocol of an HTTP server."""
         loop = asyncio.get_running_loop()
@@ -85,7 +85,7 @@ class Doorkeeper:
                 self._known.add(visitor)
 
     async def _connect(
-        self, visitor: socket.socket, make: MakeProtocol, tls: ssl.SSLContext | None
+        self, visitor: socket.socket, make: _MakeProtocol, tls: ssl.SSLContext | None
     ) -> None:
         limit = ASKING_TIME if tls else None
         with contextlib.suppress(OSError):  # a handshake that failed or was cancelled

@@ -21,7 +21,7 @@ from urllib.parse import unquote, urlparse
 from tree_sway.errors import MissingDependencyError
 
 
-class Extra(NamedTuple):
+class _Extra(NamedTuple):
     """Extra of the package with a module, the distribution with it, and its least version."""
 
     name: str
@@ -30,20 +30,20 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
-    'PIL': Extra('plot', 'pillow', '7'),
-    'matplotlib': Extra('plot', 'matplotlib', '3.6'),
-    'mpl_toolkits': Extra('plot', 'matplotlib', '3.6'),
-    'cryptography': Extra('study', 'cryptography', '41'),
-    'dask': Extra('study', 'dask', '2023.1'),
-    'distributed': Extra('study', 'distributed', '2023.1'),
-    'rosbags': Extra('bag', 'rosbags', '0.11'),
-    'tqdm': Extra('progress', 'tqdm', '4.60'),
-    'serial': Extra('sensors', 'pyserial', '3.5'),
-    'cv2': Extra('camera', 'opencv-python-headless', '4.5'),
-    'imageio_ffmpeg': Extra('film', 'imageio-ffmpeg', '0.5'),
-    'pyarrow': Extra('parquet', 'pyarrow', '12'),
-    'netCDF4': Extra('netcdf', 'netCDF4', '1.6'),
-    'openpyxl': Extra('inventory', 'openpyxl', '3.1'),
+    'PIL': _Extra('plot', 'pillow', '7'),
+    'matplotlib': _Extra('plot', 'matplotlib', '3.6'),
+    'mpl_toolkits': _Extra('plot', 'matplotlib', '3.6'),
+    'cryptography': _Extra('study', 'cryptography', '41'),
+    'dask': _Extra('study', 'dask', '2023.1'),
+    'distributed': _Extra('study', 'distributed', '2023.1'),
+    'rosbags': _Extra('bag', 'rosbags', '0.11'),
+    'tqdm': _Extra('progress', 'tqdm', '4.60'),
+    'serial': _Extra('sensors', 'pyserial', '3.5'),
+    'cv2': _Extra('camera', 'opencv-python-headless', '4.5'),
+    'imageio_ffmpeg': _Extra('film', 'imageio-ffmpeg', '0.5'),
+    'pyarrow': _Extra('parquet', 'pyarrow', '12'),
+    'netCDF4': _Extra('netcdf', 'netCDF4', '1.6'),
+    'openpyxl': _Extra('inventory', 'openpyxl', '3.1'),
 }
 """Modules that are installed on request; the versions are those of ``setup.py``."""
 

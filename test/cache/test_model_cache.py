@@ -153,8 +153,8 @@ def test_the_oldest_go_first(kept, files, monkeypatch, bound):
     assert [int(kept.read(each)['number']) for each in ('two', 'three')] == [1, 2]
 
 
-def test_what_is_used_stays(kept, files, monkeypatch):
-    monkeypatch.setattr(model_cache, 'MOST', 2)
+def test_what_is_used_stays(kept, files):
+    kept.most = 2
 
     def write(digest):
         for path in files():  # everything there is a second older than what comes

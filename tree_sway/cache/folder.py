@@ -19,7 +19,7 @@ import tempfile
 import time
 import warnings
 
-FOLDER_VARIABLE = 'TREE_SWAY_CACHE'
+_FOLDER_VARIABLE = 'TREE_SWAY_CACHE'
 """Environment variable for a different folder of prepared models."""
 
 _PART_LEFT = 3600.0
@@ -31,7 +31,7 @@ _BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 @cache
 def cache_folder() -> Path | None:
     """Return the folder: the given one, the user's, a temporary one; or None."""
-    asked = os.environ.get(FOLDER_VARIABLE)
+    asked = os.environ.get(_FOLDER_VARIABLE)
     home = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
     own = f'tree_sway-{os.getuid()}' if hasattr(os, 'getuid') else 'tree_sway'
     places = [Path(asked)] if asked else []
@@ -45,20 +45,20 @@ def cache_folder() -> Path | None:
                 if not folder.is_dir():
                     folder.mkdir(mode=0o700, exist_ok=True)
             if unsafe := why_unsafe(place):
-                complain(f'prepared models are not stored in {place}: {unsafe}')
+                _complain(f'prepared models are not stored in {place}: {unsafe}')
                 continue
             with tempfile.TemporaryFile(dir=place) as probe:
                 probe.write(b'\0' * 4096)
         except (OSError, RuntimeError) as error:  # links in a circle are a RuntimeError until 3.12
             if asked and candidate is places[0]:
-                complain(f'nothing is stored in {candidate}, which was given: {error}')
+                _complain(f'nothing is stored in {candidate}, which was given: {error}')
             continue
         for path in place.glob('*.part'):  # what processes left that were killed
             with suppress(OSError):
                 if time.time() - path.lstat().st_mtime > _PART_LEFT:
                     path.unlink()
         return place
-    complain('no folder for prepared models can be written; they are made in every process')
+    _complain('no folder for prepared models can be written; they are made in every process')
     return None
 
 
@@ -69,7 +69,7 @@ def why_unsafe(place: Path) -> str:
     for folder in (place, *place.parents):
         found = folder.lstat()
         if found.st_uid != os.getuid() and (found.st_uid != 0 or folder == place):
-            return f'{folder} belongs to other users; set {FOLDER_VARIABLE} to a folder of yours'
+            return f'{folder} belongs to other users; set {_FOLDER_VARIABLE} to a folder of yours'
         is_shared = found.st_mode & stat.S_ISVTX and folder != place
         if found.st_mode & _BY_OTHERS and not is_shared:
             return f'others may write into {folder}; chmod go-w {folder}'
@@ -112,7 +112,7 @@ def write_own(path: Path, content: bytes) -> None:
 _said: set[str] = set()
 
 
-def complain(text: str) -> None:
+def _complain(text: str) -> None:
     """Print it on one line, once per process and cause."""
     cause = text.split(':')[0]
     if cause not in _said:

@@ -45,14 +45,13 @@ class ModelFiles:
     ----------
     folder
         Folder of the files; that of `cache_folder` if None.
-    most
-        Largest number of models in it.
 
     """
 
-    def __init__(self, folder: Path | None = None, most: int = MOST) -> None:
+    def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder
-        self.most = most
+        self.most = MOST
+        """Largest number of models in it."""
 
     def read(self, digest: str) -> dict[str, Any] | None:
         """Return the arrays by name that were written under a digest; None if there are none."""

@@ -20,7 +20,7 @@ from types import FrameType
 
 LONGEST = 1.5
 """Time from the signal to the end of a running process [s], if it does not end before."""
-SHORTEST = 0.3
+_SHORTEST = 0.3
 """The same time while a process starts, with nothing open that must be closed."""
 _GRACE = 0.2
 """Time [s] after which the operating system ends a process."""
@@ -39,7 +39,7 @@ class Ending:
     def __init__(self, *, is_last: bool = False) -> None:
         self._is_last = is_last
         self.is_asked = False
-        self.limit = SHORTEST
+        self.limit = _SHORTEST
         self._breaks_in = True
         self._over = threading.Event()
         self._pipe: tuple[int, int] | None = None

@@ -23,7 +23,7 @@ _CONTROLS = (
 _ESCAPES = {code: ascii(chr(code))[1:-1] for code in _CONTROLS}
 
 
-class EscapedText(io.TextIOWrapper):
+class _EscapedText(io.TextIOWrapper):
     """A text stream that writes control characters, and those that it lacks, as escapes."""
 
     def write(self, text: str) -> int:
@@ -46,9 +46,9 @@ def escaped_output() -> Iterator[None]:
 
 
 @contextmanager
-def _escaped(stream: io.TextIOWrapper) -> Iterator[EscapedText]:
+def _escaped(stream: io.TextIOWrapper) -> Iterator[_EscapedText]:
     stream.flush()
-    escaped = EscapedText(
+    escaped = _EscapedText(
         stream.buffer,
         encoding=stream.encoding,
         errors='backslashreplace',

@@ -35,7 +35,7 @@ _MOST_DIGITS = 9
 STIFFEST = 1e7
 """Largest stiffness in [N/m] of a spring at a segment."""
 
-ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
+_ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
 """Choices of branches with further shapes."""
 
 _RANGES = {
@@ -131,7 +131,7 @@ class Settings:
             value = getattr(self, name)
             if value is not None or known[name].default is not None:
                 within(name, value, low, high, unit, above=above)
-        one_of('enrich', self.enrich, ENRICHED)
+        one_of('enrich', self.enrich, _ENRICHED)
         one_of('gusts', self.gusts, GUSTS)
         one_of('in_leaf', self.in_leaf, (True, False, None))
         refuse_other_kind('profile', self.profile, WindProfile, 'give WindProfile(...)')

@@ -29,7 +29,7 @@ from tree_sway.errors import ParameterError, TransportError, TreeSwayError
 from tree_sway.extras import PACKAGE
 from tree_sway.forest.lost_workers import told_lost_workers
 
-ATTEMPTS = 4
+_ATTEMPTS = 4
 """Number of workers that may die of one piece of work before the study ends."""
 DEADLINE = 14_400.0
 """Time without a finished piece of work after which a worker is taken to hang [s]."""
@@ -195,7 +195,7 @@ def run_all(
 
     Each piece has a name, which has to be its own, and arguments. What a lost worker had is done
     by another, which is reported on standard error. Raises a `TransportError` for a piece that
-    ends `ATTEMPTS` workers, for a result that is no answer to its arguments, for what a worker
+    ends `_ATTEMPTS` workers, for a result that is no answer to its arguments, for what a worker
     raises, when the scheduler is lost, or when nothing was finished within the deadline [s].
     """
     with told_lost_workers(client, [name for name, _ in work]):
@@ -229,7 +229,7 @@ def run_all(
             ) from None
         except distributed.KilledWorker as error:
             raise TransportError(
-                f'a case took down {ATTEMPTS} workers in turn',
+                f'a case took down {_ATTEMPTS} workers in turn',
                 where=f'case {error.task}',
                 cure='find out what ends them (memory?), use fewer --workers, and run it again',
             ) from None
@@ -303,7 +303,7 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
             distributed.LocalCluster(
                 n_workers=0, processes=True, worker_class=parent, threads_per_worker=1,
                 memory_limit=0, silence_logs='CRITICAL',
-                scheduler_kwargs={'allowed_failures': ATTEMPTS - 1, **page}, security=True,
+                scheduler_kwargs={'allowed_failures': _ATTEMPTS - 1, **page}, security=True,
             ) as local,
             distributed.Client(local) as client,
         ):  # fmt: skip

@@ -34,7 +34,7 @@ Plain = dict[str, Any]
 _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
 
-MAX_CASES = 100_000
+_MAX_CASES = 100_000
 """Largest number of cases of a study, which are all planned before the first is computed."""
 
 
@@ -91,7 +91,7 @@ def read_study(path: str | Path) -> list[Case]:
     ------
     FormatError
         A file that cannot be read, is not YAML, does not match the schema, or has more than
-        `MAX_CASES` cases.
+        `_MAX_CASES` cases.
     TreeSwayError
         An unknown setting, species or tree, a wrong value, or too many steps of a case.
 
@@ -136,11 +136,11 @@ def _refuse_large(study: Plain, case: Case, where: str) -> None:
         winds += _count(entry, 'speed', 'intensity', 'scale')
     settings = math.prod(len(listed(value)) for value in study.get('settings', {}).values())
     count = trees * winds * settings
-    if count > MAX_CASES:
+    if count > _MAX_CASES:
         raise FormatError(
             f'{trees} trees in {winds} winds with {settings} settings are {count} cases',
             where=where,
-            cure=f'give at most {MAX_CASES} cases in a study',
+            cure=f'give at most {_MAX_CASES} cases in a study',
         )
     with inside(where):
         refuse_too_many_steps(case.seconds * case.rate, case.rate)

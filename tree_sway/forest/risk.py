@@ -37,11 +37,11 @@ Row = dict[str, Any]
 
 CRITICAL = 'critical_wind_10m [m/s]'
 
-FASTEST = 80.0
+_FASTEST = 80.0
 """Critical wind above which trees are not told apart [m/s]; no storm has such a mean wind."""
-MOST_KINDS = 64
+_MOST_KINDS = 64
 """Number of kinds up to which trees are told apart, so that large inventories take minutes."""
-RAREST = 10_000
+_RAREST = 10_000
 """Years between winds above which they are not told apart; no record is as long."""
 CLASSES = 5
 _FOUND = (
@@ -65,14 +65,15 @@ class RiskWork:
 def risk_work(
     inventory: Inventory,
     seed: int = 0,
-    most: int = MOST_KINDS,
     *,
     exposure: str = 'open',
     spacing: float | None = None,
     climate: Climate = INLAND,
 ) -> RiskWork:
     """
-    Group the trees of an inventory into at most some kinds; more alike where they are few.
+    Group the trees of an inventory into kinds, at most `_MOST_KINDS` for each exposure.
+
+    There are two for each species if those are more.
 
     Parameters
     ----------
@@ -80,8 +81,6 @@ def risk_work(
         The trees.
     seed
         Seed of grown trees and gusts.
-    most
-        Number of kinds, or two for each species if those are more, for each exposure.
     exposure
         Exposure of trees for which the inventory has none, one of `EXPOSURES`.
     spacing
@@ -92,7 +91,7 @@ def risk_work(
     """
     keys = [inventory.wood[each].key for each in inventory.species]
     exposures = [each or exposure for each in inventory.exposures]
-    most = max(most, 2 * len(set(keys))) * len(set(exposures))
+    most = max(_MOST_KINDS, 2 * len(set(keys))) * len(set(exposures))
     heights = 1.5
     slendernesses = 1.2
     while True:
@@ -127,13 +126,13 @@ def risk_rows(
     pieces = [(f'kind {number}', (kind,)) for number, kind in enumerate(work.kinds)]
     with cluster(min(workers, max(len(pieces), 1)), scheduler) as (distributed, client):
         for result in run_all(
-            distributed, client, compute_kind, pieces, is_result, deadline=deadline
+            distributed, client, compute_kind, pieces, _is_result, deadline=deadline
         ):
             rows = rows_of_kind(work, result)
             yield len(rows), rows
 
 
-def is_result(result: Any, kind: RiskKind) -> bool:
+def _is_result(result: Any, kind: RiskKind) -> bool:
     """Whether a worker returned what was asked of it."""
     return isinstance(result, KindResult) and result.kind == kind
 
@@ -200,7 +199,7 @@ def _calm(curves: SeasonCurves, result: KindResult) -> float:
 
 def _years(rate: float) -> float:
     """Years between winds of a rate per year, to two digits."""
-    return float(f'{min(1.0 / max(rate, 1e-9), RAREST):.2g}')
+    return float(f'{min(1.0 / max(rate, 1e-9), _RAREST):.2g}')
 
 
 def _winds(
@@ -218,7 +217,7 @@ def _winds(
     }
     return {
         part: sorted(
-            min(scale * curve.speed_of(1.0 / (used * more)), FASTEST)
+            min(scale * curve.speed_of(1.0 / (used * more)), _FASTEST)
             for used in band(in_leaf=curves.in_leaf).tolist()
         )
         for part, (curve, band, power) in parts.items()
@@ -248,8 +247,8 @@ def _assumed(
         said.append('stem by height')
     if result.note:
         said.append(result.note)
-    if critical is not None and critical >= FASTEST:
-        said.append(f'above {FASTEST:g} m/s')
+    if critical is not None and critical >= _FASTEST:
+        said.append(f'above {_FASTEST:g} m/s')
     elif critical is not None:
         fastest = max(float(each.stem.speed[-1]) for each in result.seasons)
         if critical > fastest * result.exposure.at_ten_metres:

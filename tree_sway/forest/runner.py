@@ -31,7 +31,7 @@ _START, _SET_UP, _STEP = 4.0, 2.5, 2e-4
 _LARGEST_BATCH = 8
 """Number of cases at most that a lost worker takes with it."""
 
-Outcome = tuple[Case, Plain | TreeSwayError]
+_Outcome = tuple[Case, Plain | TreeSwayError]
 """A case with its row, or with its error."""
 
 
@@ -76,7 +76,7 @@ def run_study(
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = missing_cases(cases, folder)
-    outcomes: Iterator[Outcome] = iter(())
+    outcomes: Iterator[_Outcome] = iter(())
     if missing:
         outcomes = _outcomes(missing, workers or cores(), scheduler, deadline)
     failed = list[TreeSwayError]()
@@ -87,13 +87,13 @@ def run_study(
             store_row(case, row, folder)
     if failed:
         raise failed[0]
-    rows = [stored_row(case, folder) for case in cases]
+    rows = [_stored_row(case, folder) for case in cases]
     return [row for row in rows if row is not None]
 
 
 def missing_cases(cases: list[Case], folder: Path) -> list[Case]:
     """Missing cases of a study, those with a damaged file too."""
-    return [case for case in cases if stored_row(case, folder) is None]
+    return [case for case in cases if _stored_row(case, folder) is None]
 
 
 def estimated_time(cases: list[Case], workers: int) -> float:
@@ -108,7 +108,7 @@ def result_path(folder: Path, case: Case) -> Path:
     return folder / f'{case.name}.json'
 
 
-def stored_row(case: Case, folder: Path) -> Plain | None:
+def _stored_row(case: Case, folder: Path) -> Plain | None:
     """Return the row of a case; None if it has no file, or a damaged one."""
     try:
         with result_path(folder, case).open('rb') as file:
@@ -123,11 +123,11 @@ def store_row(case: Case, row: Plain, folder: Path) -> None:
     write_text_whole(result_path(folder, case), json.dumps(row))
 
 
-def compute_batch(cases: list[Case], files: dict[str, Any]) -> list[Outcome]:
+def compute_batch(cases: list[Case], files: dict[str, Any]) -> list[_Outcome]:
     """Compute cases one after the other; the contents of their files are by their path."""
     from tree_sway.forest.compute import compute
 
-    outcomes: list[Outcome] = []
+    outcomes: list[_Outcome] = []
     for case in cases:
         tree, wind = (files.get(part.get('file', '')) for part in (case.tree, case.wind))
         try:
@@ -187,7 +187,7 @@ def files_of(cases: Sequence[Case], opened: dict[str, Any]) -> dict[str, Any]:
 
 def _outcomes(
     cases: list[Case], workers: int, scheduler: str | None, deadline: float
-) -> Iterator[Outcome]:
+) -> Iterator[_Outcome]:
     """Yield each finished case with its row or its error."""
     opened: dict[str, Any] = {}
     work = [(part[0].name, (part, files_of(part, opened))) for part in batches(cases, workers)]

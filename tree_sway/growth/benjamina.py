@@ -17,7 +17,7 @@ from tree_sway.growth.skeleton import Skeleton
 from tree_sway.growth.thickness import finished_tree
 from tree_sway.growth.twigs import add_twigs
 
-N_STEMS = 5
+_N_STEMS = 5
 _UPRIGHT = np.pi / 2.0
 _N_NODES = 10
 _BRANCHING = (3, 4, 5, 5, 6, 7, 7, 8, 9, 9, 10, 10)
@@ -71,7 +71,7 @@ def grow_benjamina(
 
     stock = skeleton.add(grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 0.07, 2, rng))
     facing = rng.uniform(0.0, 2.0 * np.pi)
-    for i in range(N_STEMS):
-        azimuth = facing + 2.0 * np.pi * i / N_STEMS + rng.uniform(-0.3, 0.3)
+    for i in range(_N_STEMS):
+        azimuth = facing + 2.0 * np.pi * i / _N_STEMS + rng.uniform(-0.3, 0.3)
         add_stem(2 if i else 1, azimuth, 0.0 if i == 2 else 1.0)
     return finished_tree(skeleton, height, diameter, species, pot=0.0012 / 1.3, exponent=2.5)

@@ -39,10 +39,10 @@ from tree_sway.core.tree import (
     tree_from_segments,
 )
 
-CUT_AT = 0.015
+_CUT_AT = 0.015
 """Median diameter of the ends from which on a scan has been cut in [m]."""
 
-SCAN_SPREAD, GROWN_SPREAD = 0.30, math.log(2.0)
+_SCAN_SPREAD, _GROWN_SPREAD = 0.30, math.log(2.0)
 """
 Log-deviations of the area of what was scanned and of what was grown [-]: repeated scans of crowns
 differ by 0.3 in the wood of their branches (Demol et al. 2022, Methods in Ecology and Evolution
@@ -107,7 +107,7 @@ def is_cut(tree: Tree) -> bool:
     widest = np.maximum(tree.base_diameter[last], ends)
     if (np.abs(widest - thinnest) < 1e-3 * thinnest).mean() > _CLIPPED:
         return False
-    return float(np.median(ends)) >= CUT_AT
+    return float(np.median(ends)) >= _CUT_AT
 
 
 def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond | None]:
@@ -185,7 +185,7 @@ def _prior(tree: Tree, seen: float, beyond: float, trusted: float) -> tuple[floa
     if diameter < _SMALLEST[0] or height < _SMALLEST[1]:
         return 1.0, tree
     total = seen + beyond
-    variance = SCAN_SPREAD**2 + (GROWN_SPREAD * beyond / total) ** 2
+    variance = _SCAN_SPREAD**2 + (_GROWN_SPREAD * beyond / total) ** 2
     weight = variance / (variance + AREA_SPREAD**2)
     wanted = total ** (1.0 - weight) * crown.wood_area**weight
     if wanted >= seen:

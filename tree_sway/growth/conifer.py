@@ -21,7 +21,7 @@ from tree_sway.growth.thickness import finished_tree
 from tree_sway.growth.twigs import add_twigs
 
 _UPRIGHT = (np.pi / 2.0, np.pi / 2.0)
-STEM_TAPER = 0.7
+_STEM_TAPER = 0.7
 """Exponent of the distance from the top in the diameter of a conifer's stem."""
 
 
@@ -66,5 +66,5 @@ def grow_conifer(
         for turn in range(whorl):
             azimuth = roll + 2.0 * np.pi * turn / whorl + rng.uniform(-0.2, 0.2)
             add_branch(node, azimuth, here)
-    law = {'exponent': form.exponent, 'stem_taper': STEM_TAPER}
+    law = {'exponent': form.exponent, 'stem_taper': _STEM_TAPER}
     return finished_tree(skeleton, height, diameter, species, **law)

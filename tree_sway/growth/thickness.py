@@ -23,7 +23,7 @@ from tree_sway.growth.skeleton import Shoot, Skeleton
 BREAST_HEIGHT = 1.3
 """Breast height, where foresters measure a stem, in [m]."""
 
-INSERTION_RATIO = 0.76
+_INSERTION_RATIO = 0.76
 """Largest ratio of a branch's diameter to its parent's at its base, in [-]."""
 
 
@@ -96,11 +96,11 @@ def node_diameters(
         own[:] = np.maximum.accumulate(own[::-1])[::-1]
         if shoot.parent >= 0:
             below = diameters[shoot.parent]
-            below[shoot.at] = max(below[shoot.at], own[0] / INSERTION_RATIO)
+            below[shoot.at] = max(below[shoot.at], own[0] / _INSERTION_RATIO)
     # Between two nodes a segment is a straight cone, not the law's curve: correct that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
     for shoot, own in zip(skeleton.shoots[1:], diameters[1:], strict=True):
-        limit = INSERTION_RATIO * diameters[shoot.parent][shoot.at]
+        limit = _INSERTION_RATIO * diameters[shoot.parent][shoot.at]
         own *= min(1.0, limit / own[0])
     return diameters
 

@@ -127,9 +127,9 @@ def _derived(token: str, purpose: bytes) -> str:
 
 def access_of(given: str, token: str) -> Access:
     """Return the access that a given token opens; without a token everybody has control."""
-    if not token or is_token(given, token) or is_token(given, cookie_token(token)):
+    if not token or _is_token(given, token) or _is_token(given, cookie_token(token)):
         return Access.CONTROL
-    return Access.LOOK if is_token(given, viewers_token(token)) else Access.NONE
+    return Access.LOOK if _is_token(given, viewers_token(token)) else Access.NONE
 
 
 class Guesses:
@@ -256,7 +256,7 @@ def refusal(
     return None
 
 
-def is_token(given: str, token: str) -> bool:
+def _is_token(given: str, token: str) -> bool:
     """Whether a token is right, compared in constant time."""
     return hmac.compare_digest(*(each.encode(errors='surrogateescape') for each in (given, token)))
 

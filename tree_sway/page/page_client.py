@@ -22,13 +22,13 @@ from aiohttp import web
 from tree_sway.page.published import Published
 from tree_sway.stream import FRAME_SIZE, part_of_frame
 
-MOST_CREDIT = 64
+_MOST_CREDIT = 64
 """Largest number of frames in transit to one client."""
 
 SLOWEST, FASTEST = 0.1, 1000.0
 """Range of frames per second of a client [Hz]."""
 
-IDLE_TIME = 60.0
+_IDLE_TIME = 60.0
 """Time without a message after which a client is closed [s]; a page sends several a second."""
 
 STATE_PERIOD = 5.0
@@ -95,7 +95,7 @@ class PageClient:
 
     def is_stuck(self, now: float) -> bool:
         """Whether the client has neither sent nor read for too long."""
-        return now > min(self.last_heard + IDLE_TIME, self._sending_since + _SEND_TIMEOUT)
+        return now > min(self.last_heard + _IDLE_TIME, self._sending_since + _SEND_TIMEOUT)
 
     def drop(self) -> None:
         """Close the connection without waiting for the client to read."""
@@ -118,8 +118,8 @@ class PageClient:
 
         """
         if 'credit' in message:
-            credit = self._credit + _number(message, 'credit', -MOST_CREDIT, math.inf)
-            self._credit = int(max(0, min(credit, MOST_CREDIT)))
+            credit = self._credit + _number(message, 'credit', -_MOST_CREDIT, math.inf)
+            self._credit = int(max(0, min(credit, _MOST_CREDIT)))
         if 'rate' in message:
             self._period = 1.0 / _number(message, 'rate', SLOWEST, FASTEST)
         if 'ping' in message:

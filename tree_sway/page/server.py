@@ -34,7 +34,7 @@ from tree_sway.stream import ControlPanel, Value
 LARGEST_MESSAGE = 4096
 """Longest message of a client in [bytes]."""
 
-STATUS_PERIOD = 0.5
+_STATUS_PERIOD = 0.5
 """Interval of the status, and of the search for clients that do not read [s]."""
 
 _CLOSING_TIME = 2.0
@@ -415,7 +415,7 @@ class PageServer:
         """Send the status at its interval; pages are told once why there is none."""
         told = ''
         while True:
-            await asyncio.sleep(STATUS_PERIOD)
+            await asyncio.sleep(_STATUS_PERIOD)
             now = time.monotonic()
             for client in tuple(self._clients):
                 if client.is_stuck(now):

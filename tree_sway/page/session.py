@@ -101,7 +101,7 @@ class Choices:
         return replace(self, age=min(self.age, float(curve.oldest)) if curve else 0.0)
 
 
-Build = Callable[[Choices], Simulator]
+_Build = Callable[[Choices], Simulator]
 """Function that makes the simulator of some choices."""
 
 _LEAVES = 1000
@@ -138,7 +138,7 @@ class Session:
 
     def __init__(
         self,
-        build: Build,
+        build: _Build,
         choices: Choices,
         wind: WindSource,
         *,

@@ -38,7 +38,7 @@ _NEEDLES_WIDTH = 0.4
 """Width of a spray of needles over that of a leaf."""
 _WIND, _GHOST, _SHADOW = '#1f6fb4', '#dedad6', '#e2e2e0'
 
-Limits = tuple[tuple[float, float], tuple[float, float]]
+_Limits = tuple[tuple[float, float], tuple[float, float]]
 """Visible part of the picture plane: left and right, bottom and top, in [m]."""
 
 
@@ -53,7 +53,7 @@ def seen(points: ArrayLike) -> Floats:
     return np.asarray(np.asarray(points, dtype=np.float64) @ view.T)
 
 
-def limits_around(points: Floats) -> Limits:
+def limits_around(points: Floats) -> _Limits:
     """Frame all points [m], (n, 3), with a margin round them and room for the wind above."""
     right, up = seen(points)[:, :2].T
     width = float(np.ptp(right))
@@ -70,7 +70,7 @@ def draw_trees(
     axes: Axes,
     trees: Sequence[Tree],
     poses: ArrayLike,
-    limits: Limits,
+    limits: _Limits,
     *,
     wind: ArrayLike = (0.0, 0.0, 0.0),
     leaves: LeafClusters | None = None,
@@ -147,7 +147,7 @@ def _draw_shadows(axes: Axes, trees: Sequence[Tree]) -> None:
     )
 
 
-def _hazed(colors: Floats, away: Floats, limits: Limits) -> Floats:
+def _hazed(colors: Floats, away: Floats, limits: _Limits) -> Floats:
     """Whiten the colours (m, 3) of shapes by how far away they are [m], (m,)."""
     bottom, top = limits[1]
     span = max(float(np.ptp(away)), 0.3 * (top - bottom))
@@ -196,7 +196,7 @@ def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tupl
     return seen(corners), np.clip(lit, 0.0, 1.0)
 
 
-def _draw_wind(axes: Axes, wind: Floats, limits: Limits) -> None:
+def _draw_wind(axes: Axes, wind: Floats, limits: _Limits) -> None:
     """Draw an arrow along the wind in the upper left corner, with its speed."""
     speed = float(np.linalg.norm(wind))
     if speed == 0.0:

@@ -53,19 +53,19 @@ Frequency n at which n S(n) of the wind along itself is largest: n L / U of Kaim
 (0.15 +- 0.05: Kaimal & Finnigan 1994, chapter 3).
 """
 
-HART_BECKING = 0.18
+_HART_BECKING = 0.18
 """Spacing of a stand over its height [-]."""
 
 EXPOSURES = ('open', 'street', 'edge', 'stand')
 """Kinds of exposure."""
 
-STATION_HEIGHT, GRASS = 10.0, 0.03
+STATION_HEIGHT, _GRASS = 10.0, 0.03
 """Height of weather stations and roughness of open grass in [m] (WMO guide no. 8)."""
 
-COUNTRY, _SUBURB = 0.05, 0.3
+_COUNTRY, _SUBURB = 0.05, 0.3
 """Roughness of the terrains II and III of EN 1991-1-4 in [m]."""
 
-_ALONE = {'open': GRASS, 'street': _SUBURB}
+_ALONE = {'open': _GRASS, 'street': _SUBURB}
 """Roughness by the kinds of exposure without a stand in [m]."""
 
 ATTENUATION = 2.7
@@ -218,9 +218,9 @@ class Exposure:
         the displacement d of the stand, as ForestGALES states its winds (Hale et al. 2015).
         """
         if self.kind == 'open':
-            return math.log(STATION_HEIGHT / GRASS) / math.log(self.reference_height / GRASS)
+            return math.log(STATION_HEIGHT / _GRASS) / math.log(self.reference_height / _GRASS)
         if self.kind == 'street':
-            country = math.log(STATION_HEIGHT / COUNTRY) * (COUNTRY / _SUBURB) ** 0.07
+            country = math.log(STATION_HEIGHT / _COUNTRY) * (_COUNTRY / _SUBURB) ** 0.07
             return country / math.log(self.reference_height / _SUBURB)
         profile = self.profile()
         z0 = profile.roughness
@@ -313,7 +313,7 @@ def exposure_of(
     lowest = float(np.percentile(feet, 5.0)) if len(feet) else 0.5 * height
     c, n = species.drag_law(in_leaf=True)
     return Exposure(
-        kind, height, HART_BECKING * height if spacing is None else spacing,
+        kind, height, _HART_BECKING * height if spacing is None else spacing,
         max(width, 0.05 * height), max(height - lowest, 0.05 * height), c * 10.0**-n,
         anemometer_height,
     )  # fmt: skip

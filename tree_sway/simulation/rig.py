@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tree_sway.twin import ObservedTree
     from tree_sway.twin.camera import FilmedMotion, FilmedTree
 
-MAX_STEPS = 6_000_000
+_MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
@@ -209,7 +209,7 @@ class Rig:
                 self.filmed.film(*picture)
         before = replace(simulator.counts)
         gauge = StrengthGauge(self.reductions, strained)
-        per_rotation = moment_per_rotation(self.reductions)
+        per_rotation = _moment_per_rotation(self.reductions)
         poses = np.empty((tree.n_segments, 7))
         rows = list[tuple[Floats, ...]]()
         bands = list[tuple[Floats, Floats]]()
@@ -359,7 +359,7 @@ def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     return tuple(found)
 
 
-def moment_per_rotation(reductions: TreeReductions) -> Floats:
+def _moment_per_rotation(reductions: TreeReductions) -> Floats:
     """
     Bending moment at the base of the stem per key rotation of it, in [N m/rad], (k, 3).
 
@@ -377,11 +377,11 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
 
 
 def refuse_too_many_steps(count: float, rate: float) -> None:
-    """Raise a `ParameterError` for more than `MAX_STEPS` steps at a rate in [Hz]."""
-    if count > MAX_STEPS:
+    """Raise a `ParameterError` for more than `_MAX_STEPS` steps at a rate in [Hz]."""
+    if count > _MAX_STEPS:
         raise ParameterError(
             f'{count / rate:g} s at {rate:g} Hz are {count:.3g} steps',
-            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
+            cure=f'give at most {_MAX_STEPS} steps, such as a day at 60 Hz',
         )
 
 

@@ -31,13 +31,13 @@ MOST_COORDINATES = 65_535
 
 Array = NDArray[Any]
 
-Forms = Mapping[str, tuple[str, Sequence[str | int]]]
+_Forms = Mapping[str, tuple[str, Sequence[str | int]]]
 """Type and axes of arrays by name; an axis is its size, or a name of which all are of one size."""
 
 _TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
 
 
-def forms_of(message: str) -> Forms:
+def forms_of(message: str) -> _Forms:
     """Return the forms of the arrays of a kind in a ``description`` or in ``tables``."""
     text = resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
     entries = json.loads(text)[message].items()
@@ -192,7 +192,7 @@ def _fits(look: Any, like: Any) -> bool:
     return type(look) is type(like)
 
 
-def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
+def sizes_of(arrays: Mapping[str, Array], forms: _Forms) -> dict[str, int]:
     """
     Sizes of the named axes of arrays.
 

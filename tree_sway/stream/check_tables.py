@@ -16,20 +16,20 @@ import numpy as np
 from tree_sway.errors import FormatError, inside
 from tree_sway.stream.check_description import Array, forms_of, is_finite, require, sizes_of
 
-MOST_SLOPES = 400_000
+_MOST_SLOPES = 400_000
 """
 Largest number of tables times the squared number of coordinates.
 
 The slopes of a table are unpacked to 1.5 kB for each.
 """
 
-MOST_STATES = 50_000_000
+_MOST_STATES = 50_000_000
 """Largest number of trees times the number of coordinates of a table."""
 
-FASTEST = 1e6
+_FASTEST = 1e6
 """Largest wind of a tree over that of its kind."""
 
-LEAST_RATIO = 0.1
+_LEAST_RATIO = 0.1
 """Smallest `convection_ratio`."""
 
 _FORMS = forms_of('tables')
@@ -74,15 +74,15 @@ def check_tables(
             most = max(most, _check_kind(entry, arrays, described[number]))
     require('tree_speed', speeds.dtype == '<f4' and speeds.shape == (n_trees,))
     # Comparisons with not-a-number are false.
-    require('tree_speed', (speeds >= 0.0) & (speeds < FASTEST))
+    require('tree_speed', (speeds >= 0.0) & (speeds < _FASTEST))
     anemometer = header['anemometer']
     ratio = header['convection_ratio']
     is_place = isinstance(anemometer, list) and len(anemometer) == 3
     require('anemometer', anemometer is None or (is_place and all(map(is_finite, anemometer))))
-    require('convection_ratio', ratio is None or (is_finite(ratio) and ratio >= LEAST_RATIO))
+    require('convection_ratio', ratio is None or (is_finite(ratio) and ratio >= _LEAST_RATIO))
     for what, count, limit in (
-        ('slopes of all tables', len(kinds) * most**2, MOST_SLOPES),
-        ('coordinates of all trees', n_trees * most, MOST_STATES),
+        ('slopes of all tables', len(kinds) * most**2, _MOST_SLOPES),
+        ('coordinates of all trees', n_trees * most, _MOST_STATES),
     ):
         if count > limit:
             raise FormatError(f'{count} {what}', cure=f'send up to {limit}')

@@ -21,7 +21,7 @@ Value = bool | float | str | None
 Refused = Callable[[str], None]
 """Function called with the reason of a refusal, from any thread."""
 
-Pull = Callable[[int, tuple[float, ...], float, Refused], None]
+_Pull = Callable[[int, tuple[float, ...], float, Refused], None]
 """
 Pull at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 releases it.
 
@@ -116,7 +116,7 @@ class ControlPanel:
         self,
         controls: tuple[Control, ...] = (),
         apply: Callable[[str, Value], None] | None = None,
-        pull: Pull | None = None,
+        pull: _Pull | None = None,
     ) -> None:
         self._controls = {control.name: control for control in controls}
         self._apply = apply

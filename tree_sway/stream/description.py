@@ -23,7 +23,7 @@ from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description
 from tree_sway.stream.scene_kind import SceneKind
 
-NO_ROW = -1
+_NO_ROW = -1
 """Row of the rotations of a branch without a parent, or one that bends by its slope."""
 
 
@@ -109,7 +109,7 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     branches = _in_order(simulator)
     keys = branches['n_coordinates']
     sizes = branches['end'] - branches['first']
-    base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
+    base_turn, own_turn = np.full((2, len(branches)), _NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]
     count = 0
     for branch, record in enumerate(branches):

@@ -13,7 +13,7 @@ from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description
 
-MOST_MEMORY = 512 * 2**20
+_MOST_MEMORY = 512 * 2**20
 """Largest memory for the turns of the segments of a kind in [bytes]."""
 
 
@@ -29,7 +29,7 @@ class Placer:
     Raises
     ------
     FormatError
-        A tree whose arrays need more than `MOST_MEMORY`, or have indices that do not exist.
+        A tree whose arrays need more than `_MOST_MEMORY`, or have indices that do not exist.
 
     """
 
@@ -79,11 +79,11 @@ def _arrays(arrays: dict[str, Array]) -> dict[str, Array]:
     room = room_for_fields(n_keys.max())
     n = int(first[-1])
     memory = 2 * 8 * 3 * room * n
-    if memory > MOST_MEMORY:
+    if memory > _MOST_MEMORY:
         raise FormatError(
             f'a kind of {memory // 2**20} MiB when laid out',
             where='tree description',
-            cure=f'describe a tree of fewer segments: up to {MOST_MEMORY // 2**20} MiB',
+            cure=f'describe a tree of fewer segments: up to {_MOST_MEMORY // 2**20} MiB',
         )
     twist = np.zeros((len(parent), room, 6))
     twist[:, :, 3:] = _base_rotations(arrays, parent, n_keys, room)

@@ -18,7 +18,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.stream.protocol import PAUSED, RESTARTED
 
-DELAY = 0.15
+_DELAY = 0.15
 """Longest playout delay, and initial delay [s]."""
 
 _YOUNGEST, _CALMS = 0.25, 12.0
@@ -106,10 +106,10 @@ class Playout:
     """
 
     def __init__(self, delay: float | None = None) -> None:
-        self.delay = DELAY if delay is None else delay
+        self.delay = _DELAY if delay is None else delay
         self._adapts = delay is None
         self._spacing = 0.0
-        self._jitter = 0.5 * DELAY
+        self._jitter = 0.5 * _DELAY
         self._age = _YOUNGEST
         self._ahead = 0.0
         self.clock = ClockOffset()
@@ -150,7 +150,7 @@ class Playout:
         calms = min(self._age, _CALMS)  # the first estimate of a connection decays faster
         self._jitter = max(lateness, self._jitter * math.exp(-span / calms))
         self._ahead = self._spacing if self._spacing < _PREDICTED else 0.0
-        change = min(self._spacing - self._ahead + self._jitter, DELAY) - self.delay
+        change = min(self._spacing - self._ahead + self._jitter, _DELAY) - self.delay
         self.delay += min(max(change, -_DOWN * span), _UP * span)
 
     def sample(self, now: float) -> Moment | None:
@@ -169,7 +169,7 @@ class Playout:
         b = moments[end]
         span = b.stamp - a.stamp
         u = min(max((time - a.stamp) / span, 0.0), 1.0) if span > 0.0 else 1.0
-        curve = catmull_rom(moments[max(begin - 1, 0)], a, b, moments[min(end + 1, newest)], u)
+        curve = _catmull_rom(moments[max(begin - 1, 0)], a, b, moments[min(end + 1, newest)], u)
         wind = a.wind + u * (b.wind - a.wind)
         stamp = a.stamp + u * span
         self._shown = Moment(stamp, self._blended(curve, now), wind, b.flags & PAUSED)
@@ -197,7 +197,7 @@ def predicted(a: Moment, b: Moment, c: Moment) -> Moment:
     return Moment(c.stamp + span, values, c.wind, c.flags & PAUSED)
 
 
-def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
+def _catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
     """
     Coordinates on the curve through b and c, whose slopes there come from the neighbours.
 

@@ -31,16 +31,16 @@ from tree_sway.stream.check_tables import check_tables
 if TYPE_CHECKING:
     from tree_sway.core.scene import ReceivedScene
 
-VERSION = 2
-FRAME_VERSION = 1
+_VERSION = 2
+_FRAME_VERSION = 1
 MAGIC, TABLES = b'TSWD', b'TSWT'
 """First bytes of a description, and of the tables by which a receiver solves it."""
 
-FRAME_KIND = 0x46
+_FRAME_KIND = 0x46
 WIND_UNIT = 0.005
 """Unit of the wind's int16 in [m/s]."""
 
-PAUSED, BEYOND_SCALE, RESTARTED, PART, WIND_LOST = 1, 2, 4, 8, 16
+PAUSED, BEYOND_SCALE, RESTARTED, _PART, WIND_LOST = 1, 2, 4, 8, 16
 """
 Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates, no
 measured wind: there is no sample yet, or the last one is older than its time-out and its force
@@ -83,7 +83,7 @@ class Frame(NamedTuple):
     stamp
         Time of the state in [ns].
     flags
-        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`, `PART`, `WIND_LOST`.
+        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`, `_PART`, `WIND_LOST`.
     wind
         Wind at the anemometer, blowing to, in [m/s], (3,).
     coordinates
@@ -165,7 +165,7 @@ class Description:
         count = len(frame.coordinates)
         most = len(self.scale)
         part = slice(frame.first, frame.first + count)
-        if part.stop > most or (count not in (0, most) and not frame.flags & PART):
+        if part.stop > most or (count not in (0, most) and not frame.flags & _PART):
             what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
             raise FormatError(what, where='tree state')
         return np.asarray(frame.coordinates * (self.scale[part] / FULL_SCALE))
@@ -245,11 +245,11 @@ def encode_description(
         table[name] = {'type': kind, 'shape': list(array.shape), 'offset': len(body)}
         body += array.astype(_TYPES[kind]).tobytes()
         body += bytes(-len(body) % _ALIGNMENT)
-    content = {**header, 'version': VERSION, 'arrays': table}
+    content = {**header, 'version': _VERSION, 'arrays': table}
     digest = hashlib.sha256(_json(content) + body).hexdigest()
     text = _json({**content, 'identity': digest[:16]})
     text += b' ' * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
-    return _PREFIX.pack(magic, VERSION, len(text)) + text + bytes(body)
+    return _PREFIX.pack(magic, _VERSION, len(text)) + text + bytes(body)
 
 
 def decode_description(data: bytes) -> Description:
@@ -293,8 +293,8 @@ def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Arra
     if len(data) < _PREFIX.size or data[:4] != magic:
         raise ValueError(f'it does not begin with {magic.decode()}')
     _, version, size = _PREFIX.unpack_from(data)
-    if version != VERSION:
-        cure = f'this program reads version {VERSION}: update the older side'
+    if version != _VERSION:
+        cure = f'this program reads version {_VERSION}: update the older side'
         raise FormatError(f'a message of version {version}', cure=cure)
     begin = _PREFIX.size + size
     if size > LARGEST_HEADER:
@@ -323,7 +323,7 @@ def encode_frame(frame: Frame) -> bytes:
     coordinates = np.asarray(frame.coordinates, dtype='<i2')
     return (
         _FRAME.pack(
-            FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
+            _FRAME_KIND, _FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
             frame.stamp, x, y, z, len(coordinates),
         )
         + coordinates.tobytes() + beyond.astype('<f4').tobytes()
@@ -355,22 +355,22 @@ def decode_frame(data: bytes) -> Frame:
         Not a frame, of a different version, or of a wrong length.
 
     """
-    if len(data) < _FRAME.size or data[0] != FRAME_KIND:
+    if len(data) < _FRAME.size or data[0] != _FRAME_KIND:
         raise FormatError(
             'not a frame', where='tree state', cure='send frames of doc/streaming.md'
         )
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
-    begin = _FRAME.size + 2 * bool(flags & PART)
+    begin = _FRAME.size + 2 * bool(flags & _PART)
     size = begin + 2 * count
-    if version != FRAME_VERSION or len(data) < size or (len(data) - size) % 8:
+    if version != _FRAME_VERSION or len(data) < size or (len(data) - size) % 8:
         what = f'a frame of version {version}, {count} coordinates and {len(data)} bytes'
-        cure = f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate'
+        cure = f'send version {_FRAME_VERSION}, {begin} bytes and 2 per coordinate'
         raise FormatError(what, where='tree state', cure=cure)
     coordinates = np.frombuffer(data, dtype='<i2', count=count, offset=begin)
     beyond = np.frombuffer(data, dtype='<f4', offset=size).astype(np.float64)
     if not np.isfinite(beyond).all():
         raise FormatError('a frame that is not finite', where='tree state')
-    first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & PART else 0
+    first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & _PART else 0
     wind = WIND_UNIT * np.array([x, y, z])
     return Frame(identity, sequence, stamp, flags, wind, coordinates, first, beyond)
 
@@ -383,7 +383,7 @@ def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
     head[-2:] = count.to_bytes(2, 'little')
     if count == 0:
         return bytes(head)
-    head[2] |= PART
+    head[2] |= _PART
     part = frame[size + 2 * first : size + 2 * (first + count)]
     return bytes(head) + first.to_bytes(2, 'little') + part
 

@@ -14,7 +14,7 @@ from tree_sway.core.model import StateBasis
 from tree_sway.core.run import basis_of, Motion, SwaySimulator
 from tree_sway.core.scene import Simulator
 
-Place = tuple[float, float, float, float, float]
+_Place = tuple[float, float, float, float, float]
 """Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
 
 
@@ -40,7 +40,7 @@ class SceneKind:
     basis: StateBasis
     coordinates: Motion
     numbers: list[int]
-    places: list[Place]
+    places: list[_Place]
 
 
 def scene_kinds(simulator: Simulator) -> list[SceneKind]:

@@ -23,7 +23,7 @@ from tree_sway.stream.protocol import (
 from tree_sway.stream.scene_kind import scene_kinds, SceneKind
 from tree_sway.stream.tables import tables_of
 
-FULLY_LEAVED = 4
+_FULLY_LEAVED = 4
 """Largest number of kinds that are described with the full number of clusters of leaves."""
 
 
@@ -37,7 +37,7 @@ class SceneState:
         The simulator of a tree or a scene.
     n_leaves
         Number of clusters of leaves to describe on each kind in leaf; fewer for more than
-        `FULLY_LEAVED` kinds.
+        `_FULLY_LEAVED` kinds.
     frame_id
         Frame of the poses.
 
@@ -58,7 +58,7 @@ class SceneState:
         self.kinds = scene_kinds(simulator)
         self.names = simulator.names
         self._lay_out()
-        count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
+        count = _FULLY_LEAVED * n_leaves // max(_FULLY_LEAVED, len(self.kinds))
         self.leaves = [_leaves(kind, count) for kind in self.kinds]
         self.description = describe_scene(
             simulator.name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves

@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Relay until the time is over or Ctrl-C."""
     seconds = seconds_of(arguments)
-    url = with_token(arguments.url, read_token(arguments.token_file))
+    url = _with_token(arguments.url, read_token(arguments.token_file))
     if arguments.page or find_spec('rclpy') is None:
         return _to_page(arguments, url, seconds)
     return _to_topics(arguments, url, seconds)
@@ -131,7 +131,7 @@ def wait_for_frames(client: StreamClient) -> None:
     client.wait(_PATIENCE - _UNREACHED)
 
 
-def with_token(url: str, token: str) -> str:
+def _with_token(url: str, token: str) -> str:
     """Return the address with a token in its query, unless that is empty."""
     if not token:
         return url

@@ -15,7 +15,7 @@ _LATEST = 36_000
 """Number of latencies stored: those of ten minutes at 60 Hz."""
 
 
-class Series:
+class _Series:
     """Statistics of vectors at times: number, first and last time [s], mean and largest length."""
 
     def __init__(self) -> None:
@@ -55,8 +55,8 @@ class StreamTotals:
     """Statistics of a stream for `summary`, from its messages one by one."""
 
     def __init__(self) -> None:
-        self.poses = Series()
-        self.wind = Series()
+        self.poses = _Series()
+        self.wind = _Series()
         self.foreign = 0
         """Number of pose arrays that are not of this tree, which are not counted as poses."""
         self.latencies: deque[float] = deque(maxlen=_LATEST)

@@ -16,13 +16,13 @@ from pathlib import Path
 
 from tree_sway.parameters import read_tables, Table
 
-GROUP = 'tree_sway_ros.solver'
+_GROUP = 'tree_sway_ros.solver'
 
 
 def _found() -> dict[EntryPoint, Table]:
     """Return what is installed, in the order of the names; without what was taken away since."""
     found = {}
-    for point in sorted(entry_points(group=GROUP), key=lambda each: each.name):
+    for point in sorted(entry_points(group=_GROUP), key=lambda each: each.name):
         with suppress(ModuleNotFoundError):
             if (spec := find_spec(point.module)) is not None:
                 table = Path(str(spec.origin)).with_suffix('.yaml')

@@ -26,7 +26,7 @@ from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
 from tree_sway_ros.timing.clock_rate import ClockRate
 from tree_sway_ros.timing.pacer import Pacer, Tick
 
-REPORT_PERIOD = 1.0
+_REPORT_PERIOD = 1.0
 """Interval of reports [s] of wall time."""
 
 _REPLAY_LIMITS = {'lead': LONGEST_TRANSPORT, 'lag': 5 * LONGEST_TRANSPORT}
@@ -276,7 +276,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self._collect = collect
         profile = qos_profile(DIAGNOSTICS)
         self._diagnostics = self.create_publisher(DiagnosticArray, DIAGNOSTICS.name, profile)
-        self.create_steady_timer(REPORT_PERIOD, self.report)
+        self.create_steady_timer(_REPORT_PERIOD, self.report)
 
     def report(self) -> None:
         """Publish one report, with the failures of callbacks."""

@@ -90,7 +90,7 @@ class BufferedFrames:
         return Rotation.from_quat((q.x, q.y, q.z, q.w)).as_matrix()
 
 
-class HeardFrames(Frames):
+class _HeardFrames(Frames):
     """Known frames, of the messages of tf2."""
 
     def __init__(self, node: Any) -> None:
@@ -101,7 +101,7 @@ class HeardFrames(Frames):
 
 def listen(node: Any) -> BufferedFrames | Frames:
     """Begin to listen to frames, by the best that is installed; without tf2 none is known."""
-    for kind in (BufferedFrames, HeardFrames):
+    for kind in (BufferedFrames, _HeardFrames):
         try:
             return kind(node)
         except ImportError:

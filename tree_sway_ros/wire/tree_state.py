@@ -30,7 +30,7 @@ the flags of `protocol`.
 
 """
 
-LABEL = 'coordinates'
+_LABEL = 'coordinates'
 """Label of the dimension."""
 
 _SECOND = 1_000_000_000
@@ -52,7 +52,7 @@ class StateWriter:
 
     def __init__(self, count: int) -> None:
         message = Float64MultiArray()
-        dimension = MultiArrayDimension(label=LABEL, size=count, stride=count)
+        dimension = MultiArrayDimension(label=_LABEL, size=count, stride=count)
         message.layout.dim = [dimension]
         message.layout.data_offset = len(HEAD)
         size = len(HEAD) + count
@@ -75,11 +75,11 @@ def read_state(message: Any) -> ModalState:
     layout = message.layout
     numbers = np.array(message.data, dtype=np.float64)
     labels = [each.label for each in layout.dim]
-    if labels != [LABEL] or layout.data_offset != len(HEAD):
+    if labels != [_LABEL] or layout.data_offset != len(HEAD):
         raise FormatError(
             f'dimensions {labels} from number {layout.data_offset} on',
             where='tree_state',
-            cure=f"send {', '.join(HEAD)} and then one dimension, '{LABEL}'",
+            cure=f"send {', '.join(HEAD)} and then one dimension, '{_LABEL}'",
         )
     if len(numbers) != len(HEAD) + layout.dim[0].size:
         what = f'{len(numbers)} numbers for {layout.dim[0].size} coordinates'

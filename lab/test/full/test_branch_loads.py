@@ -11,11 +11,11 @@ from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.full.rotation import turned
 from tree_sway_lab.kernel import fused
 
-from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.rotation import cross_matrix
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.preparation import prepare
+from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.species.species import species_named
 
 # Parts of kernels, each compiled for itself.
@@ -143,8 +143,8 @@ def test_the_native_core_finds_the_same_loads(loaded):
     branch_loads.wind_moments(
         loaded.branches, loaded.work, loaded.loads, x, v, own, *wind, 1.0
     )
-    native = BranchLoads(loaded.branches)
-    found = native.moments(x[None], v[None], wind[None])[0]
+    native = WindMoments(loaded.branches)
+    found = native(x, v, wind)
     assert found == pytest.approx(own, rel=1e-9, abs=1e-12 * np.abs(own).max())
     for name in ('velocity', 'orientation', 'rotation', 'displacement', 'arm', 'force', 'wrench'):
         assert native.loads[name][1:] == pytest.approx(

@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 from tree_sway.core.model.branch_blocks import BRANCH_BLOCK
-from tree_sway.core.model.branch_loads import BRANCH_LOAD, Branches
 from tree_sway.core.model.sway_model import MEANINGS, TYPES
 from tree_sway.core.native.library import contiguous, INTERFACE, LIBRARY, SIGNATURES, VERSION
 from tree_sway.core.native.model import Sizes
 from tree_sway.core.native.stand import _TREE
 from tree_sway.core.native.structures import Structure
+from tree_sway.core.setup.wind_moments import BRANCH_LOAD, Branches
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
 

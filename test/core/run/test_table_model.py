@@ -14,7 +14,8 @@ from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.load_table import SPEEDS
-from tree_sway.core.setup.static_responses import direction, WindMoments
+from tree_sway.core.setup.static_responses import direction
+from tree_sway.core.setup.wind_moments import WindMoments
 
 DT = 1.0 / 60.0
 

@@ -8,12 +8,12 @@ from drawn_trees import crooked
 import numpy as np
 import pytest
 
-from tree_sway.core.model.branch_loads import BranchLoads
 from tree_sway.core.rotation import cross_matrix, quaternion_rotated
 from tree_sway.core.run.assembly import branch_records
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.species.species import species_named
 
 CALM = np.zeros(3)
@@ -45,14 +45,14 @@ class Loaded:
 
     def hold(self):
         """Read the records, which may have changed."""
-        self.of_branches = BranchLoads(self.branches)
+        self.of_branches = WindMoments(self.branches)
         self.n = self.of_branches.n
         self.loads = self.of_branches.loads
 
     def moments(self, x, v, wind):
         """Find the moments on the key rotations."""
         rates = None if v is None else v[None]
-        return self.of_branches.moments(x[None], rates, np.asarray(wind)[None])[0]
+        return self.of_branches.at_poses(x[None], np.asarray(wind)[None], rates)[0]
 
     def velocity_of_centres(self, x, v):
         """Velocity of the centre of each load in the frame of its branch as it is turned."""

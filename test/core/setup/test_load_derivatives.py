@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.load_derivatives import LoadSlopes
+from tree_sway.core.setup.wind_moments import WindMoments
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def with_mean_damping(branches):
 def test_slopes_are_those_of_the_load(bent, wind):
     load, shapes, x = bent
     wind, still, size = np.array(wind), np.zeros(load.n), 1e-6
-    turning, damping = load.slopes(shapes)(x, wind)
+    turning, damping = LoadSlopes(load, shapes)(x, wind)
     moved, swung = np.zeros((2, *turning.shape))
     for k, shape in enumerate(shapes.T):
         step = size / np.abs(shape).max()
@@ -59,9 +60,9 @@ def test_the_damping_of_a_branch_alone_is_that_of_its_points():
     key = np.zeros((load.n, 1))
     key[last['coordinate']] = 1.0
     still, wind = np.zeros(load.n), np.array([0.6, 0.8, 0.0])
-    _, damping = load.slopes(key)(still, wind)
+    _, damping = LoadSlopes(load, key)(still, wind)
     swung = load(still, 1e-6 * key[:, 0], wind) - load(still, -1e-6 * key[:, 0], wind)
-    at_mean = WindMoments(with_mean_damping(branches)).slopes(key)(still, wind)[1]
+    at_mean = LoadSlopes(WindMoments(with_mean_damping(branches)), key)(still, wind)[1]
     assert damping[0, 0] == pytest.approx(swung @ key[:, 0] / 2e-6, rel=1e-3)
     assert damping[0, 0] < 1.3 * at_mean[0, 0] < 0.0
 
@@ -69,7 +70,7 @@ def test_the_damping_of_a_branch_alone_is_that_of_its_points():
 def test_a_tree_at_rest_has_slopes_right_to_single_precision(bent):
     load, shapes, _ = bent
     still, wind, size = np.zeros(load.n), np.array([0.6, -0.8, 0.0]), 1e-6
-    turning, _ = load.slopes(shapes)(still, wind)
+    turning, _ = LoadSlopes(load, shapes)(still, wind)
     shape = shapes[:, 0]
     step = size / np.abs(shape).max() * shape
     moved = (load(step, still, wind) - load(-step, still, wind)) @ shapes

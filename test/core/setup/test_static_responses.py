@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.wind_moments import WindMoments
 
 
 def test_the_load_in_each_of_many_poses_is_that_in_it_alone(fork):

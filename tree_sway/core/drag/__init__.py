@@ -5,8 +5,7 @@ The drag of air on wood and leaves, and how sure its numbers are.
 
 `DragLaw` and `drag_density`: force per area and squared speed of a crown, which streamlines as the
 wind rises (Vogel 1984; ``doc/models.md``). `crown_drag` joins wood and leaves of a tree to one
-law. `fill_harmonics` gives the spherical harmonics in which the load of all directions of wind is
-expanded. The spreads `WIND`, `DRAG`, `LEAVES` and `SHARE_WITHIN` are the standard deviations of
+law. The spreads `WIND`, `DRAG`, `LEAVES` and `SHARE_WITHIN` are the standard deviations of
 loads between trees of a kind, for bands.
 """
 
@@ -26,7 +25,5 @@ if TYPE_CHECKING:
     from tree_sway.core.drag.load_spreads import LEAVES as LEAVES
     from tree_sway.core.drag.load_spreads import SHARE_WITHIN as SHARE_WITHIN
     from tree_sway.core.drag.load_spreads import WIND as WIND
-    from tree_sway.core.drag.spherical_harmonics import fill_harmonics as fill_harmonics
-    from tree_sway.core.drag.spherical_harmonics import N_HARMONICS as N_HARMONICS
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -46,22 +46,22 @@ if TYPE_CHECKING:
 LEAVE_IN = 1.0
 """Time in [s] in which coordinates that are left out fade."""
 
-ADD_IN = 0.4
+_ADD_IN = 0.4
 """Time in [s] in which the displacement that added coordinates begin with is faded in."""
 
-SURPRISE = 1.2
+_SURPRISE = 1.2
 """Ratio of the load to the largest load of the choice above which the choice is made again."""
 
-LOAD_JUMP = 2.0
+_LOAD_JUMP = 2.0
 """
 Ratio of the load to the largest of the last minute above which all coordinates within the budget
 are used.
 """
 
-GUST_MEMORY = 5.0
+_GUST_MEMORY = 5.0
 """Time in [s] after which the weight of a gust is 1/e."""
 
-SWINGS_ON = 20.0
+_SWINGS_ON = 20.0
 """Time in [s] that a tree may swing freely after a push."""
 
 REVIEW = 2.0
@@ -161,7 +161,7 @@ class AdaptiveSimulator(SwaySimulator):
         """Push as `SwaySimulator.push`, on most coordinates until the free swing is over."""
         super().push(segment, force, seconds, along=along)
         was_free = self._touched_for <= 0.0
-        self._touched_for = seconds + SWINGS_ON
+        self._touched_for = seconds + _SWINGS_ON
         if was_free:
             self.review()
 
@@ -223,7 +223,7 @@ class AdaptiveSimulator(SwaySimulator):
         left_out = self._shares[self.choice.n_coordinates :]
         before = _smooth(self._left)
         if before > 0.0 or left_out.max(initial=0.0) > 0.0:
-            self._left -= dt / ADD_IN
+            self._left -= dt / _ADD_IN
             np.maximum(self._left, 0.0, out=self._left)
             after = _smooth(self._left)
             self._begun *= after / np.maximum(before, 1e-300)
@@ -247,13 +247,13 @@ class AdaptiveSimulator(SwaySimulator):
         x, y, z = three_numbers('wind', wind_mean)
         refuse_time_step(dt)
         load = x * x + y * y + z * z
-        self._gust *= math.exp(-dt / GUST_MEMORY)
+        self._gust *= math.exp(-dt / _GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):
             self._gust = load
             self._bearing = np.array([x, y, z])
-            if load > SURPRISE * self._judged:
+            if load > _SURPRISE * self._judged:
                 usual = self._tracker.largest_load
-                self.review(at_best=load > LOAD_JUMP * usual)
+                self.review(at_best=load > _LOAD_JUMP * usual)
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""

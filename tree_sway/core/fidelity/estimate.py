@@ -30,27 +30,27 @@ from tree_sway.core.wind import WindClimate
 DIAL = (0, 3, 6, 12, 20, 40, 60)
 """Numbers of coordinates to choose from, beside the number of all."""
 
-MARGIN = 1.4
+_MARGIN = 1.4
 """Factor of estimated over computed error: the effect of the wind is not quite linear."""
 
-FLOOR = 0.06
+_FLOOR = 0.06
 """Error of all coordinates against every segment solved, as a share of the motion."""
 
-TURN, MOST_TURN = 0.4, 1.4
+_TURN, _MOST_TURN = 0.4, 1.4
 """
 Further share per squared largest rotation of a chain in [rad], and its saturation, per squared
 rotation.
 
 """
 
-LIFT, LIFT_FLOOR = 3.5, 0.05
+_LIFT, _LIFT_FLOOR = 3.5, 0.05
 """
 Further share per radian of that rotation, and at any rotation, in vertical wind: it blows along
 hanging branches and buckles them, which no linear model has.
 
 """
 
-SOFT = 2.0
+_SOFT = 2.0
 """
 Further share per radian of rotation by weight: a tree that nearly buckles leans by more than the
 linear response.
@@ -198,7 +198,7 @@ class ErrorEstimator:
         for count, square, cost in zip(self.dial, squares, self._costs, strict=True):
             missed = 0.0
             if count < self.dial[-1]:
-                missed = MARGIN * per_square * math.sqrt(square)
+                missed = _MARGIN * per_square * math.sqrt(square)
             error = math.hypot(missed, beyond)
             found.append(Estimate(count, error, float(swing), cost, turn))
         return found
@@ -257,9 +257,9 @@ def _nonlinear_share(turn: float, soft: float, upward: float) -> float:
     The largest turns of a chain, in all and by weight, are in [rad]; ``upward`` is how far the
     wind is vertical.
     """
-    by_turn = TURN * turn**2 / (1.0 + MOST_TURN * turn**2)
-    by_lift = (LIFT_FLOOR + LIFT * turn) * upward
-    return min(FLOOR + by_turn + SOFT * soft + by_lift, _MOST)
+    by_turn = _TURN * turn**2 / (1.0 + _MOST_TURN * turn**2)
+    by_lift = (_LIFT_FLOOR + _LIFT * turn) * upward
+    return min(_FLOOR + by_turn + _SOFT * soft + by_lift, _MOST)
 
 
 def _steady_wind(climate: WindClimate) -> tuple[Floats, float]:

@@ -9,7 +9,7 @@ Python, C++ or a browser. Its ``check`` names the array that is wrong. `ModelCac
 prepared models are found again, by a digest of what they were made of. `StateBasis` is the basis
 in which poses are streamed.
 
-`records`, `places`, `branch_blocks` and `branch_loads` are layouts that set-up fills and the
+`records` and `branch_blocks` are layouts that set-up fills and the
 native core reads. Here is no arithmetic of motion; a new array begins here, in `sway_model`.
 """
 
@@ -19,17 +19,16 @@ from tree_sway.faces import face
 
 if TYPE_CHECKING:
     from tree_sway.core.model.branch_blocks import BranchBlocks as BranchBlocks
-    from tree_sway.core.model.branch_loads import BranchLoads as BranchLoads
     from tree_sway.core.model.model_cache import ModelCache as ModelCache
     from tree_sway.core.model.model_cache import PREPARED as PREPARED
-    from tree_sway.core.model.places import fill_places as fill_places
-    from tree_sway.core.model.places import Places as Places
     from tree_sway.core.model.records import Branch as Branch
     from tree_sway.core.model.records import branch_layout as branch_layout
     from tree_sway.core.model.records import Branches as Branches
+    from tree_sway.core.model.records import fill_arms as fill_arms
     from tree_sway.core.model.records import MAX_COORDINATES as MAX_COORDINATES
     from tree_sway.core.model.records import MOST_IN_ALL as MOST_IN_ALL
     from tree_sway.core.model.records import N_AZIMUTHS as N_AZIMUTHS
+    from tree_sway.core.model.records import N_HARMONICS as N_HARMONICS
     from tree_sway.core.model.records import N_LEVELS as N_LEVELS
     from tree_sway.core.model.records import room_for_fields as room_for_fields
     from tree_sway.core.model.records import WIDTH as WIDTH

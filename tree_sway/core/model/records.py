@@ -14,7 +14,8 @@ from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, RecordsOf
+from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf
+from tree_sway.core.tree import Tree
 
 WIDTH = 16
 
@@ -29,6 +30,9 @@ ROOMS = 2, MOST_IN_ALL, MAX_COORDINATES
 
 N_AZIMUTHS, N_LEVELS = 24, 7
 """Azimuths of the wind and levels of the lean in the table."""
+
+N_HARMONICS = 21
+"""Spherical harmonics in which a load is expanded: all of odd degree up to 5."""
 
 
 class Branch:
@@ -77,3 +81,16 @@ def branch_layout(n_coordinates: int) -> np.dtype[np.void]:
     limited by how fast its records are read from memory.
     """
     return np.dtype(fields_of(Branch, rows=n_coordinates))
+
+
+def fill_arms(records: Records, tree: Tree, first: Ints) -> None:
+    """Fill bases, tips and arms of branches, (b,), by the first segment of each in a tree."""
+    last = np.append(first[1:], tree.n_segments) - 1
+    root = tree.start[0]
+    base = tree.start[first] - root
+    arm = base - base[np.maximum(records['parent'], 0)]
+    square = np.square(arm).sum(axis=1)
+    records['base'] = base
+    records['tip'] = tree.end[last] - root
+    records['arm'] = arm
+    records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)

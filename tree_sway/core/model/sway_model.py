@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.checks import GREATEST
-from tree_sway.core.drag import DragLaw, N_HARMONICS
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, ROOMS
+from tree_sway.core.drag import DragLaw
+from tree_sway.core.model.records import N_AZIMUTHS, N_HARMONICS, N_LEVELS, ROOMS
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
@@ -380,7 +380,7 @@ class SwayModel:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the arrays by name, without absent ones; numbers are arrays without an axis."""
-        found = {name: np.asarray(getattr(self, name), dtype=np.float64) for name in NUMBERS}
+        found = {name: np.asarray(getattr(self, name), dtype=np.float64) for name in _NUMBERS}
         present = {name: getattr(self, name) for name in MEANINGS}
         return found | {name: each for name, each in present.items() if each is not _NONE}
 
@@ -496,17 +496,17 @@ class SwayModel:
             An array that is missing or unknown, or does not fit the others.
 
         """
-        for name in sorted(arrays.keys() - {*MEANINGS, *NUMBERS}):
+        for name in sorted(arrays.keys() - {*MEANINGS, *_NUMBERS}):
             raise _misfit(name, 'an array that no model has', 'names of sway_model.md')
-        for name in (*NUMBERS, *_REQUIRED):
+        for name in (*_NUMBERS, *_REQUIRED):
             if name not in arrays:
                 raise _misfit(name, 'missing', 'an array of every model')
-        for name, size in NUMBERS.items():
+        for name, size in _NUMBERS.items():
             if arrays[name].size != size:
                 raise _misfit(name, f'of shape {arrays[name].shape}', f'{size} numbers')
             _refuse_numbers(name, arrays[name])
         given: dict[str, Any] = {**arrays, 'drag_law': DragLaw(*arrays['drag_law'].tolist())}
-        given |= {name: float(arrays[name]) for name in NUMBERS if name != 'drag_law'}
+        given |= {name: float(arrays[name]) for name in _NUMBERS if name != 'drag_law'}
         made = cls(tree=tree, species=species, settings=settings, **given)
         made.check()
         return made
@@ -514,7 +514,7 @@ class SwayModel:
 
 def _is_native(name: str) -> bool:
     """Whether the native core needs an array or number."""
-    if name in NUMBERS or name in _NATIVE:
+    if name in _NUMBERS or name in _NATIVE:
         return True
     return MEANINGS[name].group in (PLACING, TABLE, LIMBS, LIMB_LOADS, LIMP)
 
@@ -546,7 +546,7 @@ def _misfit(name: str, what: str, wanted: str) -> FormatError:
 _NUMBERS_OF: dict[Any, type] = {'Floats': np.float64, 'Singles': np.float32, 'Ints': np.int64}
 """Type of the numbers of an array by its annotation."""
 
-NUMBERS = {
+_NUMBERS = {
     'drag_law': 3, 'damping_ratio': 1, 'mass': 1, 'most_pressure': 1, 'most_energy': 1,
 }  # fmt: skip
 """Numbers of a model, and how many there are of each."""

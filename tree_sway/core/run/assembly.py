@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.model import branch_layout, SwayModel
+from tree_sway.core.model import branch_layout, fill_arms, SwayModel
 from tree_sway.core.native import AT_POSE, bytes_of, NativeModel, NativeStand
 from tree_sway.core.run.bank import Bank, Oscillators
 
@@ -78,23 +78,15 @@ def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Osc
 
 def branch_records(model: SwayModel) -> Records:
     """Fill the records of the branches, (b,)."""
-    tree = model.tree
-    first = model.branch_first[:-1]
-    last = model.branch_first[1:] - 1
-    records: Records = np.zeros(len(first), dtype=branch_layout(model.branch_twist.shape[1]))
+    size = len(model.branch_parent)
+    records: Records = np.zeros(size, dtype=branch_layout(model.branch_twist.shape[1]))
     records['parent'] = model.branch_parent
     records['base_segment'] = model.branch_base_segment
-    records['first'] = first
-    records['end'] = last + 1
+    records['first'] = model.branch_first[:-1]
+    records['end'] = model.branch_first[1:]
     records['coordinate'] = model.branch_coordinate
     records['n_coordinates'] = model.branch_keys
     for name in LOADED:
         records[name] = getattr(model, f'branch_{name}')
-    records['tip'] = tree.end[last] - tree.start[0]
-    base = tree.start[first] - tree.start[0]
-    arm = base - base[np.maximum(model.branch_parent, 0)]
-    square = np.square(arm).sum(axis=1)
-    records['base'] = base
-    records['arm'] = arm
-    records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
+    fill_arms(records, model.tree, model.branch_first[:-1])
     return records

@@ -47,7 +47,7 @@ _WARM_FRAMES = 20
 _LONGEST_REASON = 400
 _NEWEST = 0.02  # weight of the newest step in the running mean of its cost
 
-Refused = Callable[[str], object]
+_Refused = Callable[[str], object]
 """Function called with the reason why a request is refused."""
 
 
@@ -107,7 +107,7 @@ class Run:
         self._starting = starting
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
-        self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
+        self._requests: deque[tuple[Callable[[], object], _Refused]] = deque(maxlen=_QUEUE)
         self._index: int | None = None
         self._origin = 0
         self._felt = -math.inf
@@ -186,7 +186,7 @@ class Run:
         return delay + self._wind.lateness + (self._wind.period or 0.0)
 
     def request(
-        self, action: Callable[[], object], refused: Refused = lambda reason: None
+        self, action: Callable[[], object], refused: _Refused = lambda reason: None
     ) -> None:
         """
         Call a function before the next step, in its thread.
@@ -202,7 +202,7 @@ class Run:
         """
         self._requests.append((action, refused))
 
-    def pull(self, segment: int, to: ArrayLike, stiffness: float, refused: Refused) -> None:
+    def pull(self, segment: int, to: ArrayLike, stiffness: float, refused: _Refused) -> None:
         """
         Pull at a segment by a spring before the next step, for half a second unless repeated.
 
@@ -290,7 +290,7 @@ class Run:
         self._index = 1 if self._index is None else self._index + 1
         self._solve(self._index * self.period, wind, self.period * 1e-9)
 
-    def _fulfil(self, action: Callable[[], object], refused: Refused) -> None:
+    def _fulfil(self, action: Callable[[], object], refused: _Refused) -> None:
         """Call a requested function; an error of it must not end the steps."""
         try:
             action()

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.model import MEANINGS, SwayModel
 
-LEFT_OUT = 1e-2
+_LEFT_OUT = 1e-2
 """
 Share of the slopes that their factors leave out, root mean square.
 
@@ -33,17 +33,17 @@ This is a ten thousandth of the motion of benjamina at 14 m/s, as the equilibria
 exact.
 """
 
-SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
+_SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
 """Fields of a table that are exported as factors."""
 
-PASSIVE = ('damping', 'steep_damping')
+_PASSIVE = ('damping', 'steep_damping')
 """Those which take energy from every motion."""
 
-PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
+_PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
          'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
 
-NUMBERS = ('most_pressure', 'most_energy')
+_NUMBERS = ('most_pressure', 'most_energy')
 
 _ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
 """Number of last bits that are left out of some fields: to 1.5e-5, and a bound to 0.4 %."""
@@ -62,17 +62,17 @@ def exported_table(
     """
     Return numbers by name, and arrays of float32 and int16, of a model and its damping (m,).
 
-    Beside the `PLAIN` arrays of the model there are ``own_damping`` (m,), and of each one of
-    `SLOPES` its ``_rows`` and ``_shapes``.
+    Beside the `_PLAIN` arrays of the model there are ``own_damping`` (m,), and of each one of
+    `_SLOPES` its ``_rows`` and ``_shapes``.
     """
-    numbers = {name: float(getattr(model, name)) for name in NUMBERS}
-    arrays = {name: rounded(getattr(model, name), _ROUNDED.get(name, 0)) for name in PLAIN}
+    numbers = {name: float(getattr(model, name)) for name in _NUMBERS}
+    arrays = {name: rounded(getattr(model, name), _ROUNDED.get(name, 0)) for name in _PLAIN}
     arrays['own_damping'] = damping.astype(np.float32)
     m = len(damping)
     root = np.sqrt(arrays['stiffness'].astype(np.float64))
-    for name in SLOPES:
+    for name in _SLOPES:
         slopes = getattr(model, name) / (root[:, None] * root)
-        factors = _passive_factors if name in PASSIVE else _factors
+        factors = _passive_factors if name in _PASSIVE else _factors
         arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = factors(slopes.reshape(-1, m * m))
     return numbers, arrays
 
@@ -82,10 +82,10 @@ def arrays_of_table(
 ) -> dict[str, NDArray[Any]]:
     """Return the arrays of a model, as the native core takes them, of an exported table."""
     m = len(arrays['stiffness'])
-    found = {name: np.array([numbers[name]]) for name in NUMBERS}
-    found |= {name: arrays[name].astype(np.float64) for name in (*PLAIN, 'own_damping')}
+    found = {name: np.array([numbers[name]]) for name in _NUMBERS}
+    found |= {name: arrays[name].astype(np.float64) for name in (*_PLAIN, 'own_damping')}
     root = np.sqrt(found['stiffness'])
-    for name in SLOPES:
+    for name in _SLOPES:
         rows = arrays[f'{name}_rows']
         shapes = arrays[f'{name}_shapes']
         slopes = np.zeros((len(rows), m * m))
@@ -121,11 +121,11 @@ def _passive_factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return rows (k, r) and shapes (r, m^2) with the product slopes (k, m^2) up to `LEFT_OUT`."""
+    """Return rows (k, r) and shapes (r, m^2) of the product slopes (k, m^2) up to `_LEFT_OUT`."""
     rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
     left = np.sqrt(np.maximum(1.0 - np.cumsum(sizes**2) / max(np.sum(sizes**2), 1e-300), 0.0))
-    rank = int(np.argmax(left < LEFT_OUT / 2.0)) + 1
+    rank = int(np.argmax(left < _LEFT_OUT / 2.0)) + 1
     scaled = sizes[:rank, None] * shapes[:rank]
-    step = LEFT_OUT / 2.0 * float(np.linalg.norm(sizes)) / (_QUANTISED * scaled.size**0.5)
+    step = _LEFT_OUT / 2.0 * float(np.linalg.norm(sizes)) / (_QUANTISED * scaled.size**0.5)
     step = max(step, float(np.abs(scaled).max()) / _LARGEST_STEP, 1e-300)
     return rounded(step * rows[:, :rank], _ROUNDED['rows']), np.rint(scaled / step).astype('<i2')

@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from tree_sway.core.setup.season import is_in_leaf as is_in_leaf
     from tree_sway.core.setup.season import LEAVES as LEAVES
     from tree_sway.core.setup.standing import standing_tree as standing_tree
-    from tree_sway.core.setup.static_responses import WindMoments as WindMoments
     from tree_sway.core.setup.threads import one_thread as one_thread
     from tree_sway.core.setup.tree_motion import base_motion as base_motion
     from tree_sway.core.setup.tree_motion import branch_rotations as branch_rotations
     from tree_sway.core.setup.tree_motion import own_motion as own_motion
     from tree_sway.core.setup.tree_motion import tip_motion as tip_motion
     from tree_sway.core.setup.uncoupled_responses import basis_of_isolated as basis_of_isolated
+    from tree_sway.core.setup.wind_moments import WindMoments as WindMoments
 else:
     __getattr__, __dir__, __all__ = face(__name__)

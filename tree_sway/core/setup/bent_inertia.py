@@ -13,13 +13,13 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model import Places
 from tree_sway.core.rotation import cross
+from tree_sway.core.setup.branch_places import Places
 from tree_sway.core.setup.tree_motion import sum_outward
 from tree_sway.core.setup.turning import turning_of
 from tree_sway.core.tree import Tree
 
-LEADING = 12
+_LEADING = 12
 """
 Number of coordinates whose inertia changes: those that do most of the motion.
 
@@ -49,7 +49,7 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
         Slopes of the inertia, the last axis the coordinate that bends the tree, (q, q, q).
 
     """
-    lead = shapes[:, :LEADING]
+    lead = shapes[:, :_LEADING]
     q = lead.shape[1]
     first = places.first[:-1]
     on = places.base_segment

@@ -10,15 +10,47 @@ cumulant of the slopes along the branch, the *skew*.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model import Places, room_for_fields
+from tree_sway.core.model import room_for_fields
 from tree_sway.core.rotation import quaternion_rotated
 from tree_sway.core.setup.beams.branch_model import BranchModel
 from tree_sway.core.setup.beams.shape_fields import across
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.tree import Tree
+
+
+class Places(NamedTuple):
+    """
+    How branches are joined and drawn: the data for placing a tree, before it is laid out.
+
+    Branches (b,) and segments (n,) are in the order of the tree; k is the largest number of
+    coordinates of a branch.
+    """
+
+    first: Ints
+    """First segment of each branch, and one past the last of all, (b + 1,)."""
+    parent: Ints
+    base_segment: Ints
+    coordinate: Ints
+    n_coordinates: Ints
+    frame: Floats
+    """Chord and the two axes across it, (b, 3, 3)."""
+    skew: Floats
+    tip_skew: Floats
+    offset: Floats
+    """Base from the start of the base segment, in the frame of that segment, (b, 3)."""
+    base_rotation: Floats
+    """Rotation of the base per unit of the parent's coordinates, (b, k, 3)."""
+    chord: Floats
+    rest: Floats
+    slope: Floats
+    tip_slope: Floats
+    segment_turn: Floats
+    """Rotation vector of each segment per unit of its branch's coordinates, (n, k, 3)."""
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:

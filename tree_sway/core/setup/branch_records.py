@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model import branch_layout, fill_places, Places
+from tree_sway.core.model import branch_layout, fill_arms
 from tree_sway.core.setup.beams.branch_model import BranchModel
+from tree_sway.core.setup.branch_places import Places
 from tree_sway.core.setup.fitted_load import fill_loads
 from tree_sway.core.setup.matrices import Reduction
 from tree_sway.core.tree import Tree
@@ -31,9 +32,12 @@ def branch_records(
         own = [models[branch] for branch in alike]
         segments = [tree.branch_first[b] + models[b].beam.segment for b in alike]
         fill_loads(own, speed_profile[np.array(segments)], np.array(alike), records)
-    fill_places(places, records)
+    for name in ('parent', 'base_segment', 'coordinate', 'n_coordinates', 'frame', 'offset'):
+        records[name] = getattr(places, name)
+    records['first'] = places.first[:-1]
+    records['end'] = places.first[1:]
     records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
-    _fill_arms(tree, records)
+    fill_arms(records, tree, records['first'])
     return records
 
 
@@ -44,15 +48,3 @@ def _of_one_shape(models: list[BranchModel]) -> list[list[int]]:
         shape = len(model.beam.length), len(model.fields), len(model.children) > 0
         found.setdefault(shape, []).append(branch)
     return list(found.values())
-
-
-def _fill_arms(tree: Tree, records: Records) -> None:
-    """Fill where each branch begins and ends, and its arm from the base of its parent."""
-    root = tree.start[0]
-    base = tree.start[tree.branch_first[:-1]] - root
-    arm = base - base[np.maximum(tree.branch_parent, 0)]
-    square = np.square(arm).sum(axis=1)
-    records['base'] = base
-    records['tip'] = tree.end[tree.branch_first[1:] - 1] - root
-    records['arm'] = arm
-    records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)

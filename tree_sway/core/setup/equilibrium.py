@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.load_derivatives import LoadSlopes
-from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.wind_moments import WindMoments
 
 _MOST_TURNS = 20
 _FARTHEST = 0.3

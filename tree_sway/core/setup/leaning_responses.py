@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import drag_density, DragLaw
 from tree_sway.core.model import N_AZIMUTHS
-from tree_sway.core.setup.load_table import harmonics_at, SPEEDS
+from tree_sway.core.setup.load_table import SPEEDS
+from tree_sway.core.setup.spherical_harmonics import harmonics_at
 from tree_sway.core.setup.static_responses import direction
 
 N_FREQUENCIES, _BEYOND = 20, 1.5

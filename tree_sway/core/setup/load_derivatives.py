@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model import BranchLoads
+from tree_sway.core.setup.wind_moments import WindMoments
 
 _LANES = 8
 """The native core takes as many shapes at once."""
@@ -24,15 +24,15 @@ class LoadSlopes:
 
     Parameters
     ----------
-    loads
+    moments
         Loads of the tree.
     shapes
         Key rotations of each shape, (N, m).
 
     """
 
-    def __init__(self, loads: BranchLoads, shapes: Floats) -> None:
-        self._loads = loads
+    def __init__(self, moments: WindMoments, shapes: Floats) -> None:
+        self._moments = moments
         self._shapes = shapes
         count, m = shapes.shape
         padded = np.zeros((3, count, -(-m // _LANES) * _LANES))
@@ -46,8 +46,8 @@ class LoadSlopes:
         The first axis is the shape that moves, the second the one that is loaded; the tree is at
         x, (N,), without motion, in a wind [m/s], (3,), of 1 kg/m^3.
         """
-        self._loads.moments(x[None], None, wind[None])
-        self._loads.find_slopes(self._padded, self._turning, self._damping)
+        self._moments.at_poses(x[None], wind[None])
+        self._moments.find_slopes(self._padded, self._turning, self._damping)
         m = self._shapes.shape[1]
         turning, damping = (
             each[:, :m].T @ self._shapes for each in (self._turning, self._damping)

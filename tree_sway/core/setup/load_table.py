@@ -27,17 +27,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.drag import DragLaw, fill_harmonics, N_HARMONICS
+from tree_sway.core.drag import DragLaw
 from tree_sway.core.model import N_AZIMUTHS, N_LEVELS, TYPES
 from tree_sway.core.setup.bent_inertia import inertia_change
 from tree_sway.core.setup.equilibrium import EquilibriumSearch
+from tree_sway.core.setup.load_derivatives import LoadSlopes
 from tree_sway.core.setup.modal_arrays import Coordinates
-from tree_sway.core.setup.static_responses import direction, WindMoments
+from tree_sway.core.setup.spherical_harmonics import harmonics_at
+from tree_sway.core.setup.static_responses import direction
+from tree_sway.core.setup.wind_moments import WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
 
-BEYOND = 1.1
+_BEYOND = 1.1
 """Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
 _AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
@@ -65,7 +68,7 @@ def load_table(
     coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw
 ) -> dict[str, Any]:
     """Find the arrays and numbers of the table of a `SwayModel`."""
-    found = WindTable(coordinates, wind_moments, drag_law).arrays
+    found = _WindTable(coordinates, wind_moments, drag_law).arrays
     return {
         name: each if np.ndim(each) == 0 else np.ascontiguousarray(each, dtype=TYPES[name])
         for name, each in found.items()
@@ -104,7 +107,7 @@ class _Standing(NamedTuple):
         )
 
 
-class WindTable:
+class _WindTable:
     """
     Loads of all uniform winds on a tree, computed once.
 
@@ -129,7 +132,7 @@ class WindTable:
         self._shapes = bank.shapes
         self._moments = wind_moments
         self._inertia_slopes = bank.inertia_slopes
-        self._slopes = wind_moments.slopes(bank.shapes)
+        self._slopes = LoadSlopes(wind_moments, bank.shapes)
         self._stiffness = bank.stiffness
         self._root = np.sqrt(bank.stiffness)
         self._damping = bank.damping
@@ -138,13 +141,13 @@ class WindTable:
         self._still = np.zeros(len(bank.shapes))
         self.arrays = table = dict[str, Any]()
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
-        each = 2 if len(wind_moments.branches) <= _LARGE else 3
+        each = 2 if wind_moments.n_branches <= _LARGE else 3
         self._azimuths = _AZIMUTHS[::each]
         table['motion'] = bank.mean_square_motion
         table['harmonics'], table['limit'] = fit_harmonics(wind_moments, bank.shapes)
         self._fill_standing(table)
         self._fill_aslant(table)
-        table['most_pressure'] = float(BEYOND * self._pressures[-1])
+        table['most_pressure'] = float(_BEYOND * self._pressures[-1])
         energy = table['equilibrium'][:, -1] ** 2 @ bank.stiffness
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
@@ -332,12 +335,3 @@ def _without_gain(damping: Floats) -> Floats:
     work, axes = np.linalg.eigh(0.5 * (damping + np.swapaxes(damping, -1, -2)))
     gain = (axes * np.maximum(work, 0.0)[..., None, :]) @ np.swapaxes(axes, -1, -2)
     return np.asarray(damping - gain)
-
-
-def harmonics_at(directions: Floats) -> Floats:
-    """Harmonics of unit vectors (k, 3), (k, h)."""
-    out = np.zeros((N_HARMONICS, len(directions)))
-    x, y, z = directions.T
-    fill_harmonics(x, y, z, out)
-    return out.T
-

@@ -26,7 +26,6 @@ from tree_sway.core.setup.modal_arrays import Coordinates, modal_arrays
 from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.setup.stream_basis import (
     arrays_of_stream,
     basis_of_responses,
@@ -35,6 +34,7 @@ from tree_sway.core.setup.stream_basis import (
 )
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
 from tree_sway.core.setup.threads import one_thread
+from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.wind.gusts import delays_of, N_DELAYS, parts_of
 
 
@@ -185,7 +185,7 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
         'branch_coordinate': branches['coordinate'].copy(),
         'branch_keys': branches['n_coordinates'].copy(),
         'branch_skew': np.stack([places.skew, places.tip_skew], axis=1)[order],
-        **{f'branch_{name}': branches[name].copy() for name in (*PLACED, *LOADED)},
+        **{f'branch_{name}': branches[name].copy() for name in (*_PLACED, *_LOADED)},
         'segment_slope': places.slope[row],
         'segment_tip_slope': places.tip_slope[row],
         'segment_chord': places.chord[row],
@@ -194,10 +194,10 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
     }
 
 
-PLACED = ('frame', 'offset', 'twist')
+_PLACED = ('frame', 'offset', 'twist')
 """Fields of a branch's record that are arrays of the model under the same names."""
 
-LOADED = (
+_LOADED = (
     'area', 'speed', 'spread', 'lever', 'projector', 'centre', 'coupling', 'load_mode',
     'damping_mode', 'load_rotation', 'tip_mode',
 )  # fmt: skip

@@ -23,7 +23,7 @@ from tree_sway.core.setup.matrices import Factors, Reduction
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
-MOST_ALL_MODES = 3000
+_MOST_ALL_MODES = 3000
 """
 Largest number of coordinates of a tree that is solved in all its modes: more take minutes without
 gain.
@@ -90,7 +90,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
 
     n = reduction.n_coordinates
     wanted = n if count is None else count
-    if count is None and n > MOST_ALL_MODES:
+    if count is None and n > _MOST_ALL_MODES:
         raise ParameterError(
             f'all {n} modes of a tree of {tree.n_branches} branches',
             where="model 'full'",

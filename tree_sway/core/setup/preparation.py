@@ -10,7 +10,6 @@ branches; a cache stores the result.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 from tree_sway.core.model import ModelCache, PREPARED, SwayModel
@@ -56,16 +55,13 @@ def prepare(
     return prepared(TreeReductions(bare, wood, settings_with(settings, changes)), cache=cache)
 
 
-def prepared(
-    reductions: TreeReductions, model: int | str | None = None, cache: ModelCache | None = None
-) -> SwayModel:
+def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> SwayModel:
     """
-    Prepare a model of a reduced tree, that of its settings if None.
+    Prepare the model of a reduced tree.
 
     The model is read from the cache, or made and written there; both have the same bits.
     """
     settings = reductions.settings
-    settings = settings if model is None else replace(settings, model=model)
     if settings.model == 'auto':
         raise ParameterError(
             "model 'auto' has no oscillators",

@@ -18,18 +18,17 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.drag import DragLaw
-from tree_sway.core.model import Places
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.beams.branch_model import BranchModel, TreeBeams
 from tree_sway.core.setup.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
-from tree_sway.core.setup.branch_places import places_of
+from tree_sway.core.setup.branch_places import Places, places_of
 from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree, Reduction
 from tree_sway.core.setup.threads import one_thread
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
 
-CUT_FOR = 15.0
+_CUT_FOR = 15.0
 """Wind in [m/s] for whose rotations branches are cut."""
 
 _LEAST_WIND = 1e-3
@@ -38,7 +37,7 @@ Least wind at a segment over that at the anemometer: one that no wind reaches is
 millionth of the pressure, so that a branch at or below the ground has shapes under a load.
 """
 
-LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
+_LIMP_TURN, _LIMP_SHARE, _MOST_LIMP = 1.0, 0.1, 2000
 """
 Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
 limp; the share of all branches, by length, that makes a limp tree; and its largest number of
@@ -46,7 +45,7 @@ segments, for a step takes time in proportion. Of trees that were tried those wh
 whip have a share of 0.25 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
 """
 
-WHIP_TURN, MOST_WHIPPY = 0.5, 500
+_WHIP_TURN, _MOST_WHIPPY = 0.5, 500
 """
 The same rotation [rad] for bare trees of few segments, and their number: young whips and rods,
 which bend as a whole, have a share of 0.30 to 0.59 beyond it, and a step of theirs takes little
@@ -138,7 +137,7 @@ class TreeReducer:
     @cached_property
     def turns(self) -> Floats:
         """Rotation [rad] of each branch in the wind that branches are cut for, (b,)."""
-        dynamic_pressure = self._drag_law.dynamic_pressure(CUT_FOR)
+        dynamic_pressure = self._drag_law.dynamic_pressure(_CUT_FOR)
         return np.asarray(dynamic_pressure * self._beams.turns(self._species.modulus))
 
     @cached_property
@@ -146,14 +145,14 @@ class TreeReducer:
         """Whether so much of the tree turns so far that a table of loads is too coarse."""
         length = self._tree.branch_length
         turned = float(length[self._is_far].sum())
-        is_small = self._tree.n_segments <= MOST_LIMP
-        return is_small and turned > LIMP_SHARE * float(length.sum())
+        is_small = self._tree.n_segments <= _MOST_LIMP
+        return is_small and turned > _LIMP_SHARE * float(length.sum())
 
     @property
     def _is_far(self) -> NDArray[np.bool_]:
         """Whether each branch turns so far that it is limp, (b,)."""
-        may_whip = self._tree.n_segments <= MOST_WHIPPY and not self._settings.in_leaf
-        return np.asarray(self.turns > (WHIP_TURN if may_whip else LIMP_TURN))
+        may_whip = self._tree.n_segments <= _MOST_WHIPPY and not self._settings.in_leaf
+        return np.asarray(self.turns > (_WHIP_TURN if may_whip else _LIMP_TURN))
 
     @property
     def _is_bent(self) -> NDArray[np.bool_]:

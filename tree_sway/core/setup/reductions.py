@@ -25,9 +25,9 @@ from tree_sway.core.tree import Tree
 if TYPE_CHECKING:
     from tree_sway.core.setup.modes import Modes
     from tree_sway.core.setup.reduced_tree import ReducedTree, TreeReducer
-    from tree_sway.core.setup.static_responses import WindMoments
+    from tree_sway.core.setup.wind_moments import WindMoments
 
-FASTEST_LIMP, LEAST_SPAN = 60.0, 4.0
+FASTEST_LIMP, _LEAST_SPAN = 60.0, 4.0
 """
 Circular frequency [rad/s] at rest below which a limp tree keeps a coordinate: it turns by 1 rad
 in a frame. And the same over the slowest, below which it keeps each. Faster coordinates are short
@@ -128,7 +128,7 @@ class TreeReductions:
         """Leave out the modes of a limp tree that are too fast."""
         if not self.is_limp:
             return modes
-        return modes.slower_than(max(FASTEST_LIMP, LEAST_SPAN * float(modes.circular.min())))
+        return modes.slower_than(max(FASTEST_LIMP, _LEAST_SPAN * float(modes.circular.min())))
 
     @property
     def _candidates(self) -> Modes:
@@ -174,7 +174,7 @@ class TreeReductions:
     @cached_property
     def wind_moments(self) -> WindMoments:
         """Return the loads of the tree that is reduced with its subtrees."""
-        from tree_sway.core.setup.static_responses import WindMoments
+        from tree_sway.core.setup.wind_moments import WindMoments
 
         return WindMoments(self.with_subtrees.branches)
 

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Static response of a tree to steady winds: the loads on it, and its equilibria.
+Static response of a tree to steady winds: its equilibria.
 
 A wind loads every branch, and motion outside of the span of the coordinates is lost. So the
 responses to winds of all directions and speeds are found once, and the coordinates are made of
@@ -15,48 +15,15 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import drag_density, DragLaw
-from tree_sway.core.model import BranchLoads
-from tree_sway.core.setup.load_derivatives import LoadSlopes
+from tree_sway.core.setup.wind_moments import WindMoments
 
 _SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
 _TURNS = 6
 _FARTHEST = 1.0
 """Largest key rotation of a pose in [rad]."""
-
-
-class WindMoments:
-    """Moments (N,) of uniform winds on the coordinates of a tree that bends and moves."""
-
-    def __init__(self, branches: Records) -> None:
-        """Read the records of the branches, parents before their children."""
-        self.branches = branches
-        self._loads = BranchLoads(branches)
-        self.n = self._loads.n
-
-    def __call__(self, x: Floats, v: Floats, wind: Floats) -> Floats:
-        """Moments by a wind (3,) of 1 kg/m^3 on a tree at x that moves at v, both (N,)."""
-        return self._loads.moments(x[None], v[None], wind[None])[0]
-
-    def at_poses(self, poses: Floats, winds: Floats) -> Floats:
-        """Moments (k, N) by winds (k, 3) as in a call, each on the tree held in a pose (k, N)."""
-        return self._loads.moments(poses, None, winds)
-
-    def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
-        """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
-        self(x, v, wind)
-        return np.asarray(self._loads.loads['force'])
-
-    def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
-        """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
-        rest = np.zeros((len(winds), self.n))
-        return np.asarray(self.at_poses(rest, winds) @ shapes)
-
-    def slopes(self, shapes: Floats) -> LoadSlopes:
-        """Return the slopes of the loads on some shapes (N, m)."""
-        return LoadSlopes(self._loads, shapes)
 
 
 def static_responses(

@@ -34,7 +34,7 @@ LEFT_OUT = 0.0015
 WEIGHTS = {3.0: 2.5, 8.0: 1.2, 13.0: 1.0, 20.0: 1.0, 36.0: 0.7}
 """Weight of the responses in each steady wind [m/s]; all have the same size otherwise."""
 
-REACH = 13.0
+_REACH = 13.0
 """Steady wind [m/s] whose gusts set the scale of the coordinates, and the error."""
 
 _STEADY = 4.0
@@ -84,8 +84,8 @@ def stream_arrays(
     found = {each.speed: each for each in responses}
     motions = np.hstack([_weighted(inner, found[speed]) for speed in WEIGHTS])
     basis, projection = principal_components(inner, motions)
-    scale = _scale(branches, _largest(found[REACH], projection))
-    poses = _gusty_poses(found[REACH])
+    scale = _scale(branches, _largest(found[_REACH], projection))
+    poses = _gusty_poses(found[_REACH])
     missed = _missed(poses, basis, projection, scale)
     tips, _ = np.split(moved, [3 * len(branches)])
     error = _largest_motion(tips @ missed)

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.rotation import CYCLES
 
-Numbers: TypeAlias = NDArray[Any]
+_Numbers: TypeAlias = NDArray[Any]
 """Real or complex numbers."""
 
 
-def tip_motion(branches: Records, rotations: Numbers) -> Numbers:
+def tip_motion(branches: Records, rotations: _Numbers) -> _Numbers:
     """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
     bases = base_motion(branches, rotations)
-    return displacement_at(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
+    return _displacement_at(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
@@ -54,25 +54,25 @@ def _of_rows(modes: Floats, branch: np.void) -> Floats:
     return modes[: int(branch['n_coordinates'])]
 
 
-def centre_motion(branches: Records, rotations: Numbers) -> Numbers:
+def centre_motion(branches: Records, rotations: _Numbers) -> _Numbers:
     """Displacement of the load centres of branches by small rotations (N, ...), (b, 3, ...)."""
     bases = base_motion(branches, rotations)
     own = own_motion(branches, 'damping_mode', rotations)
-    return displacement_at(bases, branches['centre']) + own
+    return _displacement_at(bases, branches['centre']) + own
 
 
-def branch_rotations(branches: Records, rotations: Numbers) -> Numbers:
+def branch_rotations(branches: Records, rotations: _Numbers) -> _Numbers:
     """Rotation vectors (b, 3, ...) in [rad] of branches by small rotations (N, ...)."""
     bases = base_motion(branches, rotations)
     return bases[:, 3:] + own_motion(branches, 'load_rotation', rotations)
 
 
-def own_motion(branches: Records, mode: str, rotations: Numbers) -> Numbers:
+def own_motion(branches: Records, mode: str, rotations: _Numbers) -> _Numbers:
     """Sum a field of modes (b, k, d) of branches by their own rotations (N, ...), (b, d, ...)."""
     return _moved(branches, np.arange(len(branches)), branches[mode], rotations)
 
 
-def joint_motion(branches: Records, rotations: Numbers) -> Numbers:
+def _joint_motion(branches: Records, rotations: _Numbers) -> _Numbers:
     """Motion (v, w) of bases about the root by their parents' rotations only, (b, 6, ...)."""
     motion = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
@@ -82,7 +82,7 @@ def joint_motion(branches: Records, rotations: Numbers) -> Numbers:
     return motion
 
 
-def _moved(branches: Records, moving: Ints, modes: Floats, rotations: Numbers) -> Numbers:
+def _moved(branches: Records, moving: Ints, modes: Floats, rotations: _Numbers) -> _Numbers:
     """
     Sum the motion of some bodies by small rotations of the branches that move them.
 
@@ -117,21 +117,21 @@ def _moved(branches: Records, moving: Ints, modes: Floats, rotations: Numbers) -
     return motion.reshape(n_bodies, n_components, *columns)
 
 
-def base_motion(branches: Records, rotations: Numbers) -> Numbers:
+def base_motion(branches: Records, rotations: _Numbers) -> _Numbers:
     """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     parents = branches['parent']
-    return sum_outward(parents, joint_motion(branches, rotations))
+    return sum_outward(parents, _joint_motion(branches, rotations))
 
 
-def sum_outward(parents: Ints, joints: Numbers) -> Numbers:
+def sum_outward(parents: Ints, joints: _Numbers) -> _Numbers:
     """Add the motion of its parent to that of each branch, from the root on, (b, ...)."""
     total = joints.copy()
-    for level in levels_of(parents)[1:]:  # children of the stem are complete
+    for level in _levels_of(parents)[1:]:  # children of the stem are complete
         total[level] += total[parents[level]]
     return total
 
 
-def levels_of(parent: Ints) -> list[Ints]:
+def _levels_of(parent: Ints) -> list[Ints]:
     """Sort the branches into levels by their distance from the stem, without the stem."""
     depth = np.zeros(len(parent), dtype=np.int64)
     for branch, below in enumerate(parent.tolist()):
@@ -141,7 +141,7 @@ def levels_of(parent: Ints) -> list[Ints]:
     return [np.flatnonzero(depth == level) for level in range(1, deepest + 1)]
 
 
-def displacement_at(motion: Numbers, points: Floats) -> Numbers:
+def _displacement_at(motion: _Numbers, points: Floats) -> _Numbers:
     """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
     velocity = motion[:, :3]
     spin = motion[:, 3:]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model import Places
+from tree_sway.core.setup.branch_places import Places
 from tree_sway.core.setup.tree_motion import sum_outward
 from tree_sway.core.tree import Tree
 

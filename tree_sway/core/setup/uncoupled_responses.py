@@ -34,11 +34,11 @@ _STEADY = 4.0
 def basis_of_isolated(model: SwayModel, branches: Records) -> StateBasis:
     """Find the basis in which the motion of isolated branches is streamed."""
     oscillators = model.inertia, model.own_damping, model.stiffness
-    responses = uncoupled_responses(branches, *oscillators, model.drag_law)
+    responses = _uncoupled_responses(branches, *oscillators, model.drag_law)
     return basis_of_responses(branches, *responses)
 
 
-def uncoupled_responses(
+def _uncoupled_responses(
     branches: Records, inertia: Floats, damping: Floats, stiffness: Floats, law: DragLaw
 ) -> tuple[Floats, Floats]:
     """

@@ -18,8 +18,8 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model import Places
 from tree_sway.core.rotation import cross
+from tree_sway.core.setup.branch_places import Places
 from tree_sway.core.setup.turning import turning_of
 from tree_sway.core.tree import Tree
 

@@ -47,7 +47,7 @@ from tree_sway.tables import table_beside
 
 __all__ = ['Species']
 
-CONIFER_DAMPING = 0.08
+_CONIFER_DAMPING = 0.08
 """
 Damping ratio of conifers, and of plants in pots, in leaf beside the drag of the air [-].
 
@@ -66,7 +66,7 @@ def _species(row: dict[str, Any]) -> Species:
     if look['autumn'] == 'none':
         look['autumn'] = None
     if row['habit'] != 'broadleaf':
-        row['damping_in_leaf'] = CONIFER_DAMPING
+        row['damping_in_leaf'] = _CONIFER_DAMPING
     return Species(**row, leaves=leaves, look=Look(**look))
 
 

@@ -20,7 +20,7 @@ from tree_sway.core.tree.parents_first import chain_starts, checked_order, first
 from tree_sway.core.tree.tree import Tree, tree_in_order
 from tree_sway.errors import TreeError
 
-MAX_COORDINATE = 1e8
+_MAX_COORDINATE = 1e8
 """Largest coordinate of a node [m]: no map exceeds it, but files with wrong columns do."""
 
 
@@ -164,7 +164,7 @@ def _check_geometry(
 
 def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
     """Raise a `TreeError` for the first row (n, k) that is not finite or too large."""
-    for index in np.flatnonzero(~(np.abs(rows) <= MAX_COORDINATE).all(axis=1))[:1]:
+    for index in np.flatnonzero(~(np.abs(rows) <= _MAX_COORDINATE).all(axis=1))[:1]:
         what = 'too large for metres' if np.isfinite(rows[index]).all() else 'that is not finite'
         raise TreeError(
             f'a number {what}: {rows[index].tolist()}',

@@ -52,7 +52,7 @@ _CROWN_RATIO = {
 _OF_HABIT = {'conifer': ('spruce', 'sitka', 'douglas_fir'), 'broadleaf': ('birch', 'beech', 'oak')}
 """Species whose means are used for others of a habit."""
 
-BARE_OPACITY = 0.35
+_BARE_OPACITY = 0.35
 """
 Share of the light that a bare broadleaf crown blocks [-], from the side: measured crowns block
 0.16 to 0.48 (Heisler 1986, Urban Ecology 9, 337-359).
@@ -76,9 +76,9 @@ class CrownSize(NamedTuple):
         """
         Diameter times length, summed over all wood of a bare broadleaf crown but its stem [m^2].
 
-        Wood at random in an elliptic outline blocks `BARE_OPACITY` of it (Monsi & Saeki 1953).
+        Wood at random in an elliptic outline blocks `_BARE_OPACITY` of it (Monsi & Saeki 1953).
         """
-        return -math.log(1.0 - BARE_OPACITY) * 0.25 * math.pi * self.width * self.depth
+        return -math.log(1.0 - _BARE_OPACITY) * 0.25 * math.pi * self.width * self.depth
 
 
 def crown_size(species: str, diameter: float, height: float) -> CrownSize | None:

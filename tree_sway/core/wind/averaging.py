@@ -27,7 +27,7 @@ from tree_sway.core.wind.curve import WindCurve
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
 
-BLEND = 0.5
+_BLEND = 0.5
 """
 Longest time in [s] over which the first sample after a dropout is faded in; after a shorter
 dropout it is the length of that.
@@ -205,7 +205,7 @@ class WindAverage:
         self._curve = WindCurve(CAPACITY)
         self._before = before
         self._fade_start = since
-        self._fade_end = since + min(silence, BLEND, self._timeout)
+        self._fade_end = since + min(silence, _BLEND, self._timeout)
         if since > -math.inf:
             self._curve.append(since, before)
         self._curve.append(max(time, self._fade_end), value)

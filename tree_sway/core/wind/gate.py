@@ -31,18 +31,18 @@ from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
 # Codes that sensors send for no reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
 _INTEGER_CODES = 6999.0, 7999.0, 9999.0, 32767.0, 32768.0, 99999.0
-SENTINELS = (327.67, 327.68, 999.0, 999.9, 999.99, *_INTEGER_CODES)
+_SENTINELS = (327.67, 327.68, 999.0, 999.9, 999.99, *_INTEGER_CODES)
 
 SECOND = 1_000_000_000
 """One second in [ns]."""
 LARGEST_LEAD = SECOND // 2
 """Largest lead of a stamp over its arrival in [ns], for a clock that is ahead."""
-LEAD_GROWTH = 60 * SECOND // 1000
+_LEAD_GROWTH = 60 * SECOND // 1000
 """Largest increase of the lead in [ns] from one sample to the next."""
 LONGEST_TRANSPORT = 2 * SECOND
 """Age in [ns] from which a stamp is refused as that of a different clock, or of a recording."""
 _NEVER = -(2**62)
-CLOCK_RESET = SECOND
+_CLOCK_RESET = SECOND
 """Backward step in [ns] from which the clock was set back (a bag that loops)."""
 
 JUMP_FLOOR = 1.0
@@ -260,7 +260,7 @@ class WindGate:
     def _time_of(self, stamp: int, given: int | None, lead: int, lag: int) -> int:
         """Return the stamp if it is plausible, or else the time to use instead."""
         arrival = stamp if given is None else given
-        if arrival < self._arrival - CLOCK_RESET:
+        if arrival < self._arrival - _CLOCK_RESET:
             self.counts.clock_back += 1
             self.reset()
         fault = self._fault(stamp, arrival, lead, lag)
@@ -278,7 +278,7 @@ class WindGate:
         """Return why a stamp is refused, by the name of its count; empty if it is not."""
         if stamp <= 0 < arrival:
             return 'zero_stamp'
-        ahead = min(max(self._time - self._arrival, 0) + LEAD_GROWTH, LARGEST_LEAD)
+        ahead = min(max(self._time - self._arrival, 0) + _LEAD_GROWTH, LARGEST_LEAD)
         if stamp > arrival + max(lead, ahead):
             return 'future_stamp'
         if stamp < arrival - LONGEST_TRANSPORT - lag:
@@ -290,7 +290,7 @@ class WindGate:
         if not is_wind(x, y, z, self.max_speed):
             if not all(map(math.isfinite, (x, y, z))):
                 return 'not_finite'
-            is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
+            is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in _SENTINELS)
             return 'sentinel' if is_code else 'too_fast'
         since = 1e-9 * (time - self._good_time)
         # While a new level fades in, its end is a return to the previous level.

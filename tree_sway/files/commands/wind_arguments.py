@@ -24,12 +24,12 @@ from tree_sway.files.wind import read_wind, WindRecord
 from tree_sway.parameters import SWAY
 from tree_sway.simulation import RecordedWind, SimulatedWind
 
-USUAL_SPEED = 6.0
+_USUAL_SPEED = 6.0
 """Mean speed of the simulated wind where none is given [m/s]."""
 
 
 def add_wind_arguments(
-    parser: argparse.ArgumentParser, record: str = '', speed_of: str = f'{USUAL_SPEED:g}'
+    parser: argparse.ArgumentParser, record: str = '', speed_of: str = f'{_USUAL_SPEED:g}'
 ) -> None:
     """
     Add a wind record, and the speed of a simulated one.
@@ -82,7 +82,7 @@ def distance_settings(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def simulated_speed(arguments: argparse.Namespace, usual: float = USUAL_SPEED) -> float:
+def simulated_speed(arguments: argparse.Namespace, usual: float = _USUAL_SPEED) -> float:
     """Return the mean speed of the simulated wind in [m/s]."""
     return usual if arguments.speed is None else float(arguments.speed)
 
@@ -125,7 +125,7 @@ def add_sway_arguments(
     parser: argparse.ArgumentParser,
     record: str = '',
     leaves: str | None = 'on',
-    speed_of: str = f'{USUAL_SPEED:g}',
+    speed_of: str = f'{_USUAL_SPEED:g}',
 ) -> None:
     """Add a scene, a wind, a model and leaves, which are drawn by default."""
     add_tree_arguments(parser, forests=True, default='benjamina')

@@ -16,7 +16,7 @@ from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.extras import cure_of_missing
 from tree_sway.files.atomic_file import whole_file, write_text_whole
 
-TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
+_TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
 
 
 def refuse_no_table(path: Path) -> None:
@@ -26,14 +26,14 @@ def refuse_no_table(path: Path) -> None:
     Raises
     ------
     FormatError
-        A suffix that is not one of `TABLE_SUFFIXES`.
+        A suffix that is not one of `_TABLE_SUFFIXES`.
     MissingDependencyError
         Parquet without pyarrow.
 
     """
     suffix = path.suffix.lower()
-    if suffix not in TABLE_SUFFIXES:
-        cure = f'end it with one of: {", ".join(TABLE_SUFFIXES)}'
+    if suffix not in _TABLE_SUFFIXES:
+        cure = f'end it with one of: {", ".join(_TABLE_SUFFIXES)}'
         raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
     if suffix == '.parquet' and find_spec('pyarrow') is None:
         cure = f'{cure_of_missing("pyarrow")}; or end the name with .csv'

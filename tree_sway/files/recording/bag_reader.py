@@ -73,7 +73,7 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
         what = 'a record of wind and motion, not a bag'
         cure = 'give a table of it, wind.csv or motion_1.csv; lab twin takes all of it'
         raise FormatError(what, where=str(path), cure=cure)
-    arrays = bounded_arrays(messages_of_bag, path, *types, kind='a bag', cure=_CURE)
+    arrays = bounded_arrays(_messages_of_bag, path, *types, kind='a bag', cure=_CURE)
     topics = arrays['topics'].tolist()
     content = BagContent(dict(topics), {topic: [] for topic, kind in topics if kind in types})
     data = arrays['data'].tobytes()
@@ -92,7 +92,7 @@ def header_of(data: bytes) -> tuple[str, int, str, int]:
     return order, second * 1_000_000_000 + nanosecond, frame, BODY - (-(12 + size) // 8) * 8
 
 
-def messages_of_bag(path: str, *types: str) -> Arrays:
+def _messages_of_bag(path: str, *types: str) -> Arrays:
     """Yield topics and their types, (t, 2), and of each message topic, stamp, size and bytes."""
     from rosbags.rosbag2 import Reader
 

@@ -18,16 +18,16 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree import Tree
 
-TURN = np.deg2rad(15.0)
+_TURN = np.deg2rad(15.0)
 """Largest rotation of one key segment in [rad]."""
 
-BOW = np.deg2rad(15.0)
+_BOW = np.deg2rad(15.0)
 """Largest angle between the ends of one key segment at rest in [rad]."""
 
-MOST_PIECES = 3
+_MOST_PIECES = 3
 """Largest number of pieces of a branch that rotates far; more add little."""
 
-CARRIED, MOST_CARRYING = 6, 6
+CARRIED, _MOST_CARRYING = 6, 6
 """
 Largest number of children of one key segment, and of pieces for them: limbs that swing against
 each other bend a stem between their bases, by more shapes than one key segment has.
@@ -75,10 +75,10 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     tip = tree.direction[tree.branch_first[1:] - 1]
     cosine = np.einsum('bk,bk->b', base, tip)
     bow = np.arccos(np.clip(cosine, -1.0, 1.0))
-    for_turn = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
-    for_turn = np.minimum(for_turn, MOST_PIECES)
+    for_turn = np.nan_to_num(np.maximum(turn / _TURN, bow / _BOW), nan=1.0)
+    for_turn = np.minimum(for_turn, _MOST_PIECES)
     n_children = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches)
-    for_children = np.minimum(n_children / CARRIED, MOST_CARRYING)
+    for_children = np.minimum(n_children / CARRIED, _MOST_CARRYING)
     wanted = np.ceil(np.maximum(for_turn, for_children)).astype(np.int64)
     most = np.maximum(np.diff(tree.branch_first) // 2, 1)
     return np.asarray(np.clip(wanted, 1, most))

@@ -108,7 +108,7 @@ def shape_fields(
     return drawn, tuple(fields)
 
 
-def inertial_moment(
+def _inertial_moment(
     beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, field: RotationField | None
 ) -> Floats:
     """
@@ -228,7 +228,7 @@ def _further(
 
     def responses(fields: Iterable[RotationField | None]) -> Iterator[Floats]:
         for field in fields:
-            moment = inertial_moment(beam, mass, subtrees, field)
+            moment = _inertial_moment(beam, mass, subtrees, field)
             yield beam.curvature_in_space(moment[:, :, None], shear_ratio)[:, :, 0]
 
     basis = EnergyBasis(beam, shear_ratio)

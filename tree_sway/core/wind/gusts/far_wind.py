@@ -41,7 +41,7 @@ from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.native import Address, contiguous, LIBRARY, NativeFarWind
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
-DECAYS = np.array([3.0, 10.0, 10.0])
+_DECAYS = np.array([3.0, 10.0, 10.0])
 """Davenport's C along the wind, across it and up [-]."""
 
 LENGTHS = np.array([1.0, 4.0, 16.0, 64.0, 256.0])
@@ -193,7 +193,7 @@ def _coherences(
         c, s = (1.0, 0.0) if bearing is None else (math.cos(angle), math.sin(angle))
         away = places - mast
         x, y = away[:, 0] * c + away[:, 1] * s, away[:, 1] * c - away[:, 0] * s
-        apart = np.linalg.norm(np.stack([x, y, away[:, 2]], axis=1) * DECAYS, axis=1)
+        apart = np.linalg.norm(np.stack([x, y, away[:, 2]], axis=1) * _DECAYS, axis=1)
         found.append(np.exp(-wavenumbers[:, None] * (apart + 2j * np.pi * x)))
     return [np.mean(found, axis=0)] if bearing is None else found
 

@@ -31,7 +31,7 @@ Mean speed in [m/s] below which delays decrease to 0 with the wind.
 
 """
 
-SPACING = 0.05
+_SPACING = 0.05
 """Time in [s] over which `GustHistory.recent` takes means."""
 
 
@@ -140,7 +140,7 @@ class GustHistory:
         """
         Wind at any place [m] at the end of the last step in [m/s], (3,); from any thread.
 
-        It is the mean over the last `SPACING`, without the slow change of delays.
+        It is the mean over the last `_SPACING`, without the slow change of delays.
         """
         rows, mean, _, first = self._copied()
         if len(rows) < 2:
@@ -149,7 +149,7 @@ class GustHistory:
         along = np.array([[x, y]]) - self._origin
         delay = float(_delays(along, east, north, self.convection_ratio)[0]) - first
         now = rows[-1, 0] - min(max(delay, 0.0), self._memory)
-        span = min(SPACING, float(rows[-1, 0] - rows[0, 0]))
+        span = min(_SPACING, float(rows[-1, 0] - rows[0, 0]))
         return (_run_until(rows, now) - _run_until(rows, now - span)) / span
 
     def recent(self, until: float) -> dict[str, list[float]]:
@@ -157,13 +157,13 @@ class GustHistory:
         Return the state for a copy to continue from, a step or two ago; from any thread.
 
         ``mean`` is the mean wind with its span, ``delay`` that of each place, ``wind`` the means
-        over each `SPACING` of the last minute, x, y, z of one after the other.
+        over each `_SPACING` of the last minute, x, y, z of one after the other.
         """
         rows, mean, delay, _ = self._copied()
-        count = min(self._memory, until - float(rows[0, 0])) // SPACING
-        times = until + SPACING * np.arange(-count, 1.0)
+        count = min(self._memory, until - float(rows[0, 0])) // _SPACING
+        times = until + _SPACING * np.arange(-count, 1.0)
         runs = [np.interp(times, rows[:, 0], rows[:, k]) for k in (1, 2, 3)]
-        wind = np.diff(runs).T.ravel() / SPACING
+        wind = np.diff(runs).T.ravel() / _SPACING
         found = {'mean': mean, 'delay': delay, 'wind': wind}
         return {name: each.round(4).tolist() for name, each in found.items()}
 
@@ -189,7 +189,7 @@ class GustHistory:
         self._n_changes += 1
         none = np.zeros(0)
         for row in rows:
-            self._history.add(row, SPACING, none, none, none)
+            self._history.add(row, _SPACING, none, none, none)
         self._mean[:] = means
         self.delay[:] = delays
         self._n_changes += 1

@@ -18,7 +18,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY, Turbulence
 
-RATE = 10.0
+_RATE = 10.0
 """Largest rate of the wind in [Hz]."""
 LEAST_INTERVAL = 20.0
 """Interval [s] from which samples are means; at shorter ones they are the wind itself."""
@@ -81,7 +81,7 @@ def turbulence_about_means(
 
     """
     duration = float(time[-1] - time[0])
-    rate = min(RATE, _MOST / duration)
+    rate = min(_RATE, _MOST / duration)
     fine = time[0] + np.arange(math.floor(duration * rate) + 1) / rate
     level = np.hypot(mean[:, 0], mean[:, 1])
     deviation = usual_deviation(level)

@@ -6,7 +6,7 @@ Turbulent wind at one point: records drawn from Kaimal's spectra (IEC 61400-1:20
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
 Deodatis 1991), the usual practice of wind engineering: every record has the exact spectrum at each
 line and the exact variance, and tends to a Gaussian process. Gusts come from above and lulls from
-below: u and w are correlated by `STRESS`, most in slow gusts, as in the cospectrum of Kaimal &
+below: u and w are correlated by `_STRESS`, most in slow gusts, as in the cospectrum of Kaimal &
 Finnigan; v is independent of both.
 
 A sampled record has no frequencies above half its rate, nor below one over its period. That
@@ -36,7 +36,7 @@ _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
 SCALE_RATIOS = np.array([8.1, 2.7, 0.66])
 """Integral scales of u, v, w over Lambda1 [-]."""
 
-STRESS = -1.0 / 3.0
+_STRESS = -1.0 / 3.0
 """
 Correlation of u and w in [-]: -u*^2 over their deviations, 2.4 and 1.25 times u*, over level
 ground (Kaimal & Finnigan 1994, chapter 1).
@@ -129,11 +129,11 @@ class Turbulence:
         Coherency of u and w on lines of these powers (n, 3), (n,), less its sign.
 
         It follows the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter
-        2), up to 1, with the sum of `STRESS`.
+        2), up to 1, with the sum of `_STRESS`.
         """
         cospectrum = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
         both = np.sqrt(power[:, 0] * power[:, 2])
-        wanted = -STRESS * float(np.prod(self.deviations[[0, 2]]))
+        wanted = -_STRESS * float(np.prod(self.deviations[[0, 2]]))
         if not wanted > 0.0:
             return np.zeros(len(frequency))
         ratio = np.divide(cospectrum, both, out=np.zeros_like(both), where=both > 0.0)

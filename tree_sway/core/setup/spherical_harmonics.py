@@ -10,10 +10,10 @@ scaled to a mean square of 1 over the sphere.
 
 from __future__ import annotations
 
-from tree_sway.core.arrays import Floats
+import numpy as np
 
-N_HARMONICS = 21
-"""Number of functions up to the highest degree, 5."""
+from tree_sway.core.arrays import Floats
+from tree_sway.core.model import N_HARMONICS
 
 # Scales by degree and order.
 _SCALE_1 = 3.0**0.5
@@ -29,13 +29,15 @@ _SCALE_54 = 1.5 * (385.0 / 16.0) ** 0.5
 _SCALE_55 = 3.0 * (77.0 / 128.0) ** 0.5
 
 
-def fill_harmonics(x: Floats, y: Floats, z: Floats, out: Floats) -> None:
+def harmonics_at(directions: Floats) -> Floats:
     """
-    Write the functions (`N_HARMONICS`, k) at directions, unit vectors (k,).
+    Return the functions at directions, unit vectors (k, 3), as (k, `N_HARMONICS`).
 
-    Those of degree n are ``out[c - n] .. out[c + n]`` about a centre c: of order m after the
+    Those of degree n are columns ``c - n .. c + n`` about a centre c: of order m after the
     centre with the cosine of the azimuth, before it with the sine.
     """
+    out = np.zeros((N_HARMONICS, len(directions)))
+    x, y, z = directions.T
     # Cosine and sine of m times the azimuth, times the m-th power of the horizontal part.
     cosine_2 = x * x - y * y
     sine_2 = 2.0 * x * y
@@ -64,6 +66,7 @@ def fill_harmonics(x: Floats, y: Floats, z: Floats, out: Floats) -> None:
     _put_pair(out, degree_5, 3, _SCALE_53 * (9.0 * zz - 1.0), cosine_3, sine_3)
     _put_pair(out, degree_5, 4, _SCALE_54 * z, cosine_4, sine_4)
     _put_pair(out, degree_5, 5, _SCALE_55, cosine_5, sine_5)
+    return out.T
 
 
 def _put_pair(

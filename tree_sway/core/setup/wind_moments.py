@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Loads of winds on the branches of a tree that bends, by the native core."""
+"""
+Loads of uniform winds on a tree that bends and moves, by the native core.
+
+``native/branch_loads.cpp`` has the law. A load is a moment on each key rotation; by virtual work,
+the load on a shape of motion is the power of these moments on it.
+"""
 
 from __future__ import annotations
 
@@ -47,9 +52,9 @@ class Branches(ctypes.Structure):
     )
 
 
-class BranchLoads:
+class WindMoments:
     """
-    Loads of winds on the branches of a tree.
+    Moments of winds on the key rotations of a tree.
 
     Parameters
     ----------
@@ -63,19 +68,23 @@ class BranchLoads:
         own['coupling'] = own['coupling'] - cross_matrix(own['base'])
         self._arrays = own
         at = {name: address(array) for name, array in own.items()}
-        count, keys = own['twist'].shape[:2]
-        self._branches = Branches(branches=count, keys=keys, **at)
-        self._scratch = np.empty(256 * count + 8)
+        self.n_branches, keys = own['twist'].shape[:2]
+        self._branches = Branches(branches=self.n_branches, keys=keys, **at)
+        self._scratch = np.empty(256 * self.n_branches + 8)
         self.n = int(own['n_coordinates'].sum())
         """Number of key rotations, N."""
-        self.loads: Records = np.zeros(count, BRANCH_LOAD)
+        self.loads: Records = np.zeros(self.n_branches, BRANCH_LOAD)
         """Records of `BranchLoad` of the last pose, (b,)."""
 
-    def moments(self, poses: Floats, rates: Floats | None, winds: Floats) -> Floats:
+    def __call__(self, x: Floats, v: Floats, wind: Floats) -> Floats:
+        """Moments (N,) by a wind (3,) of 1 kg/m^3 on a tree at x that moves at v, both (N,)."""
+        return self.at_poses(x[None], wind[None], v[None])[0]
+
+    def at_poses(self, poses: Floats, winds: Floats, rates: Floats | None = None) -> Floats:
         """
         Find the moments of winds [m/s], (p, 3), of 1 kg/m^3 on the key rotations, (p, N).
 
-        The tree is in poses [rad], (p, N), and moves at rates [rad/s], (p, N), or is still.
+        The tree is in poses [rad], (p, N), and moves at rates [rad/s], (p, N), or is held.
         """
         x, wind = (np.ascontiguousarray(each, dtype=np.float64) for each in (poses, winds))
         v = None if rates is None else np.ascontiguousarray(rates, dtype=np.float64)
@@ -87,6 +96,16 @@ class BranchLoads:
             len(wind), address(self.loads), address(out),
         )  # fmt: skip
         return out
+
+    def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
+        """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
+        rest = np.zeros((len(winds), self.n))
+        return np.asarray(self.at_poses(rest, winds) @ shapes)
+
+    def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
+        """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
+        self(x, v, wind)
+        return np.asarray(self.loads['force'])
 
     def find_slopes(self, shapes: Floats, turning: Floats, damping: Floats) -> None:
         """

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from tree_sway.core.drag.spherical_harmonics import N_HARMONICS
-from tree_sway.core.setup.load_table import harmonics_at
+from tree_sway.core.model.records import N_HARMONICS
+from tree_sway.core.setup.spherical_harmonics import harmonics_at
 
 
 def sphere():
