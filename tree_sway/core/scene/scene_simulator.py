@@ -138,6 +138,11 @@ class SceneSimulator:
         )
 
     @property
+    def wind_told(self) -> str:
+        """By which gusts the trees sway, as `Settings.wind_told`; those of the first tree."""
+        return self._scene.settings_of(0, self.settings).wind_told
+
+    @property
     def name(self) -> str:
         """Name of the scene."""
         return self._scene.name
