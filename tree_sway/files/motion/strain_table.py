@@ -63,9 +63,14 @@ def read_strain(path: Path) -> StrainRecord:
     """
     lines = [line for line in read_table_lines(path) if line.strip() and line[0] != '#']
     first = lines[0] if lines else ''
-    separator = next((each for each in '\t;,' if each in first), ' ')
-    head = split_row(first, separator)
-    rows = [split_row(line, separator) for line in lines[len(head) < 2 or finite(head[1]) is None:]]
+    separator = next((each for each in '\t;,' if each in first), '')
+
+    def cells(line: str) -> list[str]:
+        return [*split_row(line, separator)] if separator else line.split()
+
+    head = cells(first)
+    has_names = len(head) < 2 or finite(head[1]) is None
+    rows = [cells(line) for line in lines[has_names:]]
     size = max((len(row) for row in rows), default=0)
     where = str(path)
     if size < 3 or not size % 2:
@@ -73,11 +78,13 @@ def read_strain(path: Path) -> StrainRecord:
         cure = 'give the time, then two columns for each place: north side, east side'
         raise FormatError(what, where=where, cure=cure)
     times = times_of([row[0] for row in rows])
-    if not np.isfinite(times.seconds).any():
-        raise FormatError(f"no time in '{rows[0][0]}'", where=where, cure='put it first')
     numbers = [[finite(cell) for cell in row[1:]] + [None] * (size - len(row)) for row in rows]
     values = np.array(numbers, dtype=float) * _factor(head, where)
-    if (largest := float(np.nanquantile(np.abs(values - np.nanmedian(values, 0)), 0.99))) > _BROKEN:
+    if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
+        what = f"no time in '{rows[0][0]}', or a column without numbers"
+        raise FormatError(what, where=where, cure='put the time first, and leave that pair out')
+    away = np.abs(values - np.nanmedian(values, axis=0))
+    if (largest := float(np.nanquantile(away, 0.99))) > _BROKEN:
         what = f'changes of {largest:.3g} are no strain of wood'
         cure = 'give strain, or its unit in the header, as north [microstrain]; calibrate voltages'
         raise FormatError(what, where=where, cure=cure)
