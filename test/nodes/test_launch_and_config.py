@@ -173,6 +173,8 @@ def test_an_argument_is_checked_as_the_parameter_that_it_is(overrides_of):
     assert overrides_of('solver', **given) == {**given, 'wind_delay': 0.5}
     assert overrides_of('wind', **given, mean_speed='9') == {}
     assert overrides_of('anemometer', mean_speed='9') == {'mean_speed': 9.0}
+    apart = {'anemometer_distance': '12', 'anemometer_bearing': '4.7', 'gust_seed': '7'}
+    assert overrides_of('solver', **apart) == {name: float(text) for name, text in apart.items()}
     assert overrides_of('player', shard_count='3') == {'subscribers': 3}
     with pytest.raises(ValueError, match=r"argument 'wind_delay': 3 is out of range; give 0 .. 2"):
         overrides_of('solver', wind_delay='3')

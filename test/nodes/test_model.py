@@ -14,6 +14,7 @@ from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
 from rcl_interfaces.srv import SetParameters  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 
+from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
     CAMERA,
     SEGMENT_POSES,
@@ -145,3 +146,21 @@ def test_a_camera_nowhere_is_refused_and_counted(compose, observer, statuses, tr
     n = len(frames)
     observer.until(lambda: len(frames) > n + 10, 'frames that go on')
     assert nodes['solver'].simulator.tolerance == 0.005
+
+
+def test_a_tree_apart_from_its_anemometer_says_which_gusts_it_meets(
+    compose, observer, statuses, tree_file
+):
+    apart = {'anemometer_distance': 12.0, 'anemometer_bearing': 4.7124, 'gust_seed': 3}
+    solver = compose(solver={'tree': tree_file, **apart})['solver']
+    settings = solver.simulator.settings
+    assert (settings.gusts, settings.gust_seed) == ('sample', 3)
+    assert settings.anemometer_bearing == 4.7124
+    observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
+    told = values_of(statuses('solver: model'))['gusts']
+    assert told.startswith('a sample, seed 3; anemometer 12 m away at 270 degrees')
+
+
+def test_a_bearing_below_zero_is_refused_unless_it_means_unknown(compose, tree_file):
+    with pytest.raises(ParameterError, match=r'anemometer_bearing: -0.5 is below 0; give 5.783'):
+        compose(solver={'tree': tree_file, 'anemometer_bearing': -0.5})

@@ -624,7 +624,7 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
              'residual': 0.251, 'notes': ['acceleration in g']},
             {'name': 'limb at b12:0.5', 'in_use': False, 'problem': 'silent for 7 s'}]},
          'phyphox at 3.2: followed, 100 Hz, residual 0.25; acceleration in g\n'
-         'limb at b12:0.5: silent for 7 s\nThe wind alone explains 62 % of the motion'),
+         'limb at b12:0.5: silent for 7 s\nMotion: 62 % by the wind alone, 38 % by sensors'),
         ({'learned': {'frequency': 0.6627, 'hours': 0.447}, 'band': [-0.0123, 0.02], 'sensors': [
             {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
              'residual': 0.251}]},

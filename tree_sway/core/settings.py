@@ -38,6 +38,9 @@ STIFFEST = 1e7
 _ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
 """Choices of branches with further shapes."""
 
+MOST_SEED = 2**31 - 1
+"""Largest seed of a sample of gusts."""
+
 _RANGES = {
     'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', False),
     'volume_damping': (0.0, 1e9, 'N m s/rad/m^3', True),
@@ -46,7 +49,7 @@ _RANGES = {
     'crown_coherence': (0.0, 1.0, '', False),
     'anemometer_distance': (0.0, 1000.0, 'm', False),
     'anemometer_bearing': (-1e3, 1e3, 'rad', False),
-    'gust_seed': (0, 2**31, '', False),
+    'gust_seed': (0, MOST_SEED, '', False),
     'root_stiffness': (0.0, math.inf, 'N m/rad', True),
     'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
 }
@@ -150,6 +153,17 @@ class Settings:
     def is_far(self) -> bool:
         """Whether the tree stands apart from its anemometer (`far_wind`)."""
         return self.anemometer_distance > 0.0 and self.gusts != 'measured'
+
+    @property
+    def wind_told(self) -> str:
+        """By which gusts the tree sways, and where its anemometer is taken to stand."""
+        if self.anemometer_distance <= 0.0:
+            return 'as measured; the anemometer is taken to stand at the tree (its distance is 0)'
+        where = f'anemometer {self.anemometer_distance:g} m away'
+        if self.anemometer_bearing is not None:
+            where += f' at {math.degrees(self.anemometer_bearing) % 360.0:.0f} degrees'
+        kinds = 'the expected wind', f'a sample, seed {self.gust_seed}', 'as measured'
+        return f'{kinds[GUSTS.index(self.gusts)]}; {where}'
 
     @property
     def has_limb_winds(self) -> bool:

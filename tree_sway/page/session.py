@@ -70,6 +70,8 @@ class Choices:
         Time of the year of a tree that is grown, in months from 1: `leaf_share`.
     sensor_at
         Place of the motion sensor on the tree, as `place_on` takes it; as it began if empty.
+    gusts, anemometer_distance
+        As in `Settings`: which gusts a tree meets, and how far its anemometer stands in [m].
 
     """
 
@@ -82,6 +84,8 @@ class Choices:
     individual: str = '0'
     month: float = SUMMER
     sensor_at: str = ''
+    gusts: str = 'sample'
+    anemometer_distance: float = 0.0
 
     @property
     def is_grown(self) -> bool:
@@ -315,9 +319,9 @@ class Session:
             A stand as glTF, a model without a table as a page.
 
         """
+        if suffix == 'html':  # such a page has one wind for each tree
+            return page_of_scene(self._build(replace(self.choices, gusts='measured'))).encode()
         simulator = self._build(self.choices)
-        if suffix == 'html':
-            return page_of_scene(simulator).encode()
         if isinstance(simulator, SceneSimulator):
             raise ParameterError('a stand as glTF', where='page', cure='take .html')
         return morphing_tree(simulator, SceneState(simulator, _LEAVES).leaves[0]).glb()

@@ -25,6 +25,8 @@ def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
         model = kind.simulator
         if model.settings.has_limb_winds:
             what = 'a crown whose limbs meet gusts one after another has no table to solve it by'
+            if model.settings.is_far:
+                return ParameterError(what, where='gusts', cure='set them to measured')
             return ParameterError(what, where='crown_coherence', cure='set it to 1')
         if isinstance(model.banks[0].oscillators, TableOscillators):
             continue

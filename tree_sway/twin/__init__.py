@@ -32,8 +32,11 @@ if TYPE_CHECKING:
     from tree_sway.twin.observed_tree import ObservedTree as ObservedTree
     from tree_sway.twin.scene_with_sensors import observed_scene as observed_scene
     from tree_sway.twin.sensor_advice import advised_places as advised_places
+    from tree_sway.twin.sensor_place import as_orientation as as_orientation
+    from tree_sway.twin.sensor_place import bend_at as bend_at
     from tree_sway.twin.sensor_place import place_on as place_on
     from tree_sway.twin.sensor_place import SensorPlace as SensorPlace
+    from tree_sway.twin.sensor_place import strain_of as strain_of
     from tree_sway.twin.sensor_report import sensor_reports as sensor_reports
     from tree_sway.twin.smoothed_motion import LATE_STEPS as LATE_STEPS
     from tree_sway.twin.tree_fit import TreeFit as TreeFit

@@ -264,6 +264,9 @@ def _mounted(
             _azimuth(scaled, model, each, measures) @ each
             for each in (level, _UPSIDE_DOWN @ level)
         ]
+        if facing is not None:
+            both = level, _UPSIDE_DOWN @ level
+            turns = [_about_up(facing - _faced(each)) @ each for each in both]
     elif measures[0] and has_gravity:
         felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
         upright = turn_onto(scaled[:, :3].mean(axis=0), felt)

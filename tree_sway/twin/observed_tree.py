@@ -139,7 +139,7 @@ class ObservedTree(SwaySimulator):
         cache: ModelCache | None = PREPARED,
         **changes: Any,
     ) -> None:
-        chosen = settings_with(settings, changes)
+        chosen = self._chosen = settings_with(settings, changes)
         # Apart from its anemometer, the wind of a crown is the one expected there (`far_wind`).
         usual = 1.0 if chosen.is_far else USUAL_COHERENCE
         coherence = min(chosen.crown_coherence, usual)
@@ -197,6 +197,12 @@ class ObservedTree(SwaySimulator):
         """What sensors told in earlier runs, in the species already; None without."""
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
+
+    @property
+    def wind_told(self) -> str:
+        """By which gusts it sways: the expected ones where what is drawn would be a sample."""
+        gusts = 'expected' if self._chosen.is_far else self._chosen.gusts
+        return replace(self._chosen, gusts=gusts).wind_told
 
     def set_rate(self, rate: float) -> None:
         """

@@ -38,7 +38,7 @@ def observed_scene(
         what = f'motion sensors on a scene of {len(scene.trees)} trees'
         raise ParameterError(what, where=scene.name, cure='open the tree that they are on')
     one = scene.trees[0]
-    where = one.settings_where_it_stands(settings)
+    where = scene.settings_of(0, settings)
     if camera is not None:
         return FilmedTree(one.placed(), one.species, where, camera=camera, **sensors)
     return ObservedTree(one.placed(), one.species, where, **sensors)

@@ -6,6 +6,10 @@ Where a motion sensor sits on a tree, and how each coordinate of a model moves t
 A place is written as a height on the stem in [m] (``3.2``), as a branch and a share of its length
 (``b12:0.5``), or as a segment (``segment:431``). The bearing to which the z axis of the sensor
 points, the back of a phone's being the tree, may follow: ``3.2 facing 120``.
+
+A pair of strain gauges, on the north and the east side of the wood, is a sensor too: ``1.3
+strain``. What it measures, curvature times radius, is passed on as the rotation of a place, a
+strain of 1 as one by `PER_STRAIN`; ``facing`` is then the bearing of the side of the first gauge.
 """
 
 from __future__ import annotations
@@ -23,6 +27,9 @@ from tree_sway.errors import nearest, ParameterError
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
+PER_STRAIN = 400.0
+"""Rotation [rad] in place of a strain: the least noise of a rotation is a strain of 5e-6."""
+
 _TURN = 1e-4
 """Largest key rotation in [rad] of the difference quotients."""
 
@@ -32,12 +39,14 @@ class SensorPlace(NamedTuple):
     A segment, and a share of its length from its root side.
 
     ``facing`` is the azimuth to which the z axis of the sensor points, or its y axis where that is
-    upright, from east to north in [rad]; None if it is not told.
+    upright, from east to north in [rad]; None if it is not told. ``is_strain`` is whether it
+    measures strain.
     """
 
     segment: int
     along: float
     facing: float | None = None
+    is_strain: bool = False
 
 
 class PlaceMotion(NamedTuple):
@@ -73,6 +82,10 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     if is_told:
         bearing_to = within('facing', _number(bearing), -360.0, 360.0, 'degrees')
         return place_on(tree, text)._replace(facing=math.radians(90.0 - bearing_to))
+    if text.endswith(' strain'):
+        at = place_on(tree, text.removesuffix(' strain'))._replace(is_strain=True)
+        _joint(tree, at)
+        return at
     name, colon, number = text.rpartition(':')
     value = _number(number)
     if not math.isfinite(value):
@@ -136,7 +149,8 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
     """
     Differentiate the pose of a place by each coordinate of a simulator, at rest.
 
-    The rotation is a rotation vector in the frame of the tree, and so is the displacement.
+    The rotation is a rotation vector in the frame of the tree, and so is the displacement. Of a
+    place of strain it is `bend_at`.
     """
     shapes = simulator.banks[0].oscillators.shapes
     poses = np.zeros((simulator.tree.n_segments, 7))
@@ -148,11 +162,53 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
         for sign in (1.0, -1.0):
             simulator.place_rotations(np.ascontiguousarray(sign * amount * shapes[:, i]), poses)
             pose = poses[place.segment : place.segment + 1]
-            pair.append((ends_of_poses(pose, [away])[1][0], pose[0, 3:].copy()))
-        (ahead, turned), (behind, turned_back) = pair
+            bent = bend_at(simulator.tree, poses, place) if place.is_strain else np.zeros(3)
+            pair.append((ends_of_poses(pose, [away])[1][0], pose[0, 3:].copy(), bent))
+        (ahead, turned, bent), (behind, turned_back, bent_back) = pair
+        if place.is_strain:
+            rotation[:, i] = (bent - bent_back) / (2.0 * amount)
+            continue
         displacement[:, i] = (ahead - behind) / (2.0 * amount)
         rotation[:, i] = turn_between(turned_back, turned) / (2.0 * amount)
     return PlaceMotion(displacement, rotation)
+
+
+def _joint(tree: Tree, place: SensorPlace) -> int:
+    """Return the segment below the joint of its branch that is nearest to a place."""
+    branch = int(tree.branch_of_segment[place.segment])
+    first, last = int(tree.branch_first[branch]), int(tree.branch_first[branch + 1])
+    if last - first < 2:
+        cure = 'give a branch of two segments or more'
+        raise ParameterError('strain of a branch of one segment', where='at', cure=cure)
+    return min(max(place.segment - (place.along < 0.5), first), last - 2)
+
+
+def bend_at(tree: Tree, poses: Floats, place: SensorPlace) -> Floats:
+    """
+    Return curvature times radius at a place by the poses of segments (n, 7), times `PER_STRAIN`.
+
+    It is a vector about which the wood is bent, in the frame of the tree, (3,), by the turn from
+    segment to segment at the nearest joint; from there on the moment is taken to be the same.
+    """
+    below = _joint(tree, place)
+    turn = turn_between(poses[below, 3:], poses[below + 1, 3:])
+    span = 0.5 * float(tree.length[below] + tree.length[below + 1])
+    low, high = (float(each[place.segment]) for each in (tree.base_diameter, tree.tip_diameter))
+    here = low + place.along * (high - low)
+    joint = 0.5 * float(tree.tip_diameter[below] + tree.base_diameter[below + 1])
+    return np.asarray(PER_STRAIN * 0.5 * here * (joint / here) ** 4 * turn / span)
+
+
+def strain_of(bent: Floats) -> Floats:
+    """Strain on the north and the east side [-], (..., 2), by `bend_at`; tension is positive."""
+    return np.stack([bent[..., 0], -bent[..., 1]], axis=-1) / PER_STRAIN
+
+
+def as_orientation(strain: Floats) -> Floats:
+    """Return strains on the north and east side (n, 2) as orientations x y z w, (n, 4)."""
+    half = 0.5 * PER_STRAIN * np.column_stack([strain[:, 0], -strain[:, 1], np.zeros(len(strain))])
+    size = np.linalg.norm(half, axis=1)
+    return np.column_stack([half * np.sinc(size / np.pi)[:, None], np.cos(size)])
 
 
 def tip_slopes(simulator: SwaySimulator) -> Floats:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 from contextlib import ExitStack
+import math
 from pathlib import Path
 import sys
 import tempfile
@@ -19,7 +20,9 @@ from tree_sway.commands import Ending, LONGEST
 from tree_sway.core.scene import Scene
 from tree_sway.core.wind import shorter_than
 from tree_sway.files.commands import (
+    add_distance_arguments,
     add_sway_arguments,
+    distance_settings,
     opened_scene,
     refuse_unused_wind,
     simulated_speed,
@@ -48,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='start at this time of the recording [s]',
     )
     add_sensor_argument(parser)
+    add_distance_arguments(parser, 'sample')
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
     add(
@@ -119,7 +123,10 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         'rate': arguments.rate,
         'model': arguments.model,
         'leaves': arguments.leaves,
+        **distance_settings(arguments),
     }
+    bearing = solver['anemometer_bearing']
+    solver['anemometer_bearing'] = -1.0 if bearing is None else bearing % math.tau
     if arguments.gravity == 'off':
         solver['gravity'] = 0.0
     if arguments.sensor is not None:

@@ -69,7 +69,7 @@ class SolverNode(TreeSwayNode):
         self._make_interfaces(source, settings)
         for warning in source.warnings:
             self.get_logger().warning(shown(warning, LONGEST_NOTE))
-        for note in source.notes:
+        for note in (f'gusts: {self.simulator.wind_told}', *source.notes):
             log(shown(note, LONGEST_NOTE))
         log(
             f'ready after {time.monotonic() - began:.1f} s: {shown(source.tree.name)}, '

@@ -134,6 +134,7 @@ def _with_reductions(status: Status, simulator: Simulator) -> Status:
 
 def _model(simulator: Simulator) -> Status:
     values = {'model': simulator.model, **vars(simulator.counts)}
+    values['gusts'] = simulator.wind_told
     if simulator.gusts is not None:
         values['longest delay of a gust [s]'] = float(simulator.gusts.delay.max())
     trees = simulator.simulators

@@ -4,11 +4,14 @@
 
 from __future__ import annotations
 
+import math
+
 from tree_sway.core.scene import Scene, shard_of
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import LEAVES
 from tree_sway.core.species import species_named
 from tree_sway.core.wind import WindProfile
+from tree_sway.errors import ParameterError
 from tree_sway.files.trees import open_scene
 from tree_sway_ros.parameters.declaration import ParameterValues
 
@@ -29,8 +32,13 @@ def scene_of(values: ParameterValues) -> Scene:
 
 def settings_of(values: ParameterValues) -> Settings:
     """Return the settings of the model by the parameters."""
+    bearing = values['anemometer_bearing']
+    if -1.0 < bearing < 0.0:
+        cure = f'give {bearing + math.tau:.4g} [rad], or -1 if it is unknown'
+        raise ParameterError(f'{bearing:g} is below 0', where='anemometer_bearing', cure=cure)
     return Settings(
-        **values.subset('model', 'gravity', 'anemometer_distance', 'gusts'),
+        **values.subset('model', 'gravity', 'anemometer_distance', 'gusts', 'gust_seed'),
+        anemometer_bearing=None if bearing < 0.0 else bearing,
         volume_stiffness=values['volume_rule.stiffness'],
         volume_damping=values['volume_rule.damping'],
         in_leaf=LEAVES[values['leaves']],

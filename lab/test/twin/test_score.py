@@ -17,8 +17,10 @@ from tree_sway.commands.cli import main
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.export.tree_export import write_tree
 from tree_sway.growth.builtin import builtin_tree
-from tree_sway.twin.sensor_place import place_on
+from tree_sway.growth.growing import grow
+from tree_sway.twin.sensor_place import bend_at, place_on, strain_of
 
 RATE, FREQUENCY = 20.0, 0.5
 DT = 1.0 / 60.0
@@ -108,3 +110,48 @@ def test_another_record_is_refused(
     write(tmp_path / 'wind.csv', 'time,u,v,w', time, *np.ones((3, len(time))))
     assert main('lab score goldcrest --wind wind.csv --sway sway.csv'.split()) == 2
     assert what in capsys.readouterr().err
+
+
+def make_strains(folder: Path) -> None:
+    """Write wind, and strain at three heights of a softer tree, beside a pair of another tree."""
+    species = species_named('spruce')
+    tree = grow('spruce', 16.0, rng=np.random.default_rng(3))
+    write_tree(folder / 'tree.yaml', tree, species)
+    softer = replace(species, modulus=0.8 * species.modulus)
+    sim = make_simulator(tree, softer, model=60, crown_coherence=0.3)
+    rng = np.random.default_rng(8)
+    wind = simulate_turbulence(7.0, rate=60.0, duration=120.0, rng=rng)
+    places = [place_on(tree, f'{height} strain') for height in HEIGHTS]
+    found = np.empty((len(wind), 2 * len(places) + 2))
+    for k, each in enumerate(wind):
+        sim.step(each, DT)
+        poses = sim.place()
+        found[k, 2:] = np.concatenate([strain_of(bend_at(tree, poses, at)) for at in places])
+    found[:, :2] = found[::-1, :2] = 1e-5 * rng.normal(size=(len(wind), 2))
+    drift = 1e-5 * np.arange(len(wind))[:, None] / len(wind)
+    found += 2e-6 * rng.normal(size=found.shape) + drift
+    ends = DT * np.arange(1, len(wind) + 1)
+    rows = slice(None, None, 15)
+    write(folder / 'strain.csv', 'time' + ',x' * found.shape[1], ends[rows], *found[rows].T)
+    write(folder / 'wind.csv', 'time,u,v,w', ends - 0.5 * DT, *wind.T)
+
+
+HEIGHTS = (1.3, 5.0, 9.0)
+
+
+def test_the_lowest_gauge_corrects_and_the_highest_judges(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    make_strains(tmp_path)
+    words = 'lab score tree.yaml --wind wind.csv --strain strain.csv --gauges'.split()
+    assert main([*words, '- ' + ' '.join(map(str, HEIGHTS))]) == 0
+    captured = capsys.readouterr()
+    rows = {each['motion']: each for each in csv.DictReader(captured.out.splitlines())}
+    print(captured.out, captured.err)
+    errors = {name: float(row['error']) for name, row in rows.items()}
+    assert list(errors) == ['U^2', 'model', 'sensors']
+    assert errors['sensors'] < min(0.6 * errors['model'], 0.8 * errors['U^2'])
+    assert float(rows['sensors']['r']) > 0.9
+    assert main([*words, '1.3 5']) == 2
+    assert '2 places for 4 pairs of columns' in capsys.readouterr().err

@@ -15,6 +15,7 @@ from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.settings import Settings
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
@@ -77,7 +78,37 @@ def test_a_scene_knows_how_far_its_anemometer_is() -> None:
     assert scene.simulator().models[0].settings.anemometer_distance == 0.0
 
 
-def test_a_forest_refuses_a_distance_to_its_anemometer() -> None:
-    scene = Scene([PlacedTree(name, TREE, x=x) for name, x in (('one', 0.0), ('two', 9.0))])
+def forest(count: int) -> Scene:
+    """Trees in a row to the east."""
+    return Scene([PlacedTree(f'tree {i}', TREE, x=9.0 * i) for i in range(count)])
+
+
+def test_each_tree_of_a_forest_stands_apart_from_the_anemometer_by_its_own_way() -> None:
+    west = {'anemometer_distance': 12.0, 'anemometer_bearing': 1.5 * np.pi, 'gusts': 'sample'}
+    sim = forest(2).simulator(**west)
+    near, far = (each.settings for each in sim.simulators)
+    assert (near.anemometer_distance, far.anemometer_distance) == pytest.approx((12.0, 21.0))
+    assert near.gust_seed != far.gust_seed
+    moved = []
+    for wind in WIND:
+        sim.step(wind, DT)
+        moved.append([each.tip_displacement for each in sim.simulators])
+    first, second = np.array(moved)[600:, :, 0].T
+    assert abs(np.corrcoef(np.diff(first), np.diff(second))[0, 1]) < 0.5
+    again = forest(2).simulator(**west)
+    for wind in WIND:
+        again.step(wind, DT)
+    np.testing.assert_array_equal(again.place(), sim.place())
+
+
+def test_trees_without_a_bearing_are_all_as_far_and_too_many_are_refused() -> None:
+    sim = forest(2).simulator(anemometer_distance=12.0)
+    assert [each.settings.anemometer_distance for each in sim.simulators] == [12.0, 12.0]
     with pytest.raises(ParameterError, match='anemometer_distance'):
-        scene.simulator(anemometer_distance=12.0)
+        forest(21).simulator(anemometer_distance=12.0)
+
+
+def test_a_setting_says_which_gusts_a_tree_meets() -> None:
+    told = Settings(anemometer_distance=12.0, anemometer_bearing=-0.5 * np.pi, gusts='sample')
+    assert told.wind_told == 'a sample, seed 0; anemometer 12 m away at 270 degrees'
+    assert 'taken to stand at the tree' in Settings().wind_told

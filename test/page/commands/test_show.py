@@ -41,6 +41,13 @@ QUICK = 'branch'
 DEADLINE = 120.0
 
 
+def shown(*words: str) -> argparse.Namespace:
+    """Return the arguments of the command."""
+    parser = argparse.ArgumentParser()
+    show.add_arguments(parser)
+    return parser.parse_args(words)
+
+
 def test_the_page_is_served_and_the_tree_moves() -> None:
     command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', str(SEEDLING)]
     command += ['--port', '0', '--stand', '2']
@@ -114,7 +121,7 @@ def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> Non
 
 
 def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
-    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    arguments = shown(str(SEEDLING))
     wanted = show.Choices('birch', height=4.0, model=QUICK)
     heights, starts = [], []
     for choices in (wanted, wanted, replace(wanted, individual='1', height=5.5)):
@@ -126,7 +133,7 @@ def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
 
 
 def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
-    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    arguments = shown(str(SEEDLING))
     wanted = show.Choices('lime', height=9.0, model=QUICK)
     trees = [
         show.build_scene(replace(wanted, age=age), arguments).tree for age in (0.0, 15.0, 40.0)
@@ -139,7 +146,7 @@ def test_age_thickens_the_stem_of_a_tree_that_is_grown() -> None:
 
 
 def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
-    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    arguments = shown(str(SEEDLING))
     wanted = show.Choices('birch', height=4.0, model=QUICK)
     summer, autumn, winter = (
         show.build_scene(replace(wanted, month=month), arguments) for month in (7.0, 11.0, 2.0)
@@ -228,6 +235,22 @@ def test_what_is_added_lists_its_facts_and_does_what_its_control_asks(
     assert (refusal, factor) == (None, 2.0)
     lengths = [float(each['Height'].split()[0]) for each in (before, after)]  # type: ignore[index]
     assert lengths[1] == pytest.approx(2.0 * lengths[0], abs=0.02)
+
+
+def test_a_viewer_switches_between_the_expected_wind_and_a_sample() -> None:
+    arguments = shown(str(SEEDLING), '--anemometer-distance', '12', '--anemometer-bearing', '270')
+    choices = Choices(str(SEEDLING.name), model='20', anemometer_distance=12.0)
+    told = {
+        gusts: show.build_scene(replace(choices, gusts=gusts), arguments).wind_told
+        for gusts in ('expected', 'sample', 'measured')
+    }
+    assert re.match('the expected wind; anemometer 12 m away at 270 degrees', told['expected'])
+    assert re.search(r'a sample, seed 0; .* \d\d% of their power told', told['sample'])
+    assert told['measured'].startswith('as measured; anemometer 12 m away')
+    beside = show.build_scene(replace(choices, anemometer_distance=0.0), arguments)
+    assert 'taken to stand at the tree' in beside.wind_told
+    names = {each.name: each for each in page_controls(choices, SimulatedWind(5.0))}
+    assert (names['gusts'].value, names['anemometer_distance'].value) == ('sample', 12.0)
 
 
 @pytest.mark.parametrize(('address', 'is_warned'), [('0.0.0.0', True), ('127.0.0.1', False)])

@@ -138,6 +138,13 @@ class SwaySimulator:
         return self.tree.name
 
     @property
+    def wind_told(self) -> str:
+        """By which gusts it sways, as `Settings.wind_told`, and how much of them is measured."""
+        told = self.settings.wind_told
+        share = '' if self._far is None else f', {self._far.wind.told:.0%} of their power told'
+        return told + share
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the trees: of this one."""
         return (self.tree.name,)

@@ -6,13 +6,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+import math
+from zlib import crc32
 
 import numpy as np
 
 from tree_sway.core.arrays import Ints
 from tree_sway.core.scene.placed_tree import joined, Kind, MOST_SEGMENTS, PlacedTree
+from tree_sway.core.settings import MOST_SEED, Settings
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
@@ -67,6 +70,37 @@ class PlacedTrees:
             cure = f'at most {MOST_SEGMENTS}: place or draw a part of the trees'
             raise ParameterError(what, where=self.name, cure=cure)
         return joined([each.placed() for each in self.trees], self.name)
+
+    def settings_of(self, number: int, settings: Settings) -> Settings:
+        """
+        Return the settings of a tree where it stands, and apart from the anemometer.
+
+        A distance with a bearing is that of the first tree, unless the place of the anemometer is
+        known. Trees of one seed meet gusts of their own.
+        """
+        tree, one = self.trees[number], self.trees[0]
+        own = tree.settings_where_it_stands(settings)
+        distance, bearing, place = own.anemometer_distance, own.anemometer_bearing, self.anemometer
+        if not self.is_one_tree:
+            if not own.is_far:
+                return own
+            seed = (own.gust_seed + crc32(tree.name.encode())) % MOST_SEED
+            own = replace(own, gust_seed=seed)
+            if bearing is not None and place is None:
+                away = distance * math.sin(bearing), distance * math.cos(bearing)
+                place = one.x + away[0], one.y + away[1], one.z
+            if bearing is None:
+                return own
+        elif distance > 0.0:
+            return own
+        if place is None:
+            return own
+        east, north = place[0] - tree.x, place[1] - tree.y
+        return replace(
+            own,
+            anemometer_distance=math.hypot(east, north),
+            anemometer_bearing=math.atan2(east, north),
+        )
 
     @property
     def is_one_tree(self) -> bool:

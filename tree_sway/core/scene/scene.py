@@ -23,6 +23,9 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import oddities, refuse_implausible
 from tree_sway.errors import inside, ParameterError
 
+MOST_APART = 20
+"""Largest number of trees apart from their anemometer, each with a model and a field of gusts."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scene(PlacedTrees):
@@ -159,30 +162,17 @@ class Scene(PlacedTrees):
         """
         chosen = settings_with(settings, changes)
         if not self.is_one_tree:
-            if chosen.is_far:
+            if chosen.is_far and len(self.trees) > MOST_APART:
                 raise ParameterError(
                     f'a distance to the anemometer for {len(self.trees)} trees',
                     where='anemometer_distance',
-                    cure='leave it out: their gusts travel from the `anemometer` of the scene',
+                    cure=f'leave it out above {MOST_APART} trees: each needs a model of its own',
                 )
             return SceneSimulator(
                 self, chosen, tolerance=tolerance, cache=cache, progress=progress
             )
-        one = self.trees[0]
-        where = self._apart(one.settings_where_it_stands(chosen))
+        one, where = self.trees[0], self.settings_of(0, chosen)
         return make_simulator(one.placed(), one.species, where, tolerance=tolerance, cache=cache)
-
-    def _apart(self, settings: Settings) -> Settings:
-        """Return the settings of the only tree, apart from an anemometer whose place is known."""
-        if self.anemometer is None or settings.anemometer_distance > 0.0:
-            return settings
-        (tree,) = self.trees
-        east, north = self.anemometer[0] - tree.x, self.anemometer[1] - tree.y
-        return replace(
-            settings,
-            anemometer_distance=math.hypot(east, north),
-            anemometer_bearing=math.atan2(east, north),
-        )
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
         """

@@ -96,7 +96,7 @@ class SceneSimulator:
                 self._alone[number] = make_simulator(
                     tree.placed(),
                     tree.species,
-                    tree.settings_where_it_stands(settings),
+                    scene.settings_of(number, settings),
                     tolerance=tolerance,
                     cache=cache,
                 )
@@ -136,6 +136,11 @@ class SceneSimulator:
             reduced=sum(each.reduced for each in trees),
             restarted=sum(each.restarted for each in trees),
         )
+
+    @property
+    def wind_told(self) -> str:
+        """By which gusts the trees sway, as `Settings.wind_told`; those of the first tree."""
+        return self._scene.settings_of(0, self.settings).wind_told
 
     @property
     def name(self) -> str:
@@ -274,8 +279,9 @@ class SceneSimulator:
         is_clamped, has_restarted = self._shared.step(winds, dt)
         status |= Outcome.LOAD_CLAMPED if is_clamped else Outcome.OK
         status |= Outcome.RESTARTED if has_restarted else Outcome.OK
+        is_far = self.settings.is_far  # such a tree knows by itself how late gusts are
         for number, simulator in self._alone.items():
-            status |= simulator.step(winds[number].tolist(), dt)
+            status |= simulator.step((self.wind if is_far else winds[number]).tolist(), dt)
         return status
 
     def push(

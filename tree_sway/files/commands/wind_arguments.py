@@ -64,6 +64,13 @@ def add_distance_arguments(parser: argparse.ArgumentParser, gusts: str) -> None:
         help='where it stands from the tree, clockwise from north; without it, anywhere',
     )
     add(
+        '--gust-seed',
+        type=int,
+        default=0,
+        metavar='N',
+        help='seed of a sample of gusts: the same one, the same gusts (%(default)s)',
+    )
+    add(
         '--gusts',
         choices=GUSTS,
         default=gusts,
@@ -79,6 +86,7 @@ def distance_settings(arguments: argparse.Namespace) -> dict[str, Any]:
         'anemometer_distance': arguments.anemometer_distance,
         'anemometer_bearing': None if bearing is None else math.radians(bearing),
         'gusts': arguments.gusts,
+        'gust_seed': arguments.gust_seed,
     }
 
 

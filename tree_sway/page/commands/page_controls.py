@@ -26,6 +26,8 @@ from tree_sway.stream import Control, PAUSE_AND_RESET, Value
 _COUNTS = ('1', '9', '100')
 _LOWEST, _HIGHEST = 2.0, 40.0
 """Least and greatest height of a tree that is grown on the page [m]."""
+_FARTHEST = 100.0
+"""Greatest distance of an anemometer on its slider [m]."""
 
 _LABELS = {
     'mean_speed': 'Wind',
@@ -34,6 +36,8 @@ _LABELS = {
     'tolerance': 'Tolerance',
     'damping_ratio': 'Damping',
     'model': 'Model',
+    'gusts': 'Gusts',
+    'anemometer_distance': 'Anemometer away',
 }
 
 
@@ -49,7 +53,9 @@ def page_controls(
     if is_one_tree:
         names = ('auto', *map(str, DIAL), 'branch', *installed_models(), choices.model)
         controls.append(replace(_of('model', choices.model), choices=_once(names)))
-    controls += [_of('tolerance'), _of('damping_ratio'), *_of_tree(choices)]
+    controls += [_of('tolerance'), _of('damping_ratio')]
+    controls += [_of('gusts', choices.gusts), _away(choices.anemometer_distance)]
+    controls += _of_tree(choices)
     if is_one_tree:
         counts = _once((*_COUNTS, choices.count))
         controls.append(Control('count', 'Number of trees', choices.count, choices=counts))
@@ -59,6 +65,12 @@ def page_controls(
 def _of(name: str, value: Value = None) -> Control:
     """Make the control of a parameter of the nodes."""
     return Control.of(SWAY[name], _LABELS[name], value)
+
+
+def _away(distance: float) -> Control:
+    """Make the control of how far the anemometer stands, and no farther than one can see [m]."""
+    control = _of('anemometer_distance', distance)
+    return replace(control, maximum=max(_FARTHEST, distance))
 
 
 def _once(names: Iterable[str]) -> tuple[str, ...]:

@@ -95,7 +95,13 @@ def _serve(
     ending: Ending,
 ) -> int:
     """Serve the page of a wind, with what is added to it."""
-    choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
+    choices = Choices(
+        Path(arguments.tree).name,
+        str(arguments.stand),
+        str(arguments.model),
+        gusts=arguments.gusts,
+        anemometer_distance=arguments.anemometer_distance,
+    )
     own = [control for each in added for control in each.controls()]
     first = {each.name: each.value for each in own if each.name in vars(choices)}
     choices = replace(choices, **first)  # type: ignore[arg-type]
@@ -116,7 +122,7 @@ def _serve(
             session.apply(name, value)
 
     def status() -> dict[str, object]:
-        facts: dict[str, str] = {}
+        facts = {'Gusts': session.simulator.wind_told}
         for each in added:
             facts |= each.facts(session.simulator)
         return {**session.status(), 'facts': facts}
@@ -182,7 +188,8 @@ def build_scene(
     in_leaf = chosen_leaves(arguments)
     if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
         in_leaf = False
-    far = distance_settings(arguments) if is_first and count == 1 else {}
+    far = distance_settings(arguments)
+    far |= {'gusts': choices.gusts, 'anemometer_distance': choices.anemometer_distance}
     settings = Settings(damping_ratio=damping, in_leaf=in_leaf, **far)
     for each in added if is_first else ():
         simulator = each.simulator(scene, settings, choices)

@@ -89,7 +89,8 @@ export function motionSensors(motion) {
     return told.startsWith(name) ? told : `${name}: ${told}`;
   });
   const isFollowed = sensors.some(({ in_use }) => in_use);
-  if (isFollowed && Number.isFinite(explained)) lines.push(word("wind_explains", Math.round(100 * Number(explained))));
+  const byWind = Math.round(100 * Number(explained));
+  if (isFollowed && Number.isFinite(byWind)) lines.push(word("shares", byWind, 100 - byWind));
   if (isFollowed && band) lines.push(word("band_of_tip", (100 * band[0]).toFixed(1), (100 * band[1]).toFixed(1)));
   if (learned && Number.isFinite(learned.frequency) && Number.isFinite(learned.hours)) {
     lines.push(word("learned_sway", learned.frequency.toFixed(3), learned.hours.toFixed(2)));

@@ -11,7 +11,7 @@ import sys
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import inside
-from tree_sway.files.motion import MotionRecord, read_motion
+from tree_sway.files.motion import MotionRecord, read_motion, read_strain
 from tree_sway.live.commands import add_place_argument, sensors_and_places
 from tree_sway.simulation import PlacedMotion
 from tree_sway.twin import place_on
@@ -55,8 +55,8 @@ def placed_motion(
     found = []
     for number, (path, at) in enumerate(sensors_and_places(arguments), 1):
         with inside('--at'):
-            place_on(tree, at)
-        record = read_motion(path)
+            is_strain = place_on(tree, at).is_strain
+        record = read_strain(Path(path)).motion() if is_strain else read_motion(path)
         for note in (*record.notes, *_clock_note(record, epoch, starts)):
             print(f'note: {note}', file=sys.stderr)
         found.append(

@@ -121,6 +121,13 @@ class FarWind:
         self._apart: Floats | None = None
         self._apart_at = Address(0)
 
+    @property
+    def told(self) -> float:
+        """Share of the variance of the crown's gusts that the anemometer tells [-]."""
+        power = Turbulence(1.0, _HEIGHT, 1.0).spectrum(_WAVENUMBERS)[:, 0] * _WAVENUMBERS
+        known = np.mean([_told(_WAVENUMBERS, each) for each in self._weights], axis=0)
+        return float(power @ known @ self._share / power.sum())
+
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
         Add the wind [m/s] of a step of dt [s] at the anemometer; return that of the crown, (3,).
@@ -181,6 +188,12 @@ def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
     )  # fmt: skip
 
 
+def _told(wavenumbers: Floats, weights: Floats) -> Floats:
+    """Share of the power of each part that low-passes by weights (g, k) tell, (n, g)."""
+    stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
+    return np.asarray(np.square(np.abs(stages @ weights.T)))
+
+
 def _coherences(
     places: Floats, distance: float, bearing: float | None, wavenumbers: Floats
 ) -> list[Floats]:
@@ -208,8 +221,7 @@ def _drawn_rest(
     """
     count = len(places)
     wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
-    stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
-    told = np.mean([np.square(np.abs(stages @ each.T)) for each in weights], axis=0)
+    told = np.mean([_told(wavenumbers, each) for each in weights], axis=0)
     extent = size * np.minimum(1.0, 2.0 / (1.0 + np.square(wavenumbers[:, None] / first)))
     acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * extent)
     missing = np.sqrt(np.maximum(1.0 - told, 0.0) * acting)

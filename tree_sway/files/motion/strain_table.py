@@ -1,0 +1,105 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Tables of strain gauges: the time, then pairs of columns, strain on the north and the east side.
+
+So are the days of Wytham (doi:10.5285/533d87d3-48c1-4c6e-9f2f-fda273ab45bc, a pair for each tree
+of a logger), of Danum (doi:10.5285/657f420e-f956-4c33-b7d6-98c7a18aa07a, its NE files, pairs at
+several heights) and of many sites in one form (doi:10.5281/zenodo.4915883). No column tells where
+a pair sits. A header is optional; a unit in its brackets counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import FormatError
+from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.table_file import split_row
+from tree_sway.files.text_file import finite, read_table_lines
+from tree_sway.files.time_stamps import times_of
+from tree_sway.twin import as_orientation
+
+_UNITS = {'': 1.0, '-': 1.0, 'strain': 1.0, 'm/m': 1.0, '%': 0.01}
+_MICRO = re.compile(r'micro|[uµμ](e|ε|m/m|strain)|ppm', re.IGNORECASE)
+_BROKEN = 0.02
+"""Strain at which wood has broken long since (Kretschmann 2010, Wood Handbook, chapter 5)."""
+
+
+@dataclass(frozen=True, eq=False)
+class StrainRecord:
+    """
+    Strain over time: `MotionRecord.time` in [s], (n,), and strain of each pair [-], (n, g, 2).
+
+    A cell that is no number is kept as not a number.
+    """
+
+    time: Floats
+    strain: Floats
+    source: str
+    epoch: float | None = None
+    notes: tuple[str, ...] = ()
+
+    def motion(self, pair: int = 0) -> MotionRecord:
+        """Return a pair as the record of a motion sensor at a place of strain."""
+        turns = as_orientation(self.strain[:, pair])
+        return MotionRecord(self.time, None, None, turns, self.source, self.epoch, self.notes)
+
+
+def read_strain(path: Path) -> StrainRecord:
+    """
+    Read a table of strain gauges.
+
+    Raises
+    ------
+    FormatError
+        No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
+
+    """
+    lines = [line for line in read_table_lines(path) if line.strip() and line[0] != '#']
+    first = lines[0] if lines else ''
+    separator = next((each for each in '\t;,' if each in first), '')
+
+    def cells(line: str) -> list[str]:
+        return [*split_row(line, separator)] if separator else line.split()
+
+    head = cells(first)
+    has_names = len(head) < 2 or finite(head[1]) is None
+    rows = [cells(line) for line in lines[has_names:]]
+    size = max((len(row) for row in rows), default=0)
+    where = str(path)
+    if size < 3 or not size % 2:
+        what = f'{max(size - 1, 0)} columns beside the time'
+        cure = 'give the time, then two columns for each place: north side, east side'
+        raise FormatError(what, where=where, cure=cure)
+    times = times_of([row[0] for row in rows])
+    numbers = [[finite(cell) for cell in row[1:]] + [None] * (size - len(row)) for row in rows]
+    values = np.array(numbers, dtype=float) * _factor(head, where)
+    if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
+        what = f"no time in '{rows[0][0]}', or a column without numbers"
+        raise FormatError(what, where=where, cure='put the time first, and leave that pair out')
+    away = np.abs(values - np.nanmedian(values, axis=0))
+    if (largest := float(np.nanquantile(away, 0.99))) > _BROKEN:
+        what = f'changes of {largest:.3g} are no strain of wood'
+        cure = 'give strain, or its unit in the header, as north [microstrain]; calibrate voltages'
+        raise FormatError(what, where=where, cure=cure)
+    notes = f'{path.name}: {size // 2} pairs of strain, north and east side', times.note
+    pairs = values.reshape(len(rows), -1, 2)
+    return StrainRecord(times.seconds, pairs, where, times.epoch, tuple(filter(None, notes)))
+
+
+def _factor(head: list[str], where: str) -> float:
+    """Factor to strain by the unit of the second column of a header."""
+    found = re.search(r'[\[(]([^\])]*)[\])]', head[1]) if len(head) > 1 else None
+    unit = found[1].strip() if found else ''
+    if _MICRO.match(unit):
+        return 1e-6
+    if unit.lower() not in _UNITS:
+        cure = 'give strain as - or microstrain; calibrate voltages first'
+        raise FormatError(f"unknown unit of strain '{unit[:20]}'", where=where, cure=cure)
+    return _UNITS[unit.lower()]
