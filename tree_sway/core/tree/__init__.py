@@ -23,7 +23,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.tree.building import check_numbers as check_numbers
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
-    from tree_sway.core.tree.crown_allometry import AREA_SPREAD as AREA_SPREAD
     from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT as BREAST_HEIGHT
     from tree_sway.core.tree.crown_allometry import (
         breast_height_diameter as breast_height_diameter,
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from tree_sway.core.tree.crown_allometry import crown_change as crown_change
     from tree_sway.core.tree.crown_allometry import crown_size as crown_size
     from tree_sway.core.tree.crown_allometry import CrownChange as CrownChange
+    from tree_sway.core.tree.crown_allometry import wood_volume as wood_volume
     from tree_sway.core.tree.grown_tree import GrownTree as GrownTree
     from tree_sway.core.tree.grown_tree import rooted as rooted
     from tree_sway.core.tree.grown_tree import tree_and_species as tree_and_species

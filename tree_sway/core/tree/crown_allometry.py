@@ -58,13 +58,6 @@ Share of the light that a bare broadleaf crown blocks [-], from the side: measur
 0.16 to 0.48 (Heisler 1986, Urban Ecology 9, 337-359).
 """
 
-AREA_SPREAD = 0.40
-"""
-Log-deviation of the area of wood in a crown of given diameter and height [-]: 0.18 of the width,
-0.20 of the depth, 0.30 of the opacity.
-"""
-
-
 class CrownSize(NamedTuple):
     """Width and depth of a crown in [m]."""
 
@@ -96,6 +89,16 @@ def crown_size(species: str, diameter: float, height: float) -> CrownSize | None
     width_0, width_1, depth_0, depth_1 = np.mean(rows, axis=0).tolist()
     depth = min(max(depth_0 + depth_1 * height, 0.1 * height), height)
     return CrownSize(width_0 + width_1 * diameter, depth)
+
+
+def wood_volume(diameter: float, height: float) -> float:
+    """
+    Volume of all wood of a tree by diameter at breast height and height in [m], in [m^3].
+
+    Dry mass 0.0673 (rho D^2 H)^0.976 [kg, g/cm^3, cm, m] of a basic density rho of 0.55 (Chave et
+    al. 2014, Global Change Biology 20, 3177-3190, equation 4).
+    """
+    return 0.0673 * (0.55 * (100.0 * diameter) ** 2 * height) ** 0.976 / 550.0
 
 
 class CrownChange(NamedTuple):

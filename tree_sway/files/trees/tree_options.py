@@ -135,9 +135,7 @@ class TreeOptions:
                 'wood taken off (twig_diameter=0 leaves it)'
             )
         if self.beyond_scan == 'grow':
-            tree, beyond = grown_beyond(
-                replace(tree, species=species.key), twig, self.trusted_diameter
-            )
+            tree, beyond = grown_beyond(replace(tree, species=species.key), twig)
             notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
