@@ -45,8 +45,8 @@ CUT_AT = 0.015
 
 SCAN_WEIGHT = 0.2
 """
-Weight of a scan beside the allometry [-], by their variances: log-deviations of 1.45, the excess of
-wood of scanned and felled ashes, and of 0.3, repeated scans (Demol et al. 2022), beside 0.24.
+Weight of a scan beside the allometry [-], by their variances: logarithm of 1.45, the excess of
+wood of scanned and felled ashes, and 0.3 of repeated scans (Demol et al. 2022), beside 0.24.
 """
 
 _LENGTH = 21.0
@@ -57,6 +57,10 @@ _MOST_TWIGS = 1000
 _MOST_AT_AN_END = 40
 _MOST_THINNER = 3.0
 """Largest number of times that twigs are made thinner, or thicker [-]."""
+_FEWEST = 10
+"""Number of branches by which the end of a scan is known [-]."""
+_MOST_EXCESS = 0.025
+"""Largest length in [m] by which branches are made thinner: no beam widens them by more."""
 _SMALLEST = 0.07, 5.0
 """Diameter and height in [m] from which on the allometry holds."""
 _OPENING = math.radians(35.0)
@@ -98,8 +102,8 @@ class Beyond:
                 f'and it has {self.wood:.2f} times the scanned wood; '
             )
         return (
-            f'the scan ends at {1e3 * self.end:.3g} mm; {thinner}{100.0 * self.grown:.0f} % of the '
-            f'area of its crown is grown beyond it (beyond_scan=none leaves it)'
+            f'the scan ends at {1e3 * self.end:.3g} mm; {thinner}{100.0 * self.grown:.0f} % of '
+            'the area of its crown is grown beyond it (beyond_scan=none leaves it)'
         )
 
 
@@ -148,7 +152,8 @@ def grown_beyond(tree: Tree, twig: float) -> tuple[Tree, Beyond | None]:
         wood, crown = usual
         if cut:
             wanted = _between(float(tree.volume.sum() + volume.sum()), wood)
-            excess = _excess(tree, ends, twig, wanted, max(end - 2.0 * twig, 0.0))
+            most = min(max(end - 2.0 * twig, 0.0), _MOST_EXCESS)
+            excess = _excess(tree, ends, twig, wanted, most)
         wanted = _between(_crown_area(tree) + float(area.sum()), crown)
         thinner = _thinned(tree, excess, twig)
         length, volume, area = _beyond(thinner, ends, twig, cut=cut)
@@ -158,6 +163,11 @@ def grown_beyond(tree: Tree, twig: float) -> tuple[Tree, Beyond | None]:
     share = 1.0 - _crown_area(thinner) / _crown_area(grown)
     left = float(grown.volume.sum() / tree.volume.sum())
     return grown, Beyond(end, share, excess, left, cut)
+
+
+def is_to_be_grown(tree: Tree) -> bool:
+    """Whether a scan of many branches was cut, and trees of its species and size are known."""
+    return tree.n_branches >= _FEWEST and is_cut(tree) and _usual(tree) is not None
 
 
 def _usual(tree: Tree) -> tuple[float, float] | None:
@@ -225,9 +235,7 @@ def _beyond(tree: Tree, ends: Ints, twig: float, *, cut: bool) -> tuple[Floats, 
     return length, 0.25 * math.pi * d**2 * length, area
 
 
-def _with_twigs(
-    tree: Tree, ends: Ints, length: Floats, volume: Floats, area: Floats
-) -> Tree:
+def _with_twigs(tree: Tree, ends: Ints, length: Floats, volume: Floats, area: Floats) -> Tree:
     """Return the tree with equal twigs of a volume and an area at the end of some segments."""
     has = area > 1e-9
     ends = ends[has]

@@ -58,6 +58,7 @@ Share of the light that a bare broadleaf crown blocks [-], from the side: measur
 0.16 to 0.48 (Heisler 1986, Urban Ecology 9, 337-359).
 """
 
+
 class CrownSize(NamedTuple):
     """Width and depth of a crown in [m]."""
 

@@ -72,7 +72,10 @@ def measure(effort: Effort) -> Section:
             Check('by allometry, share within a factor of 2', within, 1.0),
         ]
         sums = {'median': np.median(ratios, axis=0), 'log-deviation': _spreads(ratios)}
-        rows += [[name, *[''] * 4, *(f'{each:.2f}' for each in sum_)] for name, sum_ in sums.items()]
+        rows += [
+            [name, *[''] * 4, *(f'{each:.2f}' for each in of_ways)]
+            for name, of_ways in sums.items()
+        ]
     title = 'First frequencies of scans that were cut'
     return Section(title, _TEXT, checks, markdown_table(head, rows))
 
