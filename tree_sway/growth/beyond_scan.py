@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Grow what a scan could not see, and weigh what it saw against trees of its size.
+Grow what a scan could not see, and weigh the crown against others of its species and size.
 
 1. **Pipes.** An end of a scan of diameter d is continued to the twigs of its species, of diameter
    t, by forks that keep the cross-section (pipe model: Shinozaki et al. 1964; Leonardo's rule).
@@ -10,13 +10,12 @@ Grow what a scan could not see, and weigh what it saw against trees of its size.
    of 19.32 d^2 (t^-0.08 - d^-0.08) / 0.08 m^2. Beyond the end of a scan that was cut at a diameter
    c all pipes are thinner than c, else they were scanned: there c replaces d in both brackets.
    Equal twigs of that volume and area, as long as the length to go, stand for it.
-2. **Allometry.** How much of a crown a scanner sees is partly chance, and it sees thin wood too
-   thick; stem and height say better how much wood and area a tree has (`wood_volume`,
-   `crown_size`). Their logarithms are the mean of both with the weight `SCAN_WEIGHT` of the scan.
-   The excess of wood is a length by which a beam widens every branch, as in felled trees (Demol et
-   al. 2022, Silva Fennica 56, 10550): all branches of a scan that was cut are thinner by one
-   length, and twigs beyond it are thinner or thicker at the same wood until the area is right.
-   Only of broadleaves of at least 7 cm and 5 m: the allometry has no others.
+2. **Prior.** How much of a crown a scanner sees is partly chance; stem and height say as well how
+   large it is (`crown_size`). The total area of its wood is drawn to that of the allometry in
+   proportion to the variances of their logarithms: 0.30 for what was scanned, a factor of two for
+   the share that was grown, and `AREA_SPREAD` for the allometry. The scan keeps its distribution:
+   more or less is grown beyond its ends, and if the scan alone has more, wood thinner than is
+   trusted is thinned. Only of broadleaves of at least 7 cm and 5 m: the allometry has no others.
 
 A scan has been cut, and its thinnest wood is no twig seen too thick, where half of its ends are
 thicker than 15 mm, three times the laser spot, without being of one thickness, as a lower bound of
@@ -33,34 +32,33 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import (
+    AREA_SPREAD,
     breast_height_diameter,
     crown_size,
     Tree,
     tree_from_segments,
-    wood_volume,
 )
 
 CUT_AT = 0.015
 """Median diameter of the ends from which on a scan has been cut in [m]."""
 
-SCAN_WEIGHT = 0.2
+SCAN_SPREAD, GROWN_SPREAD = 0.30, math.log(2.0)
 """
-Weight of a scan beside the allometry [-], by their variances: logarithm of 1.45, the excess of
-wood of scanned and felled ashes, and 0.3 of repeated scans (Demol et al. 2022), beside 0.24.
+Log-deviations of the area of what was scanned and of what was grown [-]: repeated scans of crowns
+differ by 0.3 in the wood of their branches (Demol et al. 2022, Methods in Ecology and Evolution
+13); the second is an estimate.
 """
 
 _LENGTH = 21.0
 _POWER = 0.92
 _CLIPPED = 0.3
 """Share of the ends of one thickness from which a fit has a lower bound [-]."""
-_MOST_TWIGS = 1000
+_MOST_TWIGS = 3000
 _MOST_AT_AN_END = 40
-_MOST_THINNER = 3.0
-"""Largest number of times that twigs are made thinner, or thicker [-]."""
-_FEWEST = 10
-"""Number of branches by which the end of a scan is known [-]."""
-_MOST_EXCESS = 0.025
-"""Largest length in [m] by which branches are made thinner: no beam widens them by more."""
+_MOST_GROWN = 4.0
+"""Largest number of times that the prior multiplies what is grown [-]."""
+_THINNEST = 0.3
+"""Smallest factor by which the prior thins wood [-]."""
 _SMALLEST = 0.07, 5.0
 """Diameter and height in [m] from which on the allometry holds."""
 _OPENING = math.radians(35.0)
@@ -78,10 +76,8 @@ class Beyond:
         Median diameter of the ends that were continued in [m].
     grown
         Area of the grown wood over that of all wood but the stem [-].
-    thinner
-        Length by which all branches were made thinner in [m].
-    wood
-        Volume of the tree over that as scanned [-].
+    drawn
+        Area of the crown's wood over that before it was drawn to the allometry [-].
     is_cut
         Whether the scan ends at a thickness.
 
@@ -89,21 +85,17 @@ class Beyond:
 
     end: float
     grown: float
-    thinner: float
-    wood: float
+    drawn: float
     is_cut: bool
 
     def sentence(self) -> str:
         """Say what was grown, in one sentence."""
-        thinner = ''
-        if self.thinner > 0.0:
-            thinner = (
-                f'by the allometry of its size branches are {1e3 * self.thinner:.2g} mm thinner '
-                f'and it has {self.wood:.2f} times the scanned wood; '
-            )
+        drawn = ''
+        if abs(self.drawn - 1.0) > 0.005:
+            drawn = f', its area drawn to {self.drawn:.2f} times by the allometry of its species'
         return (
-            f'the scan ends at {1e3 * self.end:.3g} mm; {thinner}{100.0 * self.grown:.0f} % of '
-            'the area of its crown is grown beyond it (beyond_scan=none leaves it)'
+            f'the scan ends at {1e3 * self.end:.3g} mm; {100.0 * self.grown:.0f} % of the area of '
+            f'its crown is grown beyond it{drawn} (beyond_scan=none leaves it)'
         )
 
 
@@ -118,7 +110,7 @@ def is_cut(tree: Tree) -> bool:
     return float(np.median(ends)) >= CUT_AT
 
 
-def grown_beyond(tree: Tree, twig: float) -> tuple[Tree, Beyond | None]:
+def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond | None]:
     """
     Grow the wood beyond the ends of a scan.
 
@@ -128,6 +120,8 @@ def grown_beyond(tree: Tree, twig: float) -> tuple[Tree, Beyond | None]:
         Tree as scanned, its twigs corrected.
     twig
         Diameter of the last twigs in [m].
+    trusted
+        Diameter above which the scan is trusted in [m].
 
     Returns
     -------
@@ -137,74 +131,22 @@ def grown_beyond(tree: Tree, twig: float) -> tuple[Tree, Beyond | None]:
 
     """
     last = tree.branch_first[1:] - 1
-    seen = _open_diameter(tree, last)
-    ends = last[seen > 2.0 * twig]
-    if len(ends) == 0 or twig <= 0.0:
+    diameter = _open_diameter(tree, last)
+    open_ends = np.flatnonzero(diameter > 2.0 * twig)
+    if len(open_ends) == 0 or twig <= 0.0:
         return tree, None
-    end = float(np.median(seen[seen > 2.0 * twig]))
     cut = is_cut(tree)
-    length, volume, area = _beyond(tree, ends, twig, cut=cut)
-    thinner = tree
-    excess = 0.0
-    factor = 1.0
-    usual = _usual(tree)
-    if usual is not None:
-        wood, crown = usual
-        if cut:
-            wanted = _between(float(tree.volume.sum() + volume.sum()), wood)
-            most = min(max(end - 2.0 * twig, 0.0), _MOST_EXCESS)
-            excess = _excess(tree, ends, twig, wanted, most)
-        wanted = _between(_crown_area(tree) + float(area.sum()), crown)
-        thinner = _thinned(tree, excess, twig)
-        length, volume, area = _beyond(thinner, ends, twig, cut=cut)
-        factor = (wanted - _crown_area(thinner)) / float(area.sum())
-        factor = min(max(factor, 1.0 / _MOST_THINNER), _MOST_THINNER)
-    grown = _with_twigs(thinner, ends, length, volume, factor * area)
-    share = 1.0 - _crown_area(thinner) / _crown_area(grown)
-    left = float(grown.volume.sum() / tree.volume.sum())
-    return grown, Beyond(end, share, excess, left, cut)
-
-
-def is_to_be_grown(tree: Tree) -> bool:
-    """Whether a scan of many branches was cut, and trees of its species and size are known."""
-    return tree.n_branches >= _FEWEST and is_cut(tree) and _usual(tree) is not None
-
-
-def _usual(tree: Tree) -> tuple[float, float] | None:
-    """Volume in [m^3] of a tree of its size and area of its crown in [m^2]; None without a law."""
-    diameter = breast_height_diameter(tree)
-    if diameter is None or species_named(tree.species).habit != 'broadleaf':
-        return None
-    crown = crown_size(tree.species, diameter, tree.height)
-    if crown is None or diameter < _SMALLEST[0] or tree.height < _SMALLEST[1]:
-        return None
-    return wood_volume(diameter, tree.height), crown.wood_area
-
-
-def _between(scanned: float, usual: float) -> float:
-    return scanned**SCAN_WEIGHT * usual ** (1.0 - SCAN_WEIGHT)
-
-
-def _excess(tree: Tree, ends: Ints, twig: float, wanted: float, most: float) -> float:
-    """Find by which length [m] all branches are too thick, for a wanted volume [m^3]."""
-    low = 0.0
-    high = most
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        thinner = _thinned(tree, middle, twig)
-        volume = thinner.volume.sum() + _beyond(thinner, ends, twig, cut=True)[1].sum()
-        low, high = (middle, high) if volume > wanted else (low, middle)
-    return low
-
-
-def _thinned(tree: Tree, excess: float, twig: float) -> Tree:
-    """Return the tree with branches thinner by a length [m], no less than a twig."""
-    is_branch = np.arange(tree.n_segments) >= tree.branch_first[1]
-    base, tip = (
-        np.where(is_branch, np.maximum(each - excess, np.minimum(each, twig)), each)
-        for each in (tree.base_diameter, tree.tip_diameter)
-    )
-    return replace(tree, base_diameter=base, tip_diameter=tip)
+    ends = last[open_ends]
+    d = diameter[open_ends]
+    pipe = np.minimum(d, float(np.percentile(d, 25.0))) if cut else d
+    length, volume, area = _beyond(d, pipe, twig)
+    seen = _crown_area(tree)
+    factor, thinner = _prior(tree, seen, float(area.sum()), trusted)
+    grown = _with_twigs(thinner, ends, d, length, factor * volume, factor * area)
+    now = _crown_area(grown)
+    share = 1.0 - _crown_area(thinner) / now
+    drawn = now / (seen + float(area.sum()))
+    return grown, Beyond(float(np.median(d)), share, drawn, cut)
 
 
 def _open_diameter(tree: Tree, last: Ints) -> Floats:
@@ -224,33 +166,72 @@ def _crown_area(tree: Tree) -> float:
     return float(wide[tree.branch_first[1] :].sum())
 
 
-def _beyond(tree: Tree, ends: Ints, twig: float, *, cut: bool) -> tuple[Floats, Floats, Floats]:
-    """Length to go [m], volume [m^3] and area [m^2] beyond the ends of some branches."""
-    last = tree.branch_first[1:] - 1
-    d = np.maximum(_open_diameter(tree, last)[np.isin(last, ends)], twig)
-    pipe = np.minimum(d, max(float(np.percentile(d, 25.0)), 2.0 * twig)) if cut else d
+def _beyond(d: Floats, pipe: Floats, twig: float) -> tuple[Floats, Floats, Floats]:
+    """Length to go [m], volume [m^3] and area [m^2] beyond ends d [m], of pipes [m]."""
     length = _LENGTH * (pipe**_POWER - twig**_POWER)
     rest = 1.0 - _POWER
     area = _LENGTH * _POWER * d**2 * (twig**-rest - pipe**-rest) / rest
     return length, 0.25 * math.pi * d**2 * length, area
 
 
-def _with_twigs(tree: Tree, ends: Ints, length: Floats, volume: Floats, area: Floats) -> Tree:
+def _prior(tree: Tree, seen: float, beyond: float, trusted: float) -> tuple[float, Tree]:
+    """Find the factor of what is grown, and the tree, its thin wood thinned if it has too much."""
+    diameter = breast_height_diameter(tree)
+    height = tree.height
+    crown = None if diameter is None else crown_size(tree.species, diameter, height)
+    is_broadleaf = species_named(tree.species).habit == 'broadleaf'
+    if crown is None or diameter is None or not is_broadleaf:
+        return 1.0, tree
+    if diameter < _SMALLEST[0] or height < _SMALLEST[1]:
+        return 1.0, tree
+    total = seen + beyond
+    variance = SCAN_SPREAD**2 + (GROWN_SPREAD * beyond / total) ** 2
+    weight = variance / (variance + AREA_SPREAD**2)
+    wanted = total ** (1.0 - weight) * crown.wood_area**weight
+    if wanted >= seen:
+        return min((wanted - seen) / beyond, _MOST_GROWN), tree
+    low = _THINNEST
+    high = 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        is_less = _crown_area(_thinned(tree, middle, trusted)) < wanted
+        low, high = (middle, high) if is_less else (low, middle)
+    return 0.0, _thinned(tree, high, trusted)
+
+
+def _thinned(tree: Tree, factor: float, trusted: float) -> Tree:
+    """Return the tree with thin wood thinner by a factor; trusted wood and the stem stay."""
+    is_branch = np.arange(tree.n_segments) >= tree.branch_first[1]
+
+    def thinned(diameter: Floats) -> Floats:
+        share = factor + (1.0 - factor) * np.minimum(diameter / trusted, 1.0)
+        return np.where(is_branch, share * diameter, diameter)
+
+    return replace(
+        tree,
+        base_diameter=thinned(tree.base_diameter),
+        tip_diameter=thinned(tree.tip_diameter),
+    )
+
+
+def _with_twigs(
+    tree: Tree, ends: Ints, d: Floats, length: Floats, volume: Floats, area: Floats
+) -> Tree:
     """Return the tree with equal twigs of a volume and an area at the end of some segments."""
     has = area > 1e-9
     ends = ends[has]
     length = length[has]
     volume = volume[has]
+    area = area[has]
     if len(ends) == 0:
         return tree
-    thick = 4.0 / math.pi * volume / area[has]
-    section = 4.0 / math.pi * volume
-    count = np.clip(np.rint(section / (thick**2 * length)), 1, _MOST_AT_AN_END)
+    thick = 4.0 / math.pi * volume / area
+    count = np.clip(np.rint(area / (thick * length)), 1, _MOST_AT_AN_END)
     if count.sum() > _MOST_TWIGS:
         count = np.maximum(np.floor(count * _MOST_TWIGS / count.sum()), 1)
-    # Fewer twigs are longer, up to twice; then they are thicker, at the same wood.
-    reach = np.minimum(section / (thick**2 * count), 2.0 * length)
-    thick = np.sqrt(section / (reach * count))
+    # Fewer twigs are longer, up to twice; what is then left is in their thickness.
+    reach = np.minimum(area / (thick * count), 2.0 * length)
+    thick = area / (reach * count)
     count = count.astype(np.int64)
     at = np.repeat(np.arange(len(ends)), count)
     number = np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)

@@ -19,8 +19,8 @@ from tree_sway_lab.validation.report import (
 )
 from tree_sway_lab.validation.section import Check, CHECKS, Effort, Section
 
+from tree_sway.core.tree.crown_allometry import AREA_SPREAD
 from tree_sway.errors import ParameterError
-from tree_sway.growth.beyond_scan import SCAN_WEIGHT
 from tree_sway.simulation import strength_band
 
 
@@ -49,9 +49,7 @@ def test_the_first_screen_has_the_spreads_of_the_program() -> None:
     (budget,) = (line for line in head.splitlines() if line.startswith('| 0.02 | '))
     cells = [float(re.match(r'[\d.]+', cell.strip()).group()) for cell in budget.split('|')[1:-1]]
     roots = math.hypot(strength_band.ROOTS_OF_A_SPECIES, strength_band.ROOTS_OF_SPECIES)
-    of_scan = SCAN_WEIGHT / (1.0 - SCAN_WEIGHT) * (math.log(1.45) ** 2 + 0.3**2)
-    scan = math.sqrt(of_scan)
-    found = [strength_band.WOOD, strength_band.DRAG, strength_band.LEAVES, scan, roots]
+    found = [strength_band.WOOD, strength_band.DRAG, strength_band.LEAVES, AREA_SPREAD, roots]
     assert cells[1:] == [*(round(each, 2) for each in found), strength_band.WIND]
 
 

@@ -23,6 +23,7 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.tree.building import check_numbers as check_numbers
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
+    from tree_sway.core.tree.crown_allometry import AREA_SPREAD as AREA_SPREAD
     from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT as BREAST_HEIGHT
     from tree_sway.core.tree.crown_allometry import (
         breast_height_diameter as breast_height_diameter,

@@ -58,6 +58,12 @@ Share of the light that a bare broadleaf crown blocks [-], from the side: measur
 0.16 to 0.48 (Heisler 1986, Urban Ecology 9, 337-359).
 """
 
+AREA_SPREAD = 0.40
+"""
+Log-deviation of the area of wood in a crown of given diameter and height [-]: 0.18 of the width,
+0.20 of the depth, 0.30 of the opacity.
+"""
+
 
 class CrownSize(NamedTuple):
     """Width and depth of a crown in [m]."""

@@ -20,7 +20,7 @@ from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.growth import grown_beyond, is_cut, is_to_be_grown
+from tree_sway.growth import grown_beyond, is_cut
 
 _ENDS = ('start', 'end')
 _DIAMETERS = ('diameter', 'base_diameter', 'tip_diameter')
@@ -31,7 +31,7 @@ _RANGES = {
 }  # fmt: skip
 
 
-FITTED = {'twig_diameter': None, 'beyond_scan': None, 'thicken': True, 'to_origin': True}
+FITTED = {'twig_diameter': None, 'thicken': True, 'to_origin': True}
 """
 Defaults of formats that a program writes which fits cylinders to a scan, with the faults of one.
 All others describe a tree, which is as its file states it unless a change is asked for.
@@ -63,8 +63,7 @@ class TreeOptions:
     trusted_diameter
         Diameter above which a scan is trusted in [m].
     beyond_scan
-        ``grow`` what the scan could not see (`grown_beyond`), or ``none``; if None, that of a
-        broadleaf whose scan ends at a thickness (`is_to_be_grown`).
+        ``grow`` what the scan could not see (`grown_beyond`), or ``none``.
     thicken
         Whether to thicken the limbs that cannot carry themselves in the season that the tree is
         opened for (`standing_tree`).
@@ -81,7 +80,7 @@ class TreeOptions:
     up: str = 'z'
     twig_diameter: float | None = 0.0
     trusted_diameter: float = 0.05
-    beyond_scan: str | None = 'none'
+    beyond_scan: str = 'none'
     thicken: bool = False
     to_origin: bool = False
     tree: int = 0
@@ -93,7 +92,7 @@ class TreeOptions:
                 within(name, getattr(self, name), low, high, 'm (0.01 is 1 cm)')
         one_of('up', self.up, ('z', 'y'))
         one_of('to_origin', self.to_origin, (True, False))
-        one_of('beyond_scan', self.beyond_scan, ('grow', 'none', None))
+        one_of('beyond_scan', self.beyond_scan, ('grow', 'none'))
         one_of('thicken', self.thicken, (True, False))
 
     def in_metres(self, shape: _Shape) -> _Shape:
@@ -135,10 +134,10 @@ class TreeOptions:
                 f'twigs are made {1e3 * twig:g} mm thick: {100.0 * (1.0 - left):.0f} % of the '
                 'wood taken off (twig_diameter=0 leaves it)'
             )
-        of_species = replace(tree, species=species.key)
-        is_wanted = self.beyond_scan is None and is_to_be_grown(of_species)
-        if self.beyond_scan == 'grow' or is_wanted:
-            tree, beyond = grown_beyond(of_species, twig)
+        if self.beyond_scan == 'grow':
+            tree, beyond = grown_beyond(
+                replace(tree, species=species.key), twig, self.trusted_diameter
+            )
             notes.append(_why_nothing_grows(twig) if beyond is None else beyond.sentence())
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
