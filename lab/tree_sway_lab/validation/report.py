@@ -32,8 +32,8 @@ from tree_sway_lab.validation.section import CHECKS, Effort, HOLDS, MISSES, Sect
 
 SECTIONS = (
     'kinds', 'storms', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans',
-    'still_air', 'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'held_out',
-    'forestgales', 'broadleaves', 'battery', 'paper',
+    'cut_scans', 'still_air', 'leaves', 'slopes', 'crown_gusts', 'conifers', 'published',
+    'held_out', 'forestgales', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 
