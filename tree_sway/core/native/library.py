@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x3245ccef
+INTERFACE = 0x3245CCEF
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -53,7 +53,15 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_past_winds': (
         None,
         (
-            _pointer, _size, _number, _pointer, _pointer, _size, _number, _pointer, _number,
+            _pointer,
+            _size,
+            _number,
+            _pointer,
+            _pointer,
+            _size,
+            _number,
+            _pointer,
+            _number,
             _pointer,
         ),
     ),
@@ -69,17 +77,20 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
     # Loads of winds on branches.
     'sway_wind_moments': (
-        None, (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
+        None,
+        (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
     ),
     'sway_load_slopes': (
-        None, (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
+        None,
+        (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
     'sway_step_branches': (
         _whole,
         (_pointer, _size, _pointer, _pointer, _number, _number, _number, _number),
     ),
     'sway_rest_branches': (
-        None, (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
+        None,
+        (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
     ),
 }
 """Result and arguments of every function."""

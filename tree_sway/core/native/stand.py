@@ -150,9 +150,7 @@ class NativeStand:
             go on from rest.
 
         """
-        LIBRARY.sway_step(
-            self._handle, 0, 0, len(winds), address(winds), address(self._counts)
-        )
+        LIBRARY.sway_step(self._handle, 0, 0, len(winds), address(winds), address(self._counts))
         clamped, restarted = self._counts.tolist()
         return clamped, restarted
 

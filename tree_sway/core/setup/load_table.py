@@ -340,4 +340,3 @@ def harmonics_at(directions: Floats) -> Floats:
     x, y, z = directions.T
     fill_harmonics(x, y, z, out)
     return out.T
-

@@ -25,18 +25,17 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
 from tree_sway.files.column_names import folded, unit_factor
+from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
-from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.compass import degrees_of
-from tree_sway.files.wind.layouts.known import layout_of
-from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.record import WindRecord, WindRows
-from tree_sway.files.wind.row_times import row_times, time_columns
 from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
+from tree_sway.files.wind.speed_units import speed_units
 from tree_sway.files.wind.station_means import filled_means
-from tree_sway.files.wind.station_units import speed_units
+from tree_sway.files.zipped import tables_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
@@ -66,10 +65,11 @@ def read_table_wind(
     WindConvention(direction_convention or 'to')  # refused before the file is read
     if direction is not None and not 0.0 <= direction <= 360.0:
         raise ParameterError(f'direction is {direction:g} degrees', cure='give 0 to 360')
-    lines = read_table_lines(path)
-    table = (layout_of(lines[:_HEAD]) or PLAIN).read(lines, str(path))
+    found = [(name, lines) for name, lines in tables_in(path) if lines]
+    is_wind = [each for each in found if looks_like_wind('\n'.join(each[1][:_HEAD]))]
+    name, lines = (is_wind or found)[0]
     return wind_of_table(
-        table,
+        table_of(lines, name),
         columns=columns,
         convention=direction_convention,
         yaw=yaw,

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
-from tree_sway.files.wind.layouts.long import Value, wide_table
 
 _DEEPEST = 12
 Cells = dict[str, str]
