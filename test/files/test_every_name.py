@@ -131,9 +131,7 @@ def test_every_name_of_a_time_is_read() -> None:
         np.testing.assert_allclose(wind, [5.0, 0.0, 0.0], atol=1e-9, err_msg=name)
 
 
-@pytest.mark.parametrize(
-    'maker', WIND_MAKERS, ids=lambda each: f'{each["maker"]} {each["value"]}'
-)
+@pytest.mark.parametrize('maker', WIND_MAKERS, ids=lambda each: f'{each["maker"]} {each["value"]}')
 def test_every_maker_has_its_unit(maker: dict[str, object], tmp_path: Path) -> None:
     cells = {
         'year': '2026', 'mo': '3', 'dy': '{k}', 'hr': '1', 'hour': '1', 'date': '2026-03-0{k}',
@@ -167,7 +165,7 @@ def test_every_maker_of_motion_sensors_has_its_units(
     maker: dict[str, object], tmp_path: Path
 ) -> None:
     names = str(maker['names']).split()
-    clock = [each for each in names if rank_of(each, 'time') is not None] 
+    clock = [each for each in names if rank_of(each, 'time') is not None]
     clock = clock or ['sampletimefine' if 'packetcounter' in names else 'seconds_elapsed']
     step = 0.02 / (unit_factor('time', str(maker['time'])) if maker['time'] else 1.0)
     axes = [f'{each[:-1]}{axis}' for each in names if each[-1] in 'xz' for axis in 'xyz']
@@ -209,7 +207,8 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'horamin': '{k}00', 'yy': '2026', 'year': '2026', 'vuosi': '2026', 'mm': '3', 'month': '3',
         'mo': '3', 'kuukausi': '3', 'kk': '3', 'dd': '1', 'day': '1', 'dy': '1', 'paeivae': '1',
         'pv': '1', 'date': '2026-03-01', 'datum': '2026-03-01', 'fecha': '2026-03-01',
-        'data': '2026-03-01',
+        'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
+        'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import re
 
+from tree_sway.files.cell_table import table_of_lines
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import SEPARATORS, TextTable
@@ -31,27 +32,25 @@ def _is_monitored(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    stamped = [_STAMP.fullmatch(line) for line in lines]
-    texts = [
-        line if found is None else found[2] for line, found in zip(lines, stamped, strict=True)
-    ]
+    found = [_STAMP.fullmatch(line) for line in lines]
+    clocks = [stamp[1] if stamp else '' for stamp in found]
+    texts = [stamp[2] if stamp else line for stamp, line in zip(found, lines, strict=True)]
     filled = [text for text in texts if text.strip()]
-    if _are_pairs(filled[-1]):
-        names = [name for name, _ in _PAIR.findall(filled[-1])]
-        values = [dict(_PAIR.findall(text)) for text in texts]
-        texts = [','.join(each.get(name, '') for name in names) for each in values]
-        texts[0] = ','.join(names)  # the first row stands where the header is
-        filled = texts
-    separator = max(SEPARATORS, key=filled[-1].count)
-    if stamped[0] is not None:
-        clocks = ['' if found is None else found[1] for found in stamped]
-        is_named = any(map(str.isalpha, texts[0]))
-        clocks[0] = _CLOCK if is_named else clocks[0]
-        texts = [
-            clock + separator + text if text.strip() else ''
-            for clock, text in zip(clocks, texts, strict=True)
-        ]
-    return PLAIN.read(texts, source)
+    if not _are_pairs(filled[-1]):
+        separator = max(SEPARATORS, key=filled[-1].count)
+        is_named = any(map(str.isalpha, filled[0]))
+        clocks[0] = _CLOCK if is_named and clocks[0] else clocks[0]
+        pairs = zip(clocks, texts, strict=True)
+        rows = [f'{clock}{separator}{text}' if clock else text for clock, text in pairs]
+        return PLAIN.read(rows, source)
+    names = [name for name, _ in _PAIR.findall(filled[-1])]
+    values = [dict(_PAIR.findall(text)) for text in texts]
+    cells = [
+        (number, [clocks[number - 1], *(each.get(name, '') for name in names)])
+        for number, each in enumerate(values, start=1)
+        if each
+    ]
+    return table_of_lines([_CLOCK if any(clocks) else '', *names], cells, source)
 
 
 MONITOR = Layout('serial monitor', _is_monitored, _read)

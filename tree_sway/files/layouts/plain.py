@@ -56,7 +56,7 @@ def header_line(lines: Sequence[str]) -> int | None:
         if is_comment:
             filled = _cells(_uncommented(line))
         if len(filled) > 1 and 2 * n_numbers <= len(filled):
-            count = sum(map(_is_known, filled[:_MOST_COLUMNS]))
+            count = sum(map(is_known, {*filled[:_MOST_COLUMNS]}))
             (hashed if is_comment else plain)[number] = count
     found = plain if max(plain.values(), default=0) > 1 else plain | hashed
     most = max(found, key=lambda number: found[number], default=None)
@@ -77,10 +77,13 @@ def _cells(line: str) -> list[str]:
 
 
 @lru_cache(4096)
-def _is_known(cell: str) -> bool:
+def is_known(cell: str) -> bool:
+    """Whether a cell is the name of a column that is known."""
     if not cell or _NUMBER.fullmatch(cell) or cell.lower() in _PARTS:
         return cell.lower() in _PARTS
-    return any(rank_of(cell, each) is not None for each in _KNOWN) or motion_of(cell) is not None
+    motion = motion_of(cell)
+    is_axis = motion is not None and motion[2] != ''
+    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
 
 
 def _has_time(line: str) -> bool:
@@ -147,8 +150,8 @@ def _are_units(table: TextTable, cells: Sequence[str]) -> bool:
 def _unit_below(cell: str) -> str:
     """Return a unit in brackets behind a name or alone; a cell without brackets as it is."""
     name, unit = name_and_unit(cell, 'speed')
-    if name == cell and not unit:
-        return cell.strip('[]()')
+    if any(unit_known(kind, cell) for kind in _KINDS) or (name == cell and not unit):
+        return cell.strip('[]')
     return unit if any(unit_known(kind, unit) for kind in ('angle', *_KINDS)) else ''
 
 

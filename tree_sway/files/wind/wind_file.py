@@ -30,7 +30,7 @@ WIND_FORMATS = (
     FileFormat(
         'sonic',
         (),
-        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
+        contains(r'^(\d[-\d:. T]*Z?[ ,;]+)?(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
         read_sonic_wind,
     ),
     FileFormat(
