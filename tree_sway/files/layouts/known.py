@@ -45,5 +45,5 @@ def looks_like_wind(head: str) -> bool:
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
     found = layout_of(lines[:_HEAD])
     if found is JSON:
-        return 'wind' in head.lower() or 'wd' in head
+        return any(word in head.lower() for word in ('wind', 'wd', '"obs'))
     return found is not None

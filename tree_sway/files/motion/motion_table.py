@@ -170,7 +170,9 @@ def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
         for quantity in _AXES:
             values = getattr(each, quantity)
             if found[quantity] is None and values is not None:
-                shift = 0.0 if None in (first.epoch, each.epoch) else each.epoch - first.epoch
+                shift = 0.0
+                if first.epoch is not None and each.epoch is not None:
+                    shift = each.epoch - first.epoch
                 found[quantity] = np.stack(
                     [
                         np.interp(first.time, each.time + shift, axis, np.nan, np.nan)
