@@ -18,16 +18,18 @@ from tree_sway.core.species.species import species_like
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import COLUMNS, folded, MOTIONS, rank_of, unit_factor, UNITS
 from tree_sway.files.motion.motion_file import read_motion
+from tree_sway.files.row_times import PARTS
 from tree_sway.files.scenes.inventory.read_inventory import inventory_of
 from tree_sway.files.scenes.inventory.species_codes import FIA, ICP, name_of, names_of
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.wind.compass import degrees_of
-from tree_sway.files.wind.row_times import PARTS
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.tables import table_beside
 
 ROOT = Path(__file__).resolve().parents[2] / 'tree_sway' / 'files'
-MAKERS = table_beside(str(ROOT / 'wind' / 'station_units.py'), 'station_units.csv')
+MAKERS = table_beside(str(ROOT / 'makers.py'), 'makers.csv')
+WIND_MAKERS = [each for each in MAKERS if each['speed']]
+MOTION_MAKERS = [each for each in MAKERS if each['acceleration'] or each['rate']]
 WIND = ('time', 'wind_x', 'wind_y', 'wind_z', 'wind_speed', 'wind_direction', 'gust')
 INVENTORY = tuple(each for each in COLUMNS if each not in WIND and each not in MOTIONS)
 BY_RULE = {
@@ -129,7 +131,7 @@ def test_every_name_of_a_time_is_read() -> None:
         np.testing.assert_allclose(wind, [5.0, 0.0, 0.0], atol=1e-9, err_msg=name)
 
 
-@pytest.mark.parametrize('maker', MAKERS, ids=lambda each: f'{each["maker"]} {each["value"]}')
+@pytest.mark.parametrize('maker', WIND_MAKERS, ids=lambda each: f'{each["maker"]} {each["value"]}')
 def test_every_maker_has_its_unit(maker: dict[str, object], tmp_path: Path) -> None:
     cells = {
         'year': '2026', 'mo': '3', 'dy': '{k}', 'hr': '1', 'hour': '1', 'date': '2026-03-0{k}',
@@ -149,13 +151,48 @@ def test_every_maker_has_its_unit(maker: dict[str, object], tmp_path: Path) -> N
     path = tmp_path / 'wind.csv'
     lines = [';'.join(columns), *(';'.join(columns.values()).replace('{k}', k) for k in '1234')]
     path.write_text('\n'.join(lines), encoding='utf-8')
-    if not maker['speed']:
+    if maker['speed'] == '?':
         with pytest.raises(FormatError, match='does not say the unit'):
             read_wind(path, turbulence=False)
         return
     record = read_wind(path, format='csv', turbulence=False)
     unit = unit_factor('speed', str(maker['speed']))
     np.testing.assert_allclose(record.velocity[:, 0], [10.0 * unit] * 4)
+
+
+@pytest.mark.parametrize('maker', MOTION_MAKERS, ids=lambda each: each['names'])
+def test_every_maker_of_motion_sensors_has_its_units(
+    maker: dict[str, object], tmp_path: Path
+) -> None:
+    names = str(maker['names']).split()
+    clock = [each for each in names if rank_of(each, 'time') is not None]
+    clock = clock or ['sampletimefine' if 'packetcounter' in names else 'seconds_elapsed']
+    step = 0.02 / (unit_factor('time', str(maker['time'])) if maker['time'] else 1.0)
+    axes = [f'{each[:-1]}{axis}' for each in names if each[-1] in 'xz' for axis in 'xyz']
+    if not axes:
+        axes = ['acc_x', 'acc_y', 'acc_z', 'gyr_x', 'gyr_y', 'gyr_z']
+    if 'accelerometerms20' in names:
+        axes = [f'accelerometer_m_s2[{k}]' for k in range(3)]
+    columns = list(dict.fromkeys([*clock, *axes, *names]))
+    columns = [each for each in columns if each != 'accelerometerms20']
+    lines = [str(maker['above'] or '#'), ','.join(columns)]
+    for k in range(20):
+        cells = dict.fromkeys(columns, '0.5') | {
+            columns[0]: f'{1000 + k * step:.6f}', 'packetcounter': str(k),
+            'rtcdate': '2026-03-01', 'rtctime': f'10:00:{0.02 * k:06.3f}',
+        }  # fmt: skip
+        lines.append(','.join(cells[each] for each in columns))
+    path = tmp_path / 'motion.csv'
+    path.write_text('\n'.join(lines), encoding='utf-8')
+    record = read_motion(path)
+    np.testing.assert_allclose(np.diff(record.time), 0.02, rtol=1e-6)
+    for quantity in ('acceleration', 'rate'):
+        values = getattr(record, quantity)
+        if values is not None:
+            sign = (maker['sign'] or 1) if quantity == 'acceleration' else 1
+            factor = sign * (unit_factor(quantity, str(maker[quantity])) or 0.0)
+            np.testing.assert_allclose(values, 0.5 * factor)
+    assert record.acceleration is not None or record.rate is not None
 
 
 def test_every_point_of_the_compass_is_a_direction() -> None:
@@ -170,7 +207,8 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'horamin': '{k}00', 'yy': '2026', 'year': '2026', 'vuosi': '2026', 'mm': '3', 'month': '3',
         'mo': '3', 'kuukausi': '3', 'kk': '3', 'dd': '1', 'day': '1', 'dy': '1', 'paeivae': '1',
         'pv': '1', 'date': '2026-03-01', 'datum': '2026-03-01', 'fecha': '2026-03-01',
-        'data': '2026-03-01',
+        'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
+        'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])

@@ -98,9 +98,9 @@ WORDS: list[Any] = [
 
 @pytest.mark.parametrize('seed', range(40))
 def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
+    from tree_sway.live.readers.signalk import SignalKWind
     from tree_sway.live.reading import Refusal, WindReading
     from tree_sway.live.sources.metar_report import read_reports
-    from tree_sway.live.sources.signalk import SignalKWind
     from tree_sway.live.transports.transport import Message
 
     rng = random.Random(seed)
@@ -123,7 +123,7 @@ def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
 
 def test_names_without_end_are_not_kept() -> None:
     from tree_sway.live.readers.named_values import WindNames
-    from tree_sway.live.sources.signalk import SignalKWind
+    from tree_sway.live.readers.signalk import SignalKWind
     from tree_sway.live.transports.transport import Message
 
     names, read = WindNames(), SignalKWind()

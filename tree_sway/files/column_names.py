@@ -29,6 +29,9 @@ COLUMNS: dict[str, dict[str, Any]] = {
 }
 """Names of the column of a quantity, and its kind of unit."""
 
+FILES_OF = {quantity: re.compile(words) for quantity, words in _KNOWN['files_of'].items()}
+"""Words in the names of files, folded, and the motion that they have; empty for none."""
+
 INVENTORY: dict[str, list[str]] = _KNOWN['inventory']
 """Columns that an inventory needs: what they say, and the quantities that do together."""
 
@@ -43,6 +46,8 @@ _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?) (\D.*)')
+_AXIS_FIRST = re.compile(r'^([XYZxyz])[ _-]([A-Za-z]{3,}.*)')
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
 _SHAPEFILE_NAME = 10
@@ -85,6 +90,9 @@ _NAMES = {
     for quantity, known in COLUMNS.items()
 }
 
+_PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns'].items()}
+"""Names that vary, as with the number of an instrument in them, folded."""
+
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
 
@@ -92,10 +100,14 @@ def unit_factor(kind: str, unit: str) -> float | None:
     """
     Factor from a unit to SI; None if it is not one of this kind.
 
-    A zone of time, as in ``Date (Europe/Berlin)``, stands for dates, of factor 1.
+    A number may be before it, as in ``0.1 m/s``. A zone of time, as in
+    ``Date (Europe/Berlin)``, stands for dates, of factor 1.
     """
     if kind == 'time' and _ZONE.fullmatch(unit.strip()):
         return 1.0
+    scaled = _SCALED.fullmatch(unit.strip())
+    if scaled is not None and kind in UNITS and (of_one := unit_factor(kind, scaled[2])):
+        return float(scaled[1]) * of_one
     return UNITS.get(kind, {}).get(folded_unit(unit))
 
 
@@ -119,6 +131,7 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
     return text, ''
 
 
+@lru_cache(8192)
 def rank_of(column: str, quantity: str) -> int | None:
     """
     Place of a column's name among the names of a quantity; None if it is not one of them.
@@ -134,14 +147,16 @@ def rank_of(column: str, quantity: str) -> int | None:
         follows = whole.startswith(known) and _glued_unit(name, known, kind)
         if known in found or follows or _is_cut(column, known):
             return rank
-    return None
+    pattern = _PATTERNS.get(quantity)
+    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, found)))
+    return len(_NAMES[quantity]) if is_like else None
 
 
 @lru_cache(4096)
 def motion_of(column: str) -> tuple[str, str, str] | None:
     """Quantity of a column of a motion, its name and its axis; None for another column."""
     for quantity, pattern in MOTIONS.items():
-        name = name_and_unit(column, quantity)[0]
+        name = _AXIS_FIRST.sub(r'\2 \1', name_and_unit(column, quantity)[0])
         plain = _without_unit(name, quantity)[0] or folded(name)
         if found := pattern.fullmatch(plain):
             return quantity, plain[: found.start('axis')], found['axis'] or ''
@@ -170,8 +185,7 @@ def unit_in_name(name: str, quantity: str) -> str:
     """Return the unit in a column's name, as in ``x_m`` and ``ws_mph_avg``; empty without one."""
     kind = COLUMNS[quantity]['unit']
     glued = (_glued_unit(name, each, kind) for each in _NAMES[quantity])
-    in_words = _without_unit(name, kind)[1] or next(filter(None, glued), '')
-    return in_words or _KNOWN['own_units'].get(folded(name), '')
+    return _without_unit(name, kind)[1] or next(filter(None, glued), '')
 
 
 @lru_cache(4096)

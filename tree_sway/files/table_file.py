@@ -37,6 +37,7 @@ SEPARATORS = '\t;|,'
 _MAX_COLUMNS = 10_000
 _MOST_LINES = 50
 """Lines of a row at most."""
+_MOST_UNITS = 6
 _MEND = 'correct the cell or remove the row'
 _NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
@@ -58,6 +59,7 @@ class TextTable:
 
     ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
     columns, if they are in a separate row. ``row_name`` is the name of a row in messages.
+    ``above`` are the lines above the header.
     """
 
     columns: tuple[str, ...]
@@ -69,6 +71,7 @@ class TextTable:
     unit_line: int = 1
     units: tuple[str, ...] = ()
     row_name: str = 'line'
+    above: tuple[str, ...] = ()
 
     def where(self, row: int | None = None) -> str:
         """File and line of a row, or of the header."""
@@ -86,12 +89,15 @@ class TextTable:
         what = f"no column '{name}' among {', '.join(self.columns[:20])}"
         raise self.error(what, cure='export it with its header line, unchanged')
 
-    def _known(self, kind: str, unit: str) -> float:
+    def known_factor(self, kind: str, unit: str) -> float:
         """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
         factor = unit_factor(kind, unit)
         if factor is None:
             what = f"unknown unit '{unit[:20]}'"
-            cure = f'use {", ".join(UNITS[kind])}'
+            usual: dict[float, str] = {}
+            for name, each in UNITS[kind].items():
+                usual.setdefault(each, name)
+            cure = f'use {", ".join([*usual.values()][:_MOST_UNITS])}'
             raise FormatError(what, where=f'{self.source}:{self.unit_line}', cure=cure)
         return factor
 
@@ -112,7 +118,7 @@ class TextTable:
         unit = self.unit_of(index, quantity)
         if not unit or not UNITS.get(kind):
             return 1.0 if default is None else default
-        return self._known(kind, unit)
+        return self.known_factor(kind, unit)
 
     def unit_of(self, index: int, quantity: str) -> str:
         """Return the unit of a column of a quantity as it is written; empty without one."""
@@ -270,10 +276,12 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
-    if not any(map(str.isalpha, _STAMP_LETTERS.sub('', header))):
+    separator = max(SEPARATORS, key=header.count)
+    filled = list(filter(None, split_row(header, separator)))
+    has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
+    if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):
         what = f"no header: the first line, '{header[:40]}', has no names"
         raise FormatError(what, where=f'{source}:{numbers[0]}', cure=_NAME)
-    separator = max(SEPARATORS, key=header.count)
     if any('"' in text for text in texts):
         numbers, texts = whole_rows(numbers, texts, separator)
         if len(texts) < 2:
@@ -287,7 +295,8 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     columns = tuple(split(texts[0]))
     if len(columns) > _MAX_COLUMNS:
         raise FormatError(f'a header of {len(columns)} columns', where=f'{source}:{numbers[0]}')
-    table = TextTable(columns, numbers[1:], texts[1:], split, source)
+    first_line = numbers[0]
+    table = TextTable(columns, numbers[1:], texts[1:], split, source, first_line, first_line)
     long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
     if 2 * len(long) > len(table.texts):
         what = f'more cells than the {len(columns)} columns of the header, as in most rows'

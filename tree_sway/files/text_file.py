@@ -120,18 +120,19 @@ def _no_text(error: UnicodeDecodeError, path: Path) -> FormatError:
 
 def read_lines(path: Path) -> list[str]:
     """Read a text file in UTF-8 as lines, ended by LF, CRLF or CR, without their ends."""
-    return _lines(read_text(path), path)
+    return table_lines(read_text(path), path)
 
 
 def read_table_lines(path: Path) -> list[str]:
     """Read a table as lines, in any encoding of `decoded`; a `FormatError` for binary data."""
     try:
-        return _lines(decoded(read_bytes(path)), path)
+        return table_lines(decoded(read_bytes(path)), path)
     except UnicodeDecodeError as error:
         raise _no_text(error, path) from None
 
 
-def _lines(text: str, path: Path) -> list[str]:
+def table_lines(text: str, path: Path) -> list[str]:
+    """Return the lines of a text; a `FormatError` above `MAX_LINES`."""
     if max(text.count('\n'), text.count('\r')) > MAX_LINES:
         raise FormatError(
             f'more than {MAX_LINES} lines', where=str(path), cure='cut it into smaller files'

@@ -57,6 +57,11 @@ _SERIALS = (
 _MANY_HOURS = 0.2
 """Step of days that counts of seconds have as well, in [d]."""
 
+_COUNTERS = (2.0**16, 2.0**32)
+"""Numbers at which counters begin anew."""
+_LONGEST_STEP = 100.0
+"""Longest step over that number, in usual steps."""
+
 _NONE = np.iinfo(np.int64).min
 _DAY = 86_400_000_000
 _1970 = date(1970, 1, 1)
@@ -76,7 +81,7 @@ class Times:
     note: str = ''
 
 
-_TIME_OF_DAY = re.compile(r'\d{1,2}:\d\d(?::\d\d)?\s*(?:[AaPp]\.?[Mm]\.?)?')
+_TIME_OF_DAY = re.compile(r'\d{1,2}:\d\d(?::\d\d(?:[.,:]\d+)?)?\s*(?:[AaPp]\.?[Mm]\.?)?')
 
 
 def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
@@ -90,6 +95,7 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         return dates(stamps)
     numbers = [finite(stamp) for stamp in stamps]
     values = np.array([np.nan if number is None else number for number in numbers])
+    values = unwrapped(values)
     size = abs(float(np.nanmedian(values)))
     days = _days(values, factor)
     if days is not None and days.epoch is not None:
@@ -101,6 +107,21 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
         return Times(values * factor, None, note)
     origin = float(values[np.isfinite(values)][0])
     return Times((values - origin) * factor, origin * factor)
+
+
+def unwrapped(counts: Floats) -> Floats:
+    """Return counts of 16 or 32 bits that begin anew at 0 without their steps back."""
+    steps = np.diff(counts)
+    forth = steps[steps > 0.0]
+    is_back = steps < 0.0
+    if not is_back.any() or not len(forth):
+        return counts
+    most = _LONGEST_STEP * float(np.median(forth))
+    for size in _COUNTERS:
+        over = steps[is_back] + size
+        if bool(((over > 0.0) & (over <= most)).all()):
+            return counts + size * np.concatenate([[0.0], np.cumsum(is_back)])
+    return counts
 
 
 def _days(values: Floats, factor: float) -> Times | None:

@@ -115,7 +115,6 @@ class Alignment:
         out[..., 6:9] = values[..., 6:9] @ self.turn.T
         return out
 
-
     def turned(self, angle: float, error: float) -> Alignment:
         """Return it turned from east to north by an angle of an error, both in [rad]."""
         return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)

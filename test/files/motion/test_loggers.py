@@ -71,7 +71,7 @@ READ: dict[str, tuple[str, tuple[str, ...], str]] = {
             'accelerometerAccelerationZ(G),motionUserAccelerationX(G),'
             'motionUserAccelerationY(G),motionUserAccelerationZ(G),gyroRotationX(rad/s),'
             'gyroRotationY(rad/s),gyroRotationZ(rad/s)',
-            '{date} +0100,{k},{s},{g},0.0,1.0,0.0,0.0,0.0,0.0,0.5,0.0'),
+            '{date} +0100,{k},{s},-{g},0.0,-1.0,0.0,0.0,0.0,0.0,0.5,0.0'),
     ),
     'physics toolbox': (
         'motion.csv', (ACCELERATION,),

@@ -66,6 +66,7 @@ class BranchOscillators:
         self.x, self.v = self.state
         self.tunable = Tunable(stiffness, damping, inertia, weight)
         """Arrays that change with stiffness, damping and gravity."""
+
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         whole, half = np.zeros((2, len(self.branches), 8))

@@ -42,7 +42,6 @@ Motion: TypeAlias = Callable[[], Floats]
 """Function that returns the present coordinates of trees in a basis, (t, m)."""
 
 
-
 @dataclass
 class Counts:
     """

@@ -49,9 +49,7 @@ class TableOscillators:
 
     loads: Records | None = None
 
-    def __init__(
-        self, modal: ModalCoordinates, stand: NativeStand, most_pressure: float
-    ) -> None:
+    def __init__(self, modal: ModalCoordinates, stand: NativeStand, most_pressure: float) -> None:
         self.modal = modal
         self.most_pressure = most_pressure
         self.stand = stand

@@ -15,6 +15,7 @@ def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:
     """Whether a vector in [m/s] is finite and no faster than a limit."""
     return math.hypot(x, y, z) <= limit
 
+
 _WHOLE = 0.99
 """Share of the time that is asked for from which a wind is long enough."""
 

@@ -13,24 +13,41 @@ number, so that the sensor refuses and counts its row.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 import re
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.column_names import folded, motion_of, name_and_unit, SENDERS, unit_known
+from tree_sway.core.rotation import quaternion_rotated
+from tree_sway.errors import FormatError
+from tree_sway.files.column_names import (
+    FILES_OF,
+    folded,
+    motion_of,
+    name_and_unit,
+    SENDERS,
+    unit_known,
+)
+from tree_sway.files.layouts.known import table_of
+from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.files.table_file import TextTable
+from tree_sway.files.row_times import counted_times, row_times, time_columns
+from tree_sway.files.table_file import split_row, TextTable
 from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.time_stamps import Times
-from tree_sway.files.wind.layouts.known import layout_of
-from tree_sway.files.wind.layouts.plain import PLAIN
-from tree_sway.files.wind.row_times import row_times, time_columns
+from tree_sway.files.zipped import tables_in
 
 _AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 _BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis)?')
+_ABOUT = 'Metadata.csv'
+"""File of Sensor Logger about the phone."""
+_EARTH = re.compile('freeacc')
+"""Accelerations of Xsens and Movella that are east, north, up."""
 _GRAVITY = (8.5, 11.2)
 """Range of the median of accelerations with gravity [m/s^2]."""
 _UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665}
@@ -49,7 +66,7 @@ _NAMES = (
 
 def read_motion_table(path: Path) -> MotionRecord:
     """
-    Read a table of a motion sensor.
+    Read a table of a motion sensor, or the tables of a zip, such as a phone's.
 
     Raises
     ------
@@ -58,36 +75,119 @@ def read_motion_table(path: Path) -> MotionRecord:
         unit, rows of several sensors, or times or values that cannot be those of samples.
 
     """
-    lines = read_table_lines(path)
-    table = (layout_of(lines) or PLAIN).read(lines, str(path))
+    records = list[MotionRecord]()
+    failures = list[FormatError]()
+    lines_of = dict(tables_in(path))
+    beside = path.with_name(_ABOUT)
+    if len(lines_of) == 1 and beside.is_file() and beside != path:
+        about = read_table_lines(beside)
+    else:
+        about = next((each for name, each in lines_of.items() if name.endswith(_ABOUT)), [])
+    for name, lines in lines_of.items():
+        try:
+            records.append(_record(name, lines, about))
+        except FormatError as error:
+            failures.append(error)
+    if not records:
+        raise min(failures, key=lambda error: error.what.startswith('no '))
+    return _joined(records, str(path))
+
+
+def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord:
+    """Return the motion of the lines of a table; others tell about the phone."""
+    table = table_of(lines, source)
     clock = time_columns(table)
-    picked = _axes(table, folded(path.stem))
-    if clock is None or not picked:
-        what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
+    stem = folded(Path(source).stem)
+    picked = _axes(table, stem)
+    rows = list(range(len(table.texts)))
+    times = None if clock is None else row_times(table, *clock, rows)
+    if times is None or not np.isfinite(times.seconds).any():
+        times = counted_times(table) or times
+    if times is None or not picked:
+        what = f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}'
         raise table.error(what, cure=_NAMES)
     _refuse_several(table)
-    times = row_times(table, *clock, list(range(len(table.texts))))
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
-    first_cell = table.cells(clock[0][0], [0])[0]
+    first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
     _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
     read = ', '.join(table.columns[each] for columns in picked.values() for each in columns)
-    notes = [f'{path.name}: read {read}', times.note]
+    notes = [f'{Path(source).name}: read {read}', times.note]
+    maker = maker_of(table)
     for quantity, columns in picked.items():
         factors = [table.factor_of(each, quantity) for each in columns]
         if quantity != 'orientation' and not table.unit_of(columns[0], quantity):
-            factor, note = _without_unit(table, columns[0], quantity, values[quantity])
+            factor, note = _without_unit(table, maker, columns[0], quantity, values[quantity])
             factors = [factor] * len(columns)
             notes.append(note)
         values[quantity] = values[quantity] * factors
+    if 'acceleration' in values and (maker.get('sign') == -1 or _is_of_apple(about)):
+        values['acceleration'] = -values['acceleration']
+        notes.append('accelerations are turned about, as those of Apple point as gravity does')
+    if _EARTH.match(folded(table.columns[picked.get('acceleration', [0])[0]])):
+        notes.append(_turn_from_earth(values))
     return MotionRecord(
         np.asarray(times.seconds),
         values.get('acceleration'),
         values.get('rate'),
         values.get('orientation'),
-        str(path),
+        source,
         times.epoch,
         tuple(filter(None, notes)),
     )
+
+
+def _is_of_apple(about: Sequence[str]) -> bool:
+    """Whether Sensor Logger's lines about a phone say that it is Apple's, with its own signs."""
+    rows = [dict(zip(*map(_split_cells, about[:2]), strict=False))] if len(about) > 1 else []
+    return any(
+        each.get('platform') == 'ios' and each.get('standardisation') != 'true' for each in rows
+    )
+
+
+def _split_cells(line: str) -> Sequence[str]:
+    return split_row(line, ',')
+
+
+def _turn_from_earth(values: dict[str, Floats]) -> str:
+    """Turn accelerations east, north, up to the sensor's frame, and return what was done."""
+    if 'orientation' not in values:
+        return 'accelerations are east, north, up, as no orientation tells the frame of the sensor'
+    inverse = values['orientation'][:, [3, 0, 1, 2]] * [1.0, -1.0, -1.0, -1.0]
+    values['acceleration'] = quaternion_rotated(inverse, values['acceleration'])
+    return "accelerations east, north, up are turned to the sensor's frame by its orientation"
+
+
+def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
+    """
+    Return the quantities of the tables of a phone at the times of one of them.
+
+    That is one with gravity if there is one, else with an acceleration, else with a rate.
+    """
+    first = max(records, key=_worth)
+    found = {quantity: getattr(first, quantity) for quantity in _AXES}
+    notes = list(first.notes)
+    for each in records:
+        for quantity in _AXES:
+            values = getattr(each, quantity)
+            if found[quantity] is None and values is not None:
+                shift = 0.0
+                if first.epoch is not None and each.epoch is not None:
+                    shift = each.epoch - first.epoch
+                found[quantity] = np.stack(
+                    [
+                        np.interp(first.time, each.time + shift, axis, np.nan, np.nan)
+                        for axis in values.T
+                    ],
+                    axis=1,
+                )
+                notes += each.notes
+    return replace(first, source=source, notes=tuple(notes), **found)
+
+
+def _worth(record: MotionRecord) -> tuple[bool, ...]:
+    has_gravity = record.acceleration is not None and '' in _gravity(record.acceleration)
+    is_raw = 'uncalibrated' in record.source.lower()
+    return has_gravity, record.acceleration is not None, record.rate is not None, not is_raw
 
 
 def _axes(table: TextTable, stem: str) -> dict[str, list[int]]:
@@ -110,13 +210,25 @@ def _axes(table: TextTable, stem: str) -> dict[str, list[int]]:
         if wanted and len(names) == len(wanted) and (names == wanted or names.isdecimal()):
             picked.setdefault(quantity, [axes[axis] for axis in names])
     columns = [bare_axes[axis] for axis in 'xyz' if axis in bare_axes]
-    for quantity, word in (('rate', 'gyro'), ('acceleration', 'acc'), ('acceleration', '')):
-        units = [table.unit_of(each, quantity) for each in columns]
-        is_named = not any(units) and word in stem and (word or _gravity(table.values(columns)))
-        if len(columns) == 3 and not picked:
-            if is_named or all(unit_known(quantity, unit) for unit in units):
-                picked[quantity] = columns
+    if len(columns) == 3 and not picked:
+        quantity = _quantity_of(table, columns, stem)
+        picked |= {quantity: columns} if quantity else {}
     return picked
+
+
+def _quantity_of(table: TextTable, columns: Sequence[int], stem: str) -> str:
+    """Return what columns called x, y and z are; empty if nothing tells."""
+    for quantity in ('rate', 'acceleration'):
+        units = [table.unit_of(each, quantity) for each in columns]
+        if all(unit_known(quantity, unit) for unit in units):
+            return quantity
+        if any(units):
+            continue
+        for named, words in FILES_OF.items():
+            if words.search(stem):
+                return named
+        return 'acceleration' if _gravity(table.values(columns)) else ''
+    return ''
 
 
 def _gravity(values: Floats) -> tuple[str, ...]:
@@ -133,10 +245,12 @@ def _size(values: Floats) -> float:
 
 
 def _without_unit(
-    table: TextTable, column: int, quantity: str, values: Floats
+    table: TextTable, maker: dict[str, Any], column: int, quantity: str, values: Floats
 ) -> tuple[float, str]:
     """Factor to SI of values without a unit, and what was assumed; else a `FormatError`."""
     name = table.columns[column]
+    if known := maker.get(quantity):
+        return table.known_factor(quantity, known), f'{name} is in {known}, as of {maker["maker"]}'
     unit, most = ('m/s^2', _GRAVITY[1]) if quantity == 'acceleration' else ('rad/s', _FASTEST)
     for told in _gravity(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'

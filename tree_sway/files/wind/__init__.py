@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.files.layouts.lines import form_of as form_of
+    from tree_sway.files.layouts.station_messages import SIGNALK_PAIRS as SIGNALK_PAIRS
+    from tree_sway.files.layouts.station_messages import signalk_values as signalk_values
+    from tree_sway.files.layouts.station_messages import SIGNALK_WIND as SIGNALK_WIND
+    from tree_sway.files.layouts.station_messages import tempest_values as tempest_values
     from tree_sway.files.wind.compass import degrees_of as degrees_of
-    from tree_sway.files.wind.layouts.cumulus import BEARING as BEARING
-    from tree_sway.files.wind.layouts.cumulus import fields_of_realtime as fields_of_realtime
-    from tree_sway.files.wind.layouts.cumulus import GUST as GUST
-    from tree_sway.files.wind.layouts.cumulus import SPEED as SPEED
-    from tree_sway.files.wind.layouts.cumulus import UNIT as UNIT
     from tree_sway.files.wind.metar import METAR as METAR
     from tree_sway.files.wind.nmea import parse_nmea as parse_nmea
     from tree_sway.files.wind.nmea import SENTENCES as SENTENCES

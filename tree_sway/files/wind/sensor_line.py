@@ -35,7 +35,7 @@ class SensorLine:
     refusal: str = ''
 
 
-_STAMP = re.compile(
+STAMP = re.compile(
     r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
     r'|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
     re.ASCII,
@@ -103,7 +103,7 @@ def read_sensor_log(
             rows.refuse(number, said.refusal)
         else:
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
-            stamp = _STAMP.match(line)
+            stamp = STAMP.match(line)
             stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:

@@ -21,7 +21,7 @@ import re
 from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.text_file import finite
 from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine
+from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine, STAMP
 from tree_sway.files.wind.units import degrees_to_bearing, Velocity
 
 KINDS = ('gill',)
@@ -43,7 +43,9 @@ def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
     The wind is of a kind of `KINDS`; any other line is None. ``heading`` is the direction of the
     instrument's north marker, clockwise from true north, in [rad].
     """
-    begin = line.rfind('\x02') if '\x02' in line else len(line) - len(line.lstrip())
+    stamp = STAMP.match(line)
+    begin = len(line) - len(line[stamp.end() if stamp else 0 :].lstrip(' ,;\t'))
+    begin = max(begin, line.rfind('\x02'))
     gill = _GILL.match(line, begin)
     if gill is None:
         return None

@@ -24,24 +24,26 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, unit_factor
+from tree_sway.files.column_names import folded, rank_of, unit_factor
+from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
-from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.compass import degrees_of
-from tree_sway.files.wind.layouts.known import layout_of
-from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.record import WindRecord, WindRows
-from tree_sway.files.wind.row_times import row_times, time_columns
 from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
+from tree_sway.files.wind.speed_units import speed_units
 from tree_sway.files.wind.station_means import filled_means
-from tree_sway.files.wind.station_units import speed_units
+from tree_sway.files.zipped import tables_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
-_AT_HEIGHT = re.compile(r'(\d+(?:\.\d+)?) ?m (\D.*)')
-"""Height before a name, as profilers have it: ``40m Wind Speed (m/s)``."""
+_HEIGHT = re.compile(r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))')
+"""Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``."""
+_WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
+_USUAL = 10.0
+"""Height of the wind of stations and services [m]."""
 
 
 def read_table_wind(
@@ -66,10 +68,11 @@ def read_table_wind(
     WindConvention(direction_convention or 'to')  # refused before the file is read
     if direction is not None and not 0.0 <= direction <= 360.0:
         raise ParameterError(f'direction is {direction:g} degrees', cure='give 0 to 360')
-    lines = read_table_lines(path)
-    table = (layout_of(lines[:_HEAD]) or PLAIN).read(lines, str(path))
+    found = [(name, lines) for name, lines in tables_in(path) if lines]
+    is_wind = [each for each in found if looks_like_wind('\n'.join(each[1][:_HEAD]))]
+    name, lines = (is_wind or found)[0]
     return wind_of_table(
-        table,
+        table_of(lines, name),
         columns=columns,
         convention=direction_convention,
         yaw=yaw,
@@ -129,18 +132,26 @@ def wind_of_table(
 
 
 def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
-    """Return a profiler's table with the columns of its lowest height alone, and which it is."""
-    heights = [_AT_HEIGHT.match(name) for name in table.columns]
-    known = sorted({float(each[1]) for each in heights if each and 'wind' in each[2].lower()})
-    if not known:
+    """Return a table with the columns of the lowest height of each wind alone, and which it is."""
+    heights: dict[str, dict[int, float]] = {}
+    names = list(table.columns)
+    for index, name in enumerate(names):
+        at = _HEIGHT.search(name)
+        plain = name if at is None else f'{name[: at.start()]} {name[at.end() :]}'.strip()
+        found = [each for each in _WIND if at and rank_of(plain, each) is not None]
+        if at and found:
+            names[index] = plain
+            heights.setdefault(found[0], {})[index] = float(at[1])
+    known = set[float]()
+    for of_quantity in heights.values():
+        known |= {*of_quantity.values()}
+        for index, height in of_quantity.items():
+            names[index] = names[index] if height == min(of_quantity.values()) else ''
+    if not known or known == {_USUAL}:
         return table, ''
-    names = [
-        name if at is None else at[2] if float(at[1]) == known[0] else ''
-        for name, at in zip(table.columns, heights, strict=True)
-    ]
-    others = ', '.join(f'{each:g}' for each in known[1:])
-    note = f'the wind at {known[0]:g} m' + (f'; there is one at {others} m' if others else '')
-    return replace(table, columns=tuple(names)), note
+    first, *others = sorted(known)
+    more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
+    return replace(table, columns=tuple(names)), f'the wind at {first:g} m{more}'
 
 
 def _points(table: TextTable, speed: Column) -> Column | None:

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway.files.file_format import contains, FileFormat, format_of
+from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.paths import path_of
 from tree_sway.files.wind.bag import read_bag_wind
-from tree_sway.files.wind.layouts.known import looks_like_wind
 from tree_sway.files.wind.metar import METAR, read_metar_wind
 from tree_sway.files.wind.netcdf import read_netcdf_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
@@ -23,13 +23,14 @@ from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sonic_ascii import read_sonic_wind
 from tree_sway.files.wind.table import read_table_wind
 
+_TABLES = ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip')
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
     FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
     FileFormat(
         'sonic',
         (),
-        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
+        contains(r'^(\d[-\d:. T]*Z?[ ,;]+)?(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
         read_sonic_wind,
     ),
     FileFormat(
@@ -42,7 +43,9 @@ WIND_FORMATS = (
         read_netcdf_wind,
     ),
     FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
-    FileFormat('csv', ('.csv', '.tsv', '.txt', '.json', '.epw'), looks_like_wind, read_table_wind),
+    FileFormat(
+        'csv', ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip'), looks_like_wind, read_table_wind
+    ),
 )
 
 EXAMPLES = ('canopy',)

@@ -27,9 +27,7 @@ _JUMP, _PATIENCE = 1.0, 3.0
 """Difference [s] that is a jump, and time [s] after which the clock is taken as set anew."""
 _MIXED, _WITHIN = 5, 30.0
 """Number of times that go back within some seconds [s], which two senders have."""
-_MIXTURE = (
-    'its times go back and forth, as those of two senders: give each an address of its own'
-)
+_MIXTURE = 'its times go back and forth, as those of two senders: give each an address of its own'
 _SLEW = 0.05
 """Change of the difference in a second [s]: small, so that samples keep their order."""
 

@@ -18,10 +18,12 @@ import re
 from tree_sway.core.wind import is_wind
 from tree_sway.files.wind import KINDS, parse_nmea, parse_sonic, SensorLine, SENTENCES
 from tree_sway.live.readers import makers
+from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import names_of, unit_factor
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.number_columns import columns_of, read_numbers
+from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.reading import LineFormat, of_velocity, Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
@@ -77,6 +79,10 @@ class InstrumentLines:
     found: str = field(default='', init=False)
     """First good kind; empty before it."""
 
+    def __post_init__(self) -> None:
+        """Prepare the reader that keeps the newest value of each path."""
+        self._signalk = SignalKWind(self.heading)
+
     @property
     def reading(self) -> str:
         """Kind that is read; empty before it is known."""
@@ -107,9 +113,7 @@ class InstrumentLines:
             yield _of_sensor_line(parsed)
             return
         if line.lstrip().startswith(('{', '[')):
-            document = parse_json(line.encode())
-            if document is not None:
-                yield from self.names.read(document, 'JSON')
+            yield from self._read_json(line)
             return
         of_makers = (each.read(line, heading, self.factor) for each in _MAKERS)
         reading = next((each for each in of_makers if each is not None), None)
@@ -120,6 +124,13 @@ class InstrumentLines:
         elif pairs := _PAIR.findall(line):
             named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
             yield from self.names.read(named, 'name=value')
+
+    def _read_json(self, line: str) -> Sequence[Reading]:
+        """Read a document, of Signal K as its own source does."""
+        document = parse_json(line.encode())
+        if isinstance(document, dict) and 'updates' in document:
+            return self._signalk(Message(line.encode()))
+        return read_document(document, self.names)
 
 
 def _of_sensor_line(line: SensorLine) -> Reading:

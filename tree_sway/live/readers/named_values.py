@@ -105,7 +105,6 @@ def _sender(leaves: Mapping[str, Any]) -> str:
     return str(found)[:_LONGEST]
 
 
-
 def _found(
     document: Any, leaves: Mapping[str, Any], path: JsonPath | None, quantity: str
 ) -> tuple[str, Any]:

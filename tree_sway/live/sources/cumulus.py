@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from math import radians
 
 from tree_sway.files import unit_factor
-from tree_sway.files.wind import BEARING, fields_of_realtime, GUST, SPEED, UNIT
+from tree_sway.files.wind import form_of
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
@@ -24,17 +24,21 @@ from tree_sway.live.transports.transport import Message
 _EVERY = 60.0
 _INTERVAL = 600.0
 _KIND = 'Cumulus'
+_QUANTITIES = ('wind_speed', 'wind_direction', 'gust')
+_FORM = form_of('Cumulus realtime')
 
 
 def read_realtime(message: Message) -> Sequence[Reading]:
     """Read the wind of a file; a refusal if its numbers are none."""
-    fields = fields_of_realtime(message.data.decode('utf-8', 'replace'))
-    if fields is None:
+    found = _FORM.fullmatch(message.data.decode('utf-8', 'replace').strip().replace(',', '.'))
+    factor = None if found is None else unit_factor('speed', found['unit'])
+    if found is None or factor is None:
         return ()
-    factor = unit_factor('speed', fields[UNIT]) or 1.0
-    speed, bearing, gust = (number(fields[index]) for index in (SPEED, BEARING, GUST))
+    speed, bearing, gust = (
+        number(found[each]) for each in ('wind_speed', 'wind_direction', 'gust')
+    )
     if speed is None or bearing is None:
-        return [Refusal(_KIND, f"no speed or bearing in '{fields[SPEED]} {fields[BEARING]}'")]
+        return [Refusal(_KIND, f"no speed or bearing in '{found[0][:40]}'")]
     most = None if gust is None else factor * gust
     return [WindReading(_KIND, factor * speed, radians(bearing), gust=most, interval=_INTERVAL)]
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from tree_sway.core.wind.simulated import LEAST_INTERVAL
+from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
@@ -25,15 +26,13 @@ OPTIONS = (
 )
 """Options of ours in a query; others belong to the server."""
 _EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
-_KIND = 'JSON'
 
 
 def json_reader(names: WindNames) -> Read:
     """Return a reader of documents."""
 
     def read(message: Message) -> Sequence[Reading]:
-        document = parse_json(message.data)
-        return () if document is None else names.read(document, _KIND)
+        return read_document(parse_json(message.data), names)
 
     return read
 

@@ -1,26 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-WeatherFlow's Tempest: messages that its hub sends to the whole network, UDP port 50222.
-
-``rapid_wind`` has the wind every three seconds: ``"ob": [time, speed in m/s, degrees]``. The mean
-over a minute (``obs_st``) is not read beside it (Tempest API, "UDP Broadcast", version 171).
-"""
+"""WeatherFlow's Tempest: messages that its hub sends to the whole network, UDP port 50222."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.values import bearing_of, number
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.readers.tempest import read_tempest
+from tree_sway.live.reading import Reading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.transport import Message
 from tree_sway.live.transports.udp import Udp
 
 _PORT = 50222
-_KIND = 'rapid_wind'
 
 
 def open_tempest(address: SourceAddress) -> Source:
@@ -32,19 +26,8 @@ def open_tempest(address: SourceAddress) -> Source:
 
     def read(message: Message) -> Sequence[Reading]:
         document = parse_json(message.data)
-        if not isinstance(document, dict) or document.get('type') != _KIND:
-            return ()
-        if serial and document.get('serial_number') != serial:
-            return ()
-        values = document.get('ob')
-        cells = [number(each) for each in values] if isinstance(values, list) else []
-        if len(cells) < 3 or cells[1] is None or cells[1] < 0.0:
-            return [Refusal(_KIND, f'ob is {str(values)[:40]}')]
-        bearing = bearing_of(cells[2])
-        if bearing is None:
-            return [Refusal(_KIND, f'direction is {str(cells[2])[:20]}')]
-        sender = str(document.get('serial_number', ''))
-        return [WindReading(_KIND, cells[1], bearing, interval=0.0, sender=sender)]
+        is_other = isinstance(document, dict) and document.get('serial_number') != serial
+        return () if serial and is_other else read_tempest(document)
 
     expects = "a Tempest hub's rapid_wind"
     return Source(Udp('', port, is_shared=True, silence=30.0), read, 'Tempest', expects)

@@ -10,10 +10,9 @@ every 2.5 s, and the instrument may be asked every 10 s.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from tree_sway.live.readers.json_path import JsonPath, parse_json
-from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.weatherlink import read_weatherlink
 from tree_sway.live.reading import Reading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.source_kind import Source, SourceKind
@@ -21,27 +20,11 @@ from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 
 _EVERY = 10.0
-_KIND = 'WeatherLink Live'
-_STATION = 1
-"""Type of the record of a station with an anemometer."""
-_NAMES = WindNames(
-    JsonPath('wind_speed_last'),
-    JsonPath('wind_dir_last'),
-    JsonPath('wind_speed_hi_last_2_min'),
-    unit='mph',
-    interval=0.0,
-)
 
 
 def read_conditions(message: Message) -> Sequence[Reading]:
     """Read the conditions of the first station with a wind."""
-    conditions = JsonPath('data.conditions').find(parse_json(message.data))
-    stations: list[Any] = conditions if isinstance(conditions, list) else []
-    for each in stations:
-        if isinstance(each, dict) and each.get('data_structure_type') == _STATION:
-            if found := _NAMES.read(each, _KIND):
-                return found
-    return ()
+    return read_weatherlink(parse_json(message.data))
 
 
 def open_weatherlink(address: SourceAddress) -> Source:

@@ -75,7 +75,7 @@ class Modbus:
         function = KINDS[self.kind]
         size = 2 * self.count
         request = struct.pack('>BHH', function, self.first, self.count)
-        with (self._line() if self.baud else self._network()) as exchange:
+        with self._line() if self.baud else self._network() as exchange:
             receiver.opened()
             while not receiver.is_over:
                 answer = exchange(request)

@@ -148,8 +148,7 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
         f'{found.cycles:.0f} swings after the release'
     )
     print(
-        f'  swing      {_swing(found.frequency)}'
-        f'{_within(found.frequency_error / found.frequency)}'
+        f'  swing      {_swing(found.frequency)}{_within(found.frequency_error / found.frequency)}'
     )
     own_error = found.damping_error / max(found.damping_ratio, 1e-9)
     print(
@@ -192,7 +191,7 @@ def _changes(
         f"  swing      {was} -> {_swing(fitted.frequency)}, most in branch '{fitted.branch}'",
         f'  stiffness  modulus of the wood {before.modulus / 1e9:.3g} -> '
         f'{after.modulus / 1e9:.4g} GPa{_within(fitted.sensitivity * error)}: {usual:.3g} times '
-        f"the usual one of {table.title}{' (an estimate)' if table.is_estimate else ''}",
+        f'the usual one of {table.title}{" (an estimate)" if table.is_estimate else ""}',
     ]
     if not 1.0 / _UNUSUAL <= usual <= _UNUSUAL:
         lines.append(

@@ -34,7 +34,6 @@ def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-
 def placed_motion(
     arguments: argparse.Namespace, tree: Tree, epoch: float | None
 ) -> list[PlacedMotion]:

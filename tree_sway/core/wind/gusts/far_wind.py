@@ -211,9 +211,7 @@ def _coherences(
     return [np.mean(found, axis=0)] if bearing is None else found
 
 
-def _drawn_rest(
-    places: Floats, size: Floats, weights: Floats, first: float, seed: int
-) -> Singles:
+def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, seed: int) -> Singles:
     """
     Draw what is not expected at each place, over its deviation, (samples, g, 3).
 

@@ -20,7 +20,7 @@ _AND = r'[+;&|]|,\s|\s(?:and|und|et|y|en|e|och|og)\s'
 _SEVERAL = re.compile(rf'\d(?:\D{{0,4}}?(?:{_AND})|\s)\s*\d')
 _TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*]\s*(\d+(?:[.,]\d+)?)')
 """A number of stems of one size, as in ``2 x 35``."""
-_BETWEEN = re.compile(r"[^\W\d_]+|[-–—~/]|\.\.")
+_BETWEEN = re.compile(r'[^\W\d_]+|[-–—~/]|\.\.')
 """What stands between the two numbers of a range."""
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
 """Letter of a class before its range, as in ``c. 9 tot 12 m.``."""

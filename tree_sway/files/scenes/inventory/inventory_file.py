@@ -8,12 +8,15 @@ from pathlib import Path
 
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import INVENTORY
+from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.zipped import tables_in
 
+_HEAD = 60
 SPECIES = 'the species'
 
 
@@ -25,7 +28,8 @@ def inventory_table(path: Path, head: str) -> TextTable:
         return read_spreadsheet(path)
     if looks_like_geojson(head):
         return read_geojson('\n'.join(read_table_lines(path)), str(path))
-    return parse_table(read_table_lines(path), str(path))
+    name, lines = next(tables_in(path))
+    return PLAIN.read(lines, name)
 
 
 def has_own_format(path: Path, head: str) -> bool:
@@ -37,7 +41,7 @@ def has_own_format(path: Path, head: str) -> bool:
 def table_of_head(head: str) -> TextTable | None:
     """Table at the beginning of a text file; None if it is no table."""
     try:
-        return parse_table(head.splitlines()[:20], '')
+        return PLAIN.read(head.splitlines()[:_HEAD], '')
     except FormatError:
         return None
 

@@ -18,11 +18,10 @@ from tree_sway.files.bounded import (
     unpacked_rows,
 )
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.layouts.plain import is_known
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES
 
-_QUANTITIES = 'species genus height diameter girth x latitude place'.split()
 _CHUNK = 1 << 20
 _HEADER = 20
 """Rows that may stand above the header, such as a title."""
@@ -47,7 +46,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     if not tables:
         raise FormatError('no sheet with a header and rows', where=str(path))
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
-    rows, number = max(tables, key=lambda table: _n_known(table[0][table[1]]))
+    rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = [row for row in rows[number + 1 :] if any(row)]
     lines = [n for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)]
     return table_of_cells(rows[number], below, str(path), lines)
@@ -69,12 +68,6 @@ def rows_of_spreadsheet(path: str) -> Arrays:
         if written is not None:
             rows = map(_told_formulas, rows, written.iter_rows(values_only=True))
         yield str(number), packed_rows(islice(rows, MAX_LINES))
-
-
-def _n_known(cells: list[str]) -> int:
-    """Count of the quantities of an inventory that a row names."""
-    names = [cell for cell in cells if cell]
-    return sum(any(rank_of(name, each) is not None for name in names) for each in _QUANTITIES)
 
 
 def _has_formulas(path: str) -> bool:

@@ -50,9 +50,7 @@ def _read_ends(path: Path, text: TextTable) -> TreeFile:
     values = text.strict([*_ENDS, 'radius'])
     wood = species_named('broadleaf')
     start, end, radius = np.hsplit(values, [3, 6])
-    tree = built_tree(
-        str(path), start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key
-    )
+    tree = built_tree(str(path), start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
     return TreeFile(tree, wood, str(path), notes=('parents are found by the ends that meet',))
 
 

@@ -43,6 +43,8 @@ _VARIABLES = dict(zip(('Rad', 'Len', 'Sta', 'Axe', 'CPar', 'CExt'), _FIELDS, str
 _COLUMNS = 'radius length start_x start_y start_z axis_x axis_y axis_z parent extension'.split()
 _LEAST_COLUMNS, _MOST_COLUMNS = 9, 15
 """Numbers of columns of an array of cylinders."""
+_CRYPTIC = 2
+"""Letters of names of columns that say nothing."""
 _UNMISTAKABLE = 13
 """Number of columns from which a table without a header is one of cylinders."""
 _UNIT_ERROR = 0.02
@@ -63,6 +65,9 @@ def _is_text(head: str) -> bool:
         return True
     names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
     places = {re.sub(r'[^a-z]', '', name): place for place, name in enumerate(_COLUMNS)}
+    is_named = bool(lines) and all(finite(cell) is None for cell in _cells(lines[0]))
+    if is_named and max(map(len, names)) > _CRYPTIC and not places.keys() & set(names):
+        return False  # a header of other columns
     if any(places.get(name, place) != place for place, name in enumerate(names)):
         return False  # a header that names them elsewhere
     narrow = []

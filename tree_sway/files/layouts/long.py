@@ -16,8 +16,8 @@ from itertools import chain
 import re
 
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import split_row, TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _COLUMNS = {
     'influxdb': ('_time', '_field', '_value'),

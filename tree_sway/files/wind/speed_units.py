@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, name_and_unit, unit_factor, UNITS
+from tree_sway.files.column_names import unit_factor, UNITS
+from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
-from tree_sway.tables import table_beside
 
-_MAKERS = table_beside(__file__, 'station_units.csv')
+_ASKED = '?'
+"""Unit of a maker whose files do not say it."""
 _CURE = 'give it: --wind-option speed_unit=mph (or km/h, kn, m/s)'
 
 
@@ -42,7 +43,7 @@ def speed_units(table: TextTable, columns: Mapping[str, int], given: str | None)
         raise ParameterError(f"speed_unit is '{given}'", cure=cure)
     factors = dict[str, float]()
     notes = list[str]()
-    maker = _maker_of(table)
+    maker = maker_of(table)
     for quantity in ('wind_speed', 'gust'):
         if quantity not in columns:
             factors[quantity] = 1.0
@@ -55,33 +56,18 @@ def speed_units(table: TextTable, columns: Mapping[str, int], given: str | None)
     return SpeedUnits(factors['wind_speed'], factors['gust'], next(iter(notes), ''))
 
 
-def _maker_of(table: TextTable) -> dict[str, Any] | None:
-    names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
-    for maker in _MAKERS:
-        if not set(maker['names'].split()) <= set(names):
-            continue
-        if not maker['by']:
-            return maker
-        cells = table.cells(names.index(maker['by']), [0])
-        if cells[0].removesuffix('.0') == str(maker['value']):
-            return maker
-    return None
-
-
-def _unit_of(maker: dict[str, Any] | None, quantity: str, table: TextTable) -> str | None:
-    if maker is None:
-        return None
-    unit: str = maker['gust' if quantity == 'gust' else 'speed']
-    if not unit:
+def _unit_of(maker: dict[str, Any], quantity: str, table: TextTable) -> str | None:
+    unit: str = maker.get('gust' if quantity == 'gust' else 'speed', '')
+    if unit == _ASKED:
         what = f'a file of {maker["maker"]} does not say the unit of the speed'
         raise table.error(what, cure=_CURE)
-    return unit
+    return unit or None
 
 
-def _note(unit: str | None, given: str | None, maker: dict[str, Any] | None) -> str:
+def _note(unit: str | None, given: str | None, maker: dict[str, Any]) -> str:
     if given is not None:
         return f'speeds are taken in {given}, as given'
-    if maker is not None:
+    if unit is not None:
         return f'speeds are in {unit}, as {maker["maker"]} has them'
     how = '--wind-option speed_unit=km/h changes it'
     return f'no unit of the speed in the header: taken in m/s; {how}'

@@ -16,8 +16,8 @@ import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'ダウンロードした時刻'
 _SPEED = '風速(m/s)'

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tree_sway.files.cell_table import cell_at, numbered, table_of_lines
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _QUANTITIES = {
     'wind speed': ' Wind Speed [10 m]',

@@ -14,8 +14,8 @@ from itertools import zip_longest
 import re
 
 from tree_sway.files.cell_table import numbered, table_of_lines
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
 _WORD = re.compile(r'\S+')

@@ -13,9 +13,10 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 import numpy as np
 
 from tree_sway.files.column_names import folded, name_and_unit, TIME_PARTS
+from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
-from tree_sway.files.time_stamps import dates, Times, times_of
+from tree_sway.files.time_stamps import dates, Times, times_of, unwrapped
 
 Join = Callable[[Sequence[str]], str]
 
@@ -43,7 +44,8 @@ def _numbers(parts: Sequence[str]) -> str:
     if not all(part.isdigit() for part in parts):
         return ''
     year, month, day, hour, minute = (*map(int, parts), 0, 0)[:5]
-    return f'{year + (1900 if 50 < year < 100 else 0)}-{month}-{day} {hour}:{minute:02d}'
+    century = 0 if year >= 100 else 1900 if year > 50 else 2000
+    return f'{century + year}-{month}-{day} {hour}:{minute:02d}'
 
 
 _JOINS: dict[str, Join] = {
@@ -57,6 +59,8 @@ PARTS = tuple((tuple(names.split()), _JOINS[join]) for names, join in TIME_PARTS
 """Columns that make a time together, and how."""
 _LOOKED_AT = 20
 """Rows that are looked at for which of several columns has the time."""
+
+_RATE = re.compile(r'(?:rate|frequency)\W*(\d+\.?\d*)\s*Hz|\bat (\d+\.?\d*) Hz', re.IGNORECASE)
 
 _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
@@ -74,8 +78,23 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
     if not clocks:
         return None
     clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
-    is_dated = _are_dates(table.cells(clocks[0], first))  # what is in brackets is no unit then
-    return [clocks[0]], None, 1.0 if is_dated else table.factor_of(clocks[0], 'time')
+    if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
+        return [clocks[0]], None, 1.0
+    unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
+    return [clocks[0]], None, table.known_factor('time', unit) if unit else 1.0
+
+
+def counted_times(table: TextTable) -> Times | None:
+    """Return times by the rate that is told above the header; None without one."""
+    rate = _RATE.search('\n'.join(table.above))
+    hertz = float(rate[1] or rate[2]) if rate else 0.0
+    if hertz <= 0.0:
+        return None
+    rows = np.arange(float(len(table.texts)))
+    counter = table.find('counter')
+    counts = None if counter is None else table.values([counter.index])[:, 0]
+    known = rows if counts is None or np.isnan(counts).any() else unwrapped(counts)
+    return Times((known - known[:1]) / hertz, None, f'times are by the rate of {hertz:g} Hz')
 
 
 def _are_dates(cells: Sequence[str]) -> bool:

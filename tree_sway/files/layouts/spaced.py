@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import re
 
 from tree_sway.files.cell_table import numbered, table_of_lines
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'#\s*(YY+\s+MM\s+DD|STN\s*,\s*YYYYMMDD)\b')
 _HEAD = 200

@@ -1,26 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-NOAA's Integrated Surface Database: hourly CSV, and the short form ISD-Lite.
+NOAA's Integrated Surface Database: hourly CSV.
 
 The CSV has the wind in one cell, ``WND = "270,1,N,0040,1"``: direction, its quality, kind, speed
 in 0.1 m/s, its quality; 999 and 9999 are missing, and a gust is in ``OC1 = "0098,1"`` (Federal
-Climate Complex Data Documentation for ISD, 2018). ISD-Lite has twelve numbers a line and no names:
-year, month, day, hour, four others, direction, speed in 0.1 m/s, two others; -9999 is missing.
+Climate Complex Data Documentation for ISD, 2018).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-import re
 
 from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import split_row, TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _COLUMNS = 'time wind_speed wind_direction gust'.split()
 _UNITS = ('', '0.1 m/s', 'deg', '0.1 m/s')
-_LITE = re.compile(r'\d{4} \d\d \d\d \d\d(\s+-?\d+){8}\s*')
 _CALM = 'C'
 _WRONG = ('3', '7')
 """Qualities of an erroneous value."""
@@ -68,25 +65,4 @@ def _known(text: str, missing: str) -> str:
     return '' if text == missing else text
 
 
-def _is_lite(lines: Sequence[str]) -> bool:
-    first_two = lines[:2]
-    return len(first_two) == 2 and all(map(_LITE.fullmatch, first_two))
-
-
-def _read_lite(lines: list[str], source: str) -> TextTable:
-    return table_of_lines(_COLUMNS, _rows_of_lite(lines), source, _UNITS)
-
-
-def _rows_of_lite(lines: Sequence[str]) -> Iterator[NumberedRow]:
-    for number, line in numbered(lines):
-        cells = line.split()
-        if len(cells) == 12:
-            year, month, day, hour = cells[:4]
-            stamp = f'{year}-{month}-{day}T{hour}:00'
-            direction = _known(cells[7], '-9999')
-            speed = _known(cells[8], '-9999')
-            yield number, [stamp, speed, direction, '']
-
-
 ISD_CSV = Layout('isd', _has_wnd, _read)
-ISD_LITE = Layout('isd-lite', _is_lite, _read_lite)

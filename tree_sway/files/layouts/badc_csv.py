@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, split_row, TextTable
-from tree_sway.files.wind.layouts.layout import Layout
 
 _FIRST = 'conventions,g,badc-csv'
 _BEGIN = 'data'

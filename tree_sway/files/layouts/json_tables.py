@@ -17,9 +17,15 @@ from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.long import Value, wide_table
+from tree_sway.files.layouts.station_messages import (
+    SIGNALK_PAIRS,
+    signalk_values,
+    SIGNALK_WIND,
+    tempest_values,
+)
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout
-from tree_sway.files.wind.layouts.long import Value, wide_table
 
 _DEEPEST = 12
 Cells = dict[str, str]
@@ -45,13 +51,46 @@ def read_json_table(lines: list[str], source: str) -> TextTable:
         document = _document(lines)
     except (ValueError, RecursionError) as error:
         raise FormatError(f'not JSON: {error}', where=source, cure='save it again whole') from None
-    tables = list(_tables(document, {}, source, 0))
+    messages = document if isinstance(document, list) else [document]
+    told = _of_tempest(messages)
+    deltas = _of_deltas(messages, source)
+    tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     if not tables:
         cure = 'give columns or records with a time, a speed and a direction'
         raise FormatError('no table in the JSON', where=source, cure=cure)
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     return max(winds or tables, key=lambda table: len(table.texts))
+
+
+def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
+    """Return the wind of a Tempest's messages of the most common type; empty for others."""
+    of_type: dict[str, list[dict[str, Any]]] = {}
+    for message in messages:
+        if values := tempest_values(message):
+            of_type.setdefault(message['type'], []).append(values)
+    return max(of_type.values(), key=len, default=[])
+
+
+def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
+    """Return the wind of deltas of Signal K; None for other messages."""
+    found = [
+        (line, each.time, each.path.removeprefix(SIGNALK_WIND), _text(each.value))
+        for line, message in enumerate(messages, start=1)
+        for each in signalk_values(message)
+    ]
+    there = {name for _, _, name, _ in found}
+    for speed, angle, is_from_bow in SIGNALK_PAIRS:
+        if {speed, angle} <= there and not is_from_bow:
+            names = {speed: 'wind_speed', angle: 'wind_direction'}
+            units = {'wind_speed': 'm/s', 'wind_direction': 'rad'}
+            wind = [(*each[:2], names[each[2]], each[3]) for each in found if each[2] in names]
+            return wide_table(wind, source, 'time', units)
+    if found:
+        what = f'no true wind among the paths {", ".join(sorted(there)[:8])}'
+        cure = f'record {SIGNALK_WIND}directionTrue and speedOverGround or speedTrue'
+        raise FormatError(what, where=source, cure=cure)
+    return None
 
 
 def _document(lines: list[str]) -> Any:

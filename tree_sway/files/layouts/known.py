@@ -1,0 +1,49 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Layouts of tables, in the order in which they are tried; a new one is a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tree_sway.files.layouts.badc_csv import BADC_CSV
+from tree_sway.files.layouts.isd import ISD_CSV
+from tree_sway.files.layouts.jma import JMA
+from tree_sway.files.layouts.json_tables import JSON
+from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.lines import LINES
+from tree_sway.files.layouts.long import LONG
+from tree_sway.files.layouts.meteoblue import METEOBLUE
+from tree_sway.files.layouts.monitor import MONITOR
+from tree_sway.files.layouts.plain import PLAIN
+from tree_sway.files.layouts.spaced import SPACED
+from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
+from tree_sway.files.table_file import TextTable
+
+LAYOUTS = (
+    *(JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, BADC_CSV, JMA, METEOBLUE, MONITOR),
+    *LINES,
+    *LONG,
+    PLAIN,
+)
+
+_HEAD = 200
+
+
+def layout_of(lines: Sequence[str]) -> Layout | None:
+    """Return the layout of a table by its first lines; None if it is none."""
+    return next((layout for layout in LAYOUTS if layout.recognise(lines)), None)
+
+
+def table_of(lines: list[str], source: str) -> TextTable:
+    """Return the table of a file's lines; a `FormatError` if they are none."""
+    return (layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
+
+
+def looks_like_wind(head: str) -> bool:
+    """Whether the beginning of a file is that of a table of wind."""
+    lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
+    found = layout_of(lines[:_HEAD])
+    if found is JSON:
+        return any(word in head.lower() for word in ('wind', 'wd', '"obs'))
+    return found is not None

@@ -1,0 +1,56 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What a serial monitor shows: ``12:00:00.120 -> `` before each line, and pairs as ``ax:0.12``.
+
+So does the Arduino IDE, whose plotter takes pairs. Its clock is the time where the lines have no
+other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import re
+
+from tree_sway.files.cell_table import table_of_lines
+from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.plain import PLAIN
+from tree_sway.files.table_file import SEPARATORS, TextTable
+
+_CLOCK = 'monitor_time'
+_STAMP = re.compile(r'(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?(.*)')
+_PAIR = re.compile(r'([A-Za-z]\w*)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)[,;\s]*')
+
+
+def _are_pairs(line: str) -> bool:
+    return len(_PAIR.findall(line)) > 1 and _PAIR.sub('', line) == ''
+
+
+def _is_monitored(lines: Sequence[str]) -> bool:
+    first = [line for line in lines[:3] if line.strip()]
+    return len(first) > 1 and (all(map(_STAMP.fullmatch, first)) or all(map(_are_pairs, first)))
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    found = [_STAMP.fullmatch(line) for line in lines]
+    clocks = [stamp[1] if stamp else '' for stamp in found]
+    texts = [stamp[2] if stamp else line for stamp, line in zip(found, lines, strict=True)]
+    filled = [text for text in texts if text.strip()]
+    if not _are_pairs(filled[-1]):
+        separator = max(SEPARATORS, key=filled[-1].count)
+        is_named = any(map(str.isalpha, filled[0]))
+        clocks[0] = _CLOCK if is_named and clocks[0] else clocks[0]
+        pairs = zip(clocks, texts, strict=True)
+        rows = [f'{clock}{separator}{text}' if clock else text for clock, text in pairs]
+        return PLAIN.read(rows, source)
+    names = [name for name, _ in _PAIR.findall(filled[-1])]
+    values = [dict(_PAIR.findall(text)) for text in texts]
+    cells = [
+        (number, [clocks[number - 1], *(each.get(name, '') for name in names)])
+        for number, each in enumerate(values, start=1)
+        if each
+    ]
+    return table_of_lines([_CLOCK if any(clocks) else '', *names], cells, source)
+
+
+MONITOR = Layout('serial monitor', _is_monitored, _read)

@@ -1,0 +1,158 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A table with a header, maybe below lines that a program puts before it, such as a place.
+
+The header may be a comment. Rows without a number may be below it, one of which has units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+import re
+
+from tree_sway.files.column_names import (
+    COLUMNS,
+    motion_of,
+    name_and_unit,
+    rank_of,
+    unit_known,
+)
+from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.table_file import parse_table, SEPARATORS, split_row, TextTable
+
+_HEAD = 40
+_MOST_COLUMNS = 200
+_MOST_BELOW = 3
+_NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
+_DIGIT = re.compile(r'[-+]?\.?\d')
+_COMMENT = re.compile(r'[#;%/\s]*(?:[Hh]eaders\s*,)?\s*')
+_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
+_KINDS = ('speed', 'acceleration', 'rate')
+"""Kinds of units of which a row of units has at least one."""
+_SIZES = ('height', 'diameter', 'girth')
+_KNOWN = (
+    *('time', 'wind_speed', 'wind_direction', 'wind_x', 'wind_y', 'gust', 'species', 'genus'),
+    *('x', 'y', 'latitude', 'longitude', 'place', *_SIZES),
+)
+"""Quantities whose names tell the header."""
+
+
+def header_line(lines: Sequence[str]) -> int | None:
+    """
+    Line of the header: the first of those that name most quantities.
+
+    A comment is one only where no other line names two.
+    """
+    plain: dict[int, int] = {}
+    hashed: dict[int, int] = {}
+    for number, line in enumerate(lines[:_HEAD]):
+        cells = _cells(line)
+        filled = [cell for cell in cells if cell]
+        n_numbers = sum(_NUMBER.fullmatch(cell) is not None for cell in filled)
+        is_comment = _is_comment(line)
+        if is_comment:
+            filled = _cells(_uncommented(line))
+        if len(filled) > 1 and 2 * n_numbers <= len(filled):
+            count = sum(map(is_known, {*filled[:_MOST_COLUMNS]}))
+            (hashed if is_comment else plain)[number] = count
+    found = plain if max(plain.values(), default=0) > 1 else plain | hashed
+    most = max(found, key=lambda number: found[number], default=None)
+    return most if most is not None and found[most] else None
+
+
+def _is_comment(line: str) -> bool:
+    """Whether a line is a comment; a semicolon before the others is an empty cell."""
+    return line.startswith(('#', '%', '//')) or (line.startswith(';') and line.count(';') == 1)
+
+
+def _uncommented(line: str) -> str:
+    return _COMMENT.sub('', line, count=1) if _is_comment(line) else line
+
+
+def _cells(line: str) -> list[str]:
+    return list(split_row(line, max(SEPARATORS, key=line.count)))
+
+
+@lru_cache(4096)
+def is_known(cell: str) -> bool:
+    """Whether a cell is the name of a column that is known."""
+    if not cell or _NUMBER.fullmatch(cell) or cell.lower() in _PARTS:
+        return cell.lower() in _PARTS
+    motion = motion_of(cell)
+    is_axis = motion is not None and motion[2] != ''
+    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
+
+
+def _has_time(line: str) -> bool:
+    cells = _cells(_uncommented(line))[:_MOST_COLUMNS]
+    named = [cell for cell in cells if cell and _NUMBER.fullmatch(cell) is None]
+    return len(cells) > 1 and any(
+        rank_of(cell, 'time') is not None or cell.lower() in _PARTS for cell in named
+    )
+
+
+def _is_table(lines: Sequence[str]) -> bool:
+    found = header_line(lines)
+    return found is not None and _has_time(lines[found])
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    first = header_line(lines) or 0
+    above = tuple(lines[:first])
+    lines[:first] = [''] * first
+    lines[first] = _uncommented(lines[first])
+    return replace(_without_rows_below(parse_table(lines, source)), above=above)
+
+
+def _without_rows_below(table: TextTable) -> TextTable:
+    """
+    Return a table without the rows of units and of other words below its header.
+
+    It is itself without a row of units. This may have names too, as in ``風速(m/s)`` below ``WS``.
+    """
+    words = []
+    for text in table.texts[:_MOST_BELOW]:
+        cells = [cell.strip('"') for cell in table.split(text)]
+        if any(map(_DIGIT.match, cells)):
+            break
+        words.append([_unit_below(cell) for cell in cells])
+    rows = [row for row, cells in enumerate(words) if _are_units(table, cells)]
+    if not rows:
+        return table
+    units = [
+        '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
+        for name, cell in zip(table.columns, words[rows[0]], strict=False)
+    ]
+    return replace(
+        table,
+        numbers=table.numbers[len(words) :],
+        texts=table.texts[len(words) :],
+        units=tuple(units),
+        unit_line=table.numbers[rows[0]],
+    )
+
+
+def _are_units(table: TextTable, cells: Sequence[str]) -> bool:
+    """Whether a row has a unit of a wind or a motion, or lengths below sizes."""
+    if any(unit_known(kind, cell) for cell in cells for kind in _KINDS):
+        return True
+    pairs = zip(table.columns, cells, strict=False)
+    return any(
+        unit_known(COLUMNS[size]['unit'], cell) and rank_of(name, size) is not None
+        for name, cell in pairs
+        for size in _SIZES
+    )
+
+
+def _unit_below(cell: str) -> str:
+    """Return a unit in brackets behind a name or alone; a cell without brackets as it is."""
+    name, unit = name_and_unit(cell, 'speed')
+    if any(unit_known(kind, cell) for kind in _KINDS) or (name == cell and not unit):
+        return cell.strip('[]')
+    return unit if any(unit_known(kind, unit) for kind in ('angle', *_KINDS)) else ''
+
+
+PLAIN = Layout('table', _is_table, _read)

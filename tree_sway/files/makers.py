@@ -1,0 +1,35 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Makers of loggers, stations and services, by the columns of their tables: `makers.csv`.
+
+A row has what a header does not say: units of speeds, accelerations, rates and times, and the
+``sign`` of accelerations, which is -1 where they point as gravity does, as of Apple's phones. A
+unit that is chosen in a program, and so is asked for, is ``?``. A table is a maker's if it has all
+``names``, maybe a ``value`` in the first row of the column ``by``, and maybe a text ``above`` its
+header.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tree_sway.files.column_names import folded, name_and_unit
+from tree_sway.files.table_file import TextTable
+from tree_sway.tables import table_beside
+
+_MAKERS = table_beside(__file__, 'makers.csv')
+
+
+def maker_of(table: TextTable) -> dict[str, Any]:
+    """Return the row of the first maker that a table fits; empty for a table of none."""
+    names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
+    above = '\n'.join(table.above)
+    for maker in _MAKERS:
+        is_it = set(maker['names'].split()) <= set(names) and (maker['above'] or '') in above
+        if is_it and maker['by']:
+            cells = table.cells(names.index(maker['by']), [0])
+            is_it = cells[0].removesuffix('.0') == str(maker['value'])
+        if is_it:
+            return maker
+    return {}

@@ -1,0 +1,50 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The lines of a table's file, or of the tables in a zip, as phones and services export them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from zipfile import BadZipFile, is_zipfile, ZipFile
+import zlib
+
+from tree_sway.errors import FormatError
+from tree_sway.files.text_file import decoded, read_bytes, read_table_lines, reason_of, table_lines
+
+_MOST_FILES = 200
+_MOST_BYTES = 64 << 20
+"""Largest size of all tables of a zip that are unpacked [bytes]."""
+_SUFFIXES = ('.csv', '.txt', '.tsv', '.dat', '.json')
+
+
+def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
+    """
+    Yield the name and the lines of a file, or of each table in a zip.
+
+    Raises a `FormatError` for a broken zip, one without a table, or one that is too large.
+    """
+    if path.suffix.lower() != '.zip' or not read_bytes(path, 4) or not is_zipfile(path):
+        yield str(path), read_table_lines(path)
+        return
+    cure = 'unpack it first'
+    try:
+        with ZipFile(path) as archive:
+            files = [each for each in archive.infolist() if not each.is_dir()]
+            found = [each for each in files if Path(each.filename).suffix.lower() in _SUFFIXES]
+            if not found or len(files) > _MOST_FILES:
+                what = f'a zip of {len(files)} files, {len(found)} of them tables'
+                raise FormatError(what, where=str(path), cure=cure)
+            left = _MOST_BYTES
+            for each in found:
+                with archive.open(each) as packed:
+                    data = packed.read(left + 1)
+                left -= len(data)
+                if left < 0:
+                    what = f'tables of more than {_MOST_BYTES >> 20} MiB in a zip'
+                    raise FormatError(what, where=str(path), cure=cure)
+                name = f'{path}/{each.filename}'
+                yield name, table_lines(decoded(data, 'replace'), Path(name))
+    except (BadZipFile, OSError, RuntimeError, NotImplementedError, EOFError, zlib.error) as error:
+        what = f'a zip that cannot be read: {reason_of(error)}'
+        raise FormatError(what, where=str(path), cure=cure) from None

@@ -1,0 +1,24 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The wind of a document of JSON: of a sender whose units are known, or by names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.readers.tempest import is_tempest, read_tempest
+from tree_sway.live.readers.weatherlink import conditions_of, read_weatherlink
+from tree_sway.live.reading import Reading
+
+_KIND = 'JSON'
+
+
+def read_document(document: Any, names: WindNames) -> Sequence[Reading]:
+    """Read a document; nothing of None. Where ``names`` have a path, that decides."""
+    if names.speed is None and is_tempest(document):
+        return read_tempest(document)
+    if names.speed is None and conditions_of(document):
+        return read_weatherlink(document)
+    return () if document is None else names.read(document, _KIND)

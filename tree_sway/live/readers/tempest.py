@@ -1,0 +1,38 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Messages of WeatherFlow's Tempest, of which ``rapid_wind`` is read.
+
+It has the wind every three seconds; the mean over a minute (``obs_st``) is not read beside it
+(Tempest API, "UDP Broadcast", version 171).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tree_sway.files.wind import tempest_values
+from tree_sway.live.readers.values import bearing_of, number
+from tree_sway.live.reading import Reading, Refusal, WindReading
+
+KIND = 'rapid_wind'
+
+
+def is_tempest(document: Any) -> bool:
+    """Whether a document is a message of a Tempest's hub."""
+    return isinstance(document, dict) and 'type' in document and 'hub_sn' in document
+
+
+def read_tempest(document: Any) -> Sequence[Reading]:
+    """Read the wind of an instant; nothing of any other message."""
+    values = tempest_values(document)
+    if values is None or document['type'] != KIND:
+        return ()
+    speed, bearing = number(values['wind_speed']), bearing_of(values['wind_direction'])
+    if speed is None or speed < 0.0:
+        return [Refusal(KIND, f'ob is {str(document.get("ob"))[:40]}')]
+    if bearing is None:
+        return [Refusal(KIND, f'direction is {str(values["wind_direction"])[:20]}')]
+    sender = str(document.get('serial_number', ''))
+    return [WindReading(KIND, speed, bearing, interval=0.0, sender=sender)]
