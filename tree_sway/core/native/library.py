@@ -53,7 +53,15 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_past_winds': (
         None,
         (
-            _pointer, _size, _number, _pointer, _pointer, _size, _number, _pointer, _number,
+            _pointer,
+            _size,
+            _number,
+            _pointer,
+            _pointer,
+            _size,
+            _number,
+            _pointer,
+            _number,
             _pointer,
         ),
     ),
@@ -72,17 +80,20 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_propagators': (_whole, (_pointer, _pointer, _pointer, _size, _number, _pointer)),
     # Loads of winds on branches.
     'sway_wind_moments': (
-        None, (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
+        None,
+        (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer),
     ),
     'sway_load_slopes': (
-        None, (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
+        None,
+        (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
     'sway_step_branches': (
         _whole,
         (_pointer, _size, _pointer, _pointer, _number, _number, _number, _number),
     ),
     'sway_rest_branches': (
-        None, (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
+        None,
+        (_pointer, _size, _number, _number, _number, _number, _pointer, _pointer),
     ),
 }
 """Result and arguments of every function."""
