@@ -193,6 +193,22 @@ test("many cards are small, and no branch ends without leaves", () => {
   }
 });
 
+test("a long shoot that hangs is clothed from its foot on", () => {
+  const arrays = { ...kind.arrays, leaf_size: kind.arrays.leaf_size.map((size) => size / 8) };
+  const small = shapeOf({ ...kind, arrays, look: { ...average, leaf_size: 0.01, droop: 0.5 } });
+  const { leaf_segment: clusters, leaf_size: sizes, segment_length: length } = arrays;
+  const mean = sizes.reduce((sum, size) => sum + size, 0) / sizes.length;
+  const { mesh } = leafMesh(small, placer.order, 6 * clusters.length, 6 * clusters.length);
+  const nearest = new Map();
+  for (let v = 0; v < mesh.values.length; v += 19) {
+    const [slot, ...place] = mesh.values.slice(v, v + 4);
+    nearest.set(slot, Math.min(nearest.get(slot) ?? Infinity, Math.hypot(...place)));
+  }
+  const long = [...new Set(clusters)].filter((segment) => length[segment] > 2 * mean);
+  assert.ok(long.length > 3);
+  assert.ok(long.every((segment) => nearest.get(placer.slots[segment]) < mean));
+});
+
 test("a leaf with leaflets is a picture of its own, as large as it is", () => {
   const walnut = { ...average, form: "compound", leaf_size: 0.1 };
   assert.equal(wholeLeaf(average), average.leaf_size);

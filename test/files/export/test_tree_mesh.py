@@ -96,6 +96,10 @@ def test_a_crown_of_smaller_shoots_is_above_the_ground_and_lit_from_outside(tree
     away = points - points.mean(axis=0)
     away /= np.linalg.norm(away, axis=1)[:, None]
     assert np.einsum('ij,ij->i', normals, away).mean() > 0.6
+    # The side that a viewer takes for the front is the one that is lit.
+    corner, one, other = (points[parted.triangles[:, k]] for k in range(3))
+    front = np.cross(one - corner, other - corner)
+    assert np.mean(np.einsum('ij,ij->i', front, normals[parted.triangles[:, 0]]) > 0.0) > 0.9
 
     def area(mesh):
         a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))

@@ -130,10 +130,13 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     away[:, 2] += _SKYWARD
     outward = Rotation.from_quat(poses[segment, 3:]).inv().apply(away)[:, None]
     own = mesh.normals.reshape(-1, 4, 3)
-    own = own * np.where((own * outward).sum(axis=2, keepdims=True) < 0.0, -1.0, 1.0)
+    points = mesh.points.reshape(-1, 4, 3)
+    # Viewers turn the normals of a back: the front of each card is outside.
+    is_back = (own * outward).sum(axis=(1, 2)) < 0.0
+    points[is_back] = points[is_back, ::-1]
+    own = np.where(is_back[:, None, None], -own[:, ::-1], own)
     normals = _unit(_FLAT * own + outward)
     is_above = corners[..., 2].min(axis=1) >= foot
-    points = mesh.points.reshape(-1, 4, 3)
     return _card_mesh(points[is_above], normals[is_above], segment[is_above])
 
 

@@ -44,8 +44,8 @@ export class Camera {
     this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
     const [left, top, right, bottom] = this.room();
     const [across, down] = [right - left, bottom - top].map((each) => Math.max(0.2, each));
-    // A crown is round: its box has corners that it does not reach.
-    const [round, deep] = isTree ? [0.75, 0] : [1, 0.16];
+    // A crown is round: its box has corners that it does not reach; its leaves go beyond the top.
+    const [round, deep] = isTree ? [0.75, 0.14] : [1, 0.16];
     const half = 0.54 * Math.max((tall + deep * wide) / down, (round * wide) / this.aspect / across);
     this.distance = isStand ? 0.6 * Math.min(high[0] - low[0], 1.5 * (high[1] - low[1])) + NEARBY * tall : half / HALF + 0.3 * wide;
     this.elevation = isTree ? -0.07 : isStand ? (0.2 * tall) / this.distance : deep;

@@ -291,7 +291,7 @@ void main() {
   vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   float clear = clearness(p);
-  vec3 whole = clear * shade * (sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
+  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
   bool isShadow = shadowArea.w > 0.5;
   lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
   veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
