@@ -53,21 +53,6 @@ INLINE Joint joint_of(const sway_branches &tree, int64_t b, const double *amount
   return joint;
 }
 
-constexpr double SIXTH = 1.0 / 6.0;
-
-// The angular velocity of a rotation vector t that changes by w per second, by series:
-// w + t x w / 2 + t x (t x w) / 6.
-INLINE V3 spin_of(const V3 &rotation, const V3 &rate) {
-  const V3 first = cross(rotation, rate);
-  return rate + 0.5 * first + SIXTH * cross(rotation, first);
-}
-
-// What a couple does per unit of a rotation vector: `spin_of` transposed.
-INLINE V3 spin_transposed(const V3 &rotation, const V3 &couple) {
-  const V3 first = cross(couple, rotation);
-  return couple + 0.5 * first + SIXTH * cross(first, rotation);
-}
-
 // The motion of all bases. A base keeps its distance from the parent's base, as the end of a rod:
 // where it is displaced by s across an arm a, it comes closer by |s|^2 / (2 |a|).
 void go_outward(const sway_branches &tree, const double *x, const double *v,
@@ -99,7 +84,7 @@ void go_outward(const sway_branches &tree, const double *x, const double *v,
     const double shortening = 2.0 * per_arm * dot(joint.shift, rate.shift);
     const V3 velocity =
         read(on.velocity) + cross(parent_spin, arm) + rate.shift - shortening * rest_arm;
-    const V3 spin = parent_spin + spin_of(joint.rotation, rate.rotation);
+    const V3 spin = parent_spin + spin_by(joint.rotation, rate.rotation);
     write(own.velocity, turned_by(-1.0 * joint.rotation, velocity));
     write(own.velocity + 3, turned_by(-1.0 * joint.rotation, spin));
   }
@@ -162,7 +147,7 @@ void go_inward(const sway_branches &tree, sway_branch_load *loads, double *momen
     // The shortening of the arm, the spin, and the motion of the base.
     const double axial = 2.0 * tree.per_arm[b] * dot(read(tree.arm + 3 * b), force);
     const V3 pull = force - axial * read(own.displacement);
-    const V3 turning = spin_transposed(rotation, couple) + cross(read(tree.base + 3 * b), pull);
+    const V3 turning = spin_by(-1.0 * rotation, couple) + cross(read(tree.base + 3 * b), pull);
     const double *twist = tree.twist + 6 * tree.keys * b;
     for (int64_t c = 0; c < tree.n_coordinates[parent]; c++)
       moments[tree.coordinate[parent] + c] +=

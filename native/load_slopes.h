@@ -112,12 +112,6 @@ INLINE Lanes3 along(const double *row, size_t columns, int64_t count, const doub
   return sum;
 }
 
-// w + t x w / 2 + t x (t x w) / 6, and transposed.
-INLINE Lanes3 spin_by(const Lanes3 &rotation, const Lanes3 &rate) {
-  const Lanes3 first = cross(rotation, rate);
-  return rate + 0.5 * first + (1.0 / 6.0) * cross(rotation, first);
-}
-
 // The motion of the base of each branch along the shapes.
 INLINE void move_outward(const sway_branches &tree, const sway_branch_load *loads,
                          const double *shapes, size_t columns, const Held *held, Moved *moved) {

@@ -102,8 +102,6 @@ public:
     return check_all(arrays) && check_indices(arrays);
   }
 
-  bool has(const char *name) const { return found_[number_of(name)].data != nullptr; }
-
 private:
   struct Found {
     const char *data;
@@ -308,10 +306,7 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.is_stepped = by_table;
   model.rows = a.size[-SIZE_k];
   model.padded = (sizes.coordinates + WHOLE - 1) / WHOLE * WHOLE;
-  for (int axis = 0; axis < 3; axis++) {
-    model.drag_law[axis] = a.drag_law ? a.drag_law[axis] : 0.0;
-    model.root[axis] = a.tree_start ? a.tree_start[axis] : 0.0;
-  }
+  for (int axis = 0; axis < 3; axis++) model.drag_law[axis] = a.drag_law ? a.drag_law[axis] : 0.0;
   if (a.tree_start) lay_out_places(model, a);
   if (a.shapes) lay_out_shapes(model, a);
   if (!by_table && !at_pose) return;

@@ -123,9 +123,8 @@ struct sway_model {
   int64_t rows;    // room for key rotations of a branch, k
   int64_t padded;  // coordinates, up to whole vectors
   double drag_law[3];
-  double root[3];  // root node of the tree [m]
 
-  int64_t n_blocks, n_records;
+  int64_t n_blocks;
   const sway::Block *blocks;
   const sway::Segment *segments;
 

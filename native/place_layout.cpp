@@ -229,7 +229,6 @@ void lay_out_places(sway_model &model, const Arrays &a) {
     }
   }
   model.n_blocks = slots.n_blocks;
-  model.n_records = slots.n_records;
   model.blocks = blocks;
   model.segments = segments;
   scratch.release();

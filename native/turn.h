@@ -36,6 +36,14 @@ template <class V> INLINE Vector<V> turned_by(const Vector<V> &rotation, const V
   return v + f * (c + cross(h, c));
 }
 
+// The angular velocity of a rotation vector t that changes by w per second, by series:
+// w + t x w / 2 + t x (t x w) / 6. By the opposite rotation vector it is transposed: what a couple w
+// does per unit of t.
+template <class V> INLINE Vector<V> spin_by(const Vector<V> &rotation, const Vector<V> &rate) {
+  const Vector<V> first = cross(rotation, rate);
+  return rate + 0.5 * first + (1.0 / 6.0) * cross(rotation, first);
+}
+
 // The unit quaternion of a rotation vector [rad].
 INLINE Quaternion<double> quaternion_of(const Vector<double> &rotation) {
   const Vector<double> half = 0.5 * rotation;

@@ -56,7 +56,6 @@ INLINE Vec load_singles(const float *from) {
 }
 
 INLINE Vec all(double value) { return value - Vec{}; }
-INLINE Singles all_singles(float value) { return value - Singles{}; }
 
 INLINE Vec least(Vec a, Vec b) { return a < b ? a : b; }
 INLINE Vec most(Vec a, Vec b) { return a > b ? a : b; }
@@ -85,15 +84,6 @@ INLINE double largest(Vec value) {
   for (int lane = 1; lane < LANES; lane++) found = most(found, value[lane]);
   return found;
 }
-
-INLINE bool any(Mask mask) {
-  int64_t found = 0;
-  for (int lane = 0; lane < LANES; lane++) found |= mask[lane];
-  return found != 0;
-}
-
-// Numbers in whole vectors of doubles and of singles on every target.
-INLINE int whole_vectors(int count) { return (count + 15) / 16 * 16; }
 
 // Transpose four rows of four numbers.
 INLINE void transpose(Four &a, Four &b, Four &c, Four &d) {

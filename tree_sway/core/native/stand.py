@@ -107,6 +107,9 @@ class NativeStand:
         self._handle = opened.handle
         self.states = self._views(len(trees), opened)
         self._counts = np.zeros((self._n_rooms, 2), dtype=np.int64)
+        self._counts_at = address(self._counts)
+        self._winds_at = LastAddress()
+        self._rows_at = LastAddress()
         self._wind = (ctypes.c_double * 3)()
         self._first_row = np.zeros((1, 2), dtype=np.int64)
         self._first_row_at = address(self._first_row)
@@ -163,10 +166,10 @@ class NativeStand:
             go on from rest.
 
         """
-        first, counts = address(winds), address(self._counts)
+        first, counts = self._winds_at.of(winds), self._counts_at
 
         def step(room: int, begin: int, end: int) -> None:
-            own = first + begin * winds.strides[0], counts + room * self._counts.strides[0]
+            own = first + 24 * begin, counts + 16 * room
             LIBRARY.sway_step(self._handle, room, begin, end - begin, *own)
 
         self._share(len(winds), step)
@@ -175,9 +178,11 @@ class NativeStand:
 
     def _share(self, count: int, work: Callable[[int, int, int], None]) -> None:
         """Share trees among threads: work by number of the room, first tree and end."""
+        if self._n_rooms == 1:
+            work(0, 0, count)
+            return
         ends = [count * room // self._n_rooms for room in range(self._n_rooms + 1)]
-        parts = zip(range(self._n_rooms), ends, ends[1:], strict=False)
-        own, *others = parts
+        own, *others = zip(range(self._n_rooms), ends, ends[1:], strict=False)
         threads = [Thread(target=work, args=part) for part in others]
         for thread in threads:
             thread.start()
@@ -191,11 +196,10 @@ class NativeStand:
 
     def place(self, rows: Ints, out: Floats) -> None:
         """Place trees: their numbers and first rows in a pose block, (w, 2)."""
-        first, poses = address(rows), address(out)
+        first, poses = self._rows_at.of(rows), self._poses_at.of(out)
 
         def place(room: int, begin: int, end: int) -> None:
-            own = first + begin * rows.strides[0]
-            LIBRARY.sway_place(self._handle, room, own, end - begin, poses)
+            LIBRARY.sway_place(self._handle, room, first + 16 * begin, end - begin, poses)
 
         self._share(len(rows), place)
 

@@ -100,6 +100,9 @@ class SharedTables:
         self._counted = sharing.counts.copy()
         """Numbers of coordinates that the trees show, (t,); -1 on models of their own."""
         self._stand: NativeStand | None = None
+        self._ends: Ints | None = None
+        """First rows of the trees in the last pose block, which `_rows` are of."""
+        self._rows = np.zeros((0, 2), dtype=np.int64)
         if self.kinds:
             models = [kind.banks[0].stand.models[0] for kind in self.kinds]
             self._kind_numbers = np.maximum(sharing.tables, 0)
@@ -322,8 +325,10 @@ class SharedTables:
         """
         if not self.kinds:
             return
-        trees = np.flatnonzero(self._sharing.is_shared)
-        self._place_rows(np.stack([trees, ends[trees]], axis=1), out)
+        if ends is not self._ends:
+            trees = np.flatnonzero(self._sharing.is_shared)
+            self._ends, self._rows = ends, np.stack([trees, ends[trees]], axis=1)
+        self._place_rows(self._rows, out)
 
     def place_tree(self, number: int, out: Floats) -> None:
         """Place a tree in a pose block of its own."""
