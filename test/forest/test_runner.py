@@ -220,8 +220,7 @@ def test_ctrl_c_waits_until_what_is_begun_is_whole():
         os.kill(os.getpid(), signal.SIGINT)
         until(lambda: signal.SIGINT in signal.sigpending(), 10.0)
         with pytest.raises(KeyboardInterrupt):
-            delayed.close()
-            until(lambda: False, 10.0)
+            until(delayed.close, 10.0)
     over.set()
     assert signal.getsignal(signal.SIGINT) is before
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])

@@ -70,7 +70,7 @@ def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> Swa
         )
     tree = reductions.tree
     species = reductions.species
-    digest = digest_of_source(tree, species, settings)
+    digest = digest_of(tree, species, settings)
     found = None if cache is None else cache.read(digest)
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
@@ -84,8 +84,3 @@ def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> Swa
     if cache is not None:
         cache.write(digest, made.arrays())
     return made
-
-
-def digest_of_source(tree: Tree, species: Species, settings: Settings) -> str:
-    """Digest of a tree, its species and settings, by which its model is found again."""
-    return digest_of(tree, species, settings)
