@@ -80,7 +80,7 @@ def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> Swa
             return stored
     from tree_sway.core.setup.make_model import make_model  # a stored model does not need it
 
-    made = make_model(reductions, settings)
+    made = make_model(reductions)
     if cache is not None:
         cache.write(digest, made.arrays())
     return made
