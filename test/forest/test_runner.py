@@ -213,13 +213,14 @@ def ctrl_c():
 @pytest.mark.usefixtures('ctrl_c')
 def test_ctrl_c_waits_until_what_is_begun_is_whole():
     over = threading.Event()
-    threading.Thread(target=over.wait).start()  # not blocked there: it may receive the signal
+    # Not blocked there: it may receive the signal, and hand it on a little later.
+    threading.Thread(target=over.wait, daemon=True).start()
     before = signal.getsignal(signal.SIGINT)
     with delayed_interrupt() as delayed:
         os.kill(os.getpid(), signal.SIGINT)
         until(lambda: signal.SIGINT in signal.sigpending(), 10.0)
         with pytest.raises(KeyboardInterrupt):
-            delayed.close()
+            until(delayed.close, 10.0)
     over.set()
     assert signal.getsignal(signal.SIGINT) is before
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])

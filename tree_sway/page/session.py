@@ -15,7 +15,6 @@ import logging
 import threading
 import time
 
-from tree_sway.core.leaves import SUMMER
 from tree_sway.core.scene import Run, SceneSimulator, set_demand, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_keys
@@ -25,6 +24,7 @@ from tree_sway.files.export import morphing_tree
 from tree_sway.growth import BUILTIN_TREES, stem_growth
 from tree_sway.live import LiveWind, MotionFeed
 from tree_sway.newest import Newest
+from tree_sway.page.leaf_calendar import SUMMER
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
 from tree_sway.simulation import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource

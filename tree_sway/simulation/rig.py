@@ -366,7 +366,7 @@ def _moment_per_rotation(reductions: TreeReductions) -> Floats:
     It follows from the curvature of the stem's shapes there, so it is the moment of wind and
     inertia together that a strain gauge measures.
     """
-    stem = reductions.reduced(reductions.settings.model).models[0]
+    stem = reductions.reduced.models[0]
     along = stem.beam.tangent[0]
     found = []
     for field in stem.fields:

@@ -38,7 +38,7 @@ class WoodStrain:
 
     def __init__(self, reductions: TreeReductions, n_branches: int | None = None) -> None:
         """Find the curvature by each coordinate."""
-        reduced = reductions.reduced(reductions.settings.model)
+        reduced = reductions.reduced
         tree = reduced.tree
         at_base = []
         in_middle = []

@@ -14,7 +14,7 @@ import pytest
 from scipy import linalg
 from simulators import FULL
 
-from tree_sway.core.model.state_basis import FULL_SCALE
+from tree_sway.core.model.state_basis import FULL_SCALE, rounded
 from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
@@ -48,7 +48,7 @@ def gaps(sim, basis, speed, steps=600):
     ):
         sim.step(wind, DT)
         if number % 10 == 9:
-            x = basis.rotations(basis.rounded(basis.coordinates(sim.rotations())))
+            x = basis.rotations(rounded(basis.coordinates(sim.rotations()), basis.scale))
             placed.append(sim.place()[:, :3].copy())
             through.append(sim.place_rotations(x)[:, :3])
     placed, through = np.array(placed), np.array(through)
@@ -72,7 +72,7 @@ def test_coordinates_of_a_shape_in_the_basis_are_its_own(basis):
 
 def test_what_is_beyond_full_scale_is_held(basis):
     coordinates = basis.scale * np.linspace(-2.0, 2.0, basis.n_coordinates)
-    sent = basis.rounded(coordinates)
+    sent = rounded(coordinates, basis.scale)
     clamped = np.abs(coordinates) > basis.scale
     np.testing.assert_allclose(np.abs(sent[clamped]), basis.scale[clamped])
     finest = basis.scale.max() / FULL_SCALE

@@ -5,7 +5,7 @@ Leaves: mass and area per branch for the solver, clusters and flutter for viewer
 
 `foliage_of` spreads the leaf area of a species over the twigs of a tree; `clad_wood` adds their
 mass. `leaf_clusters` places what a viewer draws, `leaf_poses` and `flutter_angle` move it with the
-air that passes. `species_in_month` and `is_bare` follow the year of central Europe.
+air that passes.
 
 The solver takes mass and area alone; nothing here steps.
 """
@@ -15,11 +15,6 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
-    from tree_sway.core.leaves.calendar import FIRST_MONTH as FIRST_MONTH
-    from tree_sway.core.leaves.calendar import is_bare as is_bare
-    from tree_sway.core.leaves.calendar import LAST_MONTH as LAST_MONTH
-    from tree_sway.core.leaves.calendar import species_in_month as species_in_month
-    from tree_sway.core.leaves.calendar import SUMMER as SUMMER
     from tree_sway.core.leaves.flutter import flutter_angle as flutter_angle
     from tree_sway.core.leaves.flutter import FLUTTER_GAIN as FLUTTER_GAIN
     from tree_sway.core.leaves.flutter import LARGEST_ANGLE as LARGEST_ANGLE
@@ -30,5 +25,6 @@ if TYPE_CHECKING:
     from tree_sway.core.leaves.foliage import joined_clusters as joined_clusters
     from tree_sway.core.leaves.foliage import leaf_clusters as leaf_clusters
     from tree_sway.core.leaves.foliage import LeafClusters as LeafClusters
+    from tree_sway.core.leaves.foliage import stem_section as stem_section
 else:
     __getattr__, __dir__, __all__ = face(__name__)

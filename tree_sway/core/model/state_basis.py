@@ -72,10 +72,6 @@ class StateBasis:
         """Key rotations in [rad], (N,), of coordinates (m,)."""
         return np.asarray(self.matrix @ coordinates)
 
-    def rounded(self, coordinates: Floats) -> Floats:
-        """Coordinates (m,) after rounding to int16."""
-        return rounded(coordinates, self.scale)
-
 
 def rounded(coordinates: Floats, scale: Floats) -> Floats:
     """Coordinates (..., m) after rounding to int16, of values at full scale (m,)."""

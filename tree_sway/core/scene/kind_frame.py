@@ -31,7 +31,7 @@ class KindFrame:
     tree: PlacedTree
 
     @property
-    def rotation_kind_world(self) -> Floats:
+    def _rotation_kind_world(self) -> Floats:
         """Return the rotation from the world to the kind, (3, 3)."""
         cosine = math.cos(self.tree.yaw)
         sine = math.sin(self.tree.yaw)
@@ -39,7 +39,7 @@ class KindFrame:
 
     def to_tree(self, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
         """Return a force [N] and a moment [N m] on the kind, (3,), as they are on the tree."""
-        rotation = self.rotation_kind_world
+        rotation = self._rotation_kind_world
         scale = self.tree.scale
         return scale**2 * (force @ rotation), scale**3 * (moment @ rotation)
 
@@ -47,7 +47,7 @@ class KindFrame:
         """Return a force [N], (3,), or a spring on the tree as it is on its kind."""
         from tree_sway.core.run import Spring
 
-        rotation = self.rotation_kind_world
+        rotation = self._rotation_kind_world
         scale = self.tree.scale
         if not isinstance(force, Spring):
             return rotation @ array_to_read('push', force, (3,)) / scale**2

@@ -3,7 +3,7 @@
 """
 A scene that is solved by the receiver: exported tables, and the places of the trees.
 
-It is the solver of ``static/sway.js`` in Python, and its reference in tests.
+`StreamClient` solves so where it asks for the wind alone, as the page does (``static/sway.js``).
 """
 
 from __future__ import annotations

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from tree_sway.core.setup.damping import relative_damping as relative_damping
     from tree_sway.core.setup.modes import buckling_factor as buckling_factor
     from tree_sway.core.setup.modes import natural_modes as natural_modes
-    from tree_sway.core.setup.preparation import digest_of_source as digest_of_source
     from tree_sway.core.setup.preparation import prepare as prepare
     from tree_sway.core.setup.preparation import prepared as prepared
     from tree_sway.core.setup.reductions import TreeReductions as TreeReductions

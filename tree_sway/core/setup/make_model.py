@@ -17,7 +17,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model import StateBasis, SwayModel
 from tree_sway.core.oscillators import LOAD_MAX
-from tree_sway.core.settings import Settings
 from tree_sway.core.setup.bent_inertia import inertia_slopes
 from tree_sway.core.setup.damping import relative_damping
 from tree_sway.core.setup.leaning_responses import leaning_responses
@@ -38,17 +37,18 @@ from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.wind.gusts import delays_of, N_DELAYS, parts_of
 
 
-def make_model(reductions: TreeReductions, settings: Settings) -> SwayModel:
+def make_model(reductions: TreeReductions) -> SwayModel:
     """Make the model of a tree; a `TreeError` refuses one that cannot be solved."""
     with solvable(reductions.tree):
-        if settings.model == 'branch':
-            return _isolated_branches(reductions, settings)
-        return _coupled_tree(reductions, settings)
+        if reductions.settings.model == 'branch':
+            return _isolated_branches(reductions)
+        return _coupled_tree(reductions)
 
 
 @one_thread()
-def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
+def _coupled_tree(reductions: TreeReductions) -> SwayModel:
     """Prepare the whole tree on some or all coordinates, on some with a table of loads."""
+    settings = reductions.settings
     reduced = reductions.with_subtrees
     modes = reductions.modes(settings.model)
     # One coordinate after the other in memory, so that loops over key rotations are vectorised.
@@ -69,7 +69,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         table = load_table(coordinates, reductions.wind_moments, reductions.drag_law)
     order = np.argsort(reduced.branches['first'])
     return SwayModel(
-        **_whole(reductions, reduced, settings),
+        **_whole(reductions, reduced),
         stiffness=coordinates.stiffness,
         own_damping=coordinates.damping,
         weight=arrays['weight'],
@@ -125,8 +125,9 @@ def _stream(
 
 
 @one_thread()
-def _isolated_branches(reductions: TreeReductions, settings: Settings) -> SwayModel:
+def _isolated_branches(reductions: TreeReductions) -> SwayModel:
     """Prepare each branch's own oscillator: the mean of its two axes."""
+    settings = reductions.settings
     tree = reductions.tree
     reduced = reductions.isolated
     matrices = reduced.reduction
@@ -142,7 +143,7 @@ def _isolated_branches(reductions: TreeReductions, settings: Settings) -> SwayMo
         damping = settings.volume_damping * rule
     circular = np.sort(np.sqrt(stiffness / inertia))
     return SwayModel(
-        **_whole(reductions, reduced, settings),
+        **_whole(reductions, reduced),
         stiffness=stiffness,
         own_damping=damping,
         weight=_of_branches(np.asarray(matrices.gravity.diagonal())),
@@ -157,7 +158,7 @@ def _of_branches(values: Floats) -> Floats:
     return np.asarray(values.reshape(-1, 2).mean(axis=1))
 
 
-def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings) -> dict[str, Any]:
+def _whole(reductions: TreeReductions, reduced: ReducedTree) -> dict[str, Any]:
     """
     Arrays for placing, and of the load of each branch.
 
@@ -175,7 +176,7 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree, settings: Settings)
     return {
         'tree': reductions.tree,
         'species': reductions.species,
-        'settings': settings,
+        'settings': reductions.settings,
         'drag_law': reductions.drag_law,
         'damping_ratio': reductions.damping_ratio,
         'mass': float(reduced.mass.sum()),

@@ -70,7 +70,7 @@ def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> Swa
         )
     tree = reductions.tree
     species = reductions.species
-    digest = digest_of_source(tree, species, settings)
+    digest = digest_of(tree, species, settings)
     found = None if cache is None else cache.read(digest)
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
@@ -80,12 +80,7 @@ def prepared(reductions: TreeReductions, cache: ModelCache | None = None) -> Swa
             return stored
     from tree_sway.core.setup.make_model import make_model  # a stored model does not need it
 
-    made = make_model(reductions, settings)
+    made = make_model(reductions)
     if cache is not None:
         cache.write(digest, made.arrays())
     return made
-
-
-def digest_of_source(tree: Tree, species: Species, settings: Settings) -> str:
-    """Digest of a tree, its species and settings, by which its model is found again."""
-    return digest_of(tree, species, settings)

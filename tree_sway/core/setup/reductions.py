@@ -178,9 +178,10 @@ class TreeReductions:
 
         return WindMoments(self.with_subtrees.branches)
 
-    def reduced(self, model: int | str) -> ReducedTree:
-        """Return the reduction for a model."""
-        return self.isolated if model == 'branch' else self.with_subtrees
+    @property
+    def reduced(self) -> ReducedTree:
+        """Reduction for the model of its settings."""
+        return self.isolated if self.settings.model == 'branch' else self.with_subtrees
 
     @cached_property
     def _reducer(self) -> TreeReducer:

@@ -13,12 +13,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tree_sway.core.fidelity import DIAL
-from tree_sway.core.leaves import FIRST_MONTH, LAST_MONTH
 from tree_sway.core.species import species_keys
 from tree_sway.growth import BUILTIN_TREES, OLDEST
 from tree_sway.installed_models import installed_models
 from tree_sway.live import LiveWind
 from tree_sway.page import Choices
+from tree_sway.page.leaf_calendar import FIRST_MONTH, LAST_MONTH
 from tree_sway.parameters import SWAY
 from tree_sway.simulation import RecordedWind, SimulatedWind, WindSource
 from tree_sway.stream import Control, PAUSE_AND_RESET, Value

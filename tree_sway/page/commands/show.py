@@ -17,7 +17,6 @@ import numpy as np
 
 from tree_sway.commands import additions, Ending, waiting
 from tree_sway.core.checks import within
-from tree_sway.core.leaves import is_bare, species_in_month
 from tree_sway.core.scene import PlacedTree, Scene, Simulator
 from tree_sway.core.settings import Settings, USUAL
 from tree_sway.core.species import species_named
@@ -42,6 +41,7 @@ from tree_sway.page import Choices, PageServer, PageSettings, Session
 from tree_sway.page.commands.addition import PageAddition
 from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.page.commands.page_controls import page_controls
+from tree_sway.page.leaf_calendar import is_bare, species_in_month
 from tree_sway.simulation import WindSource
 from tree_sway.stream import ControlPanel, Value
 

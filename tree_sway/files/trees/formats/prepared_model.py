@@ -7,7 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway.core.model import PREPARED
-from tree_sway.core.setup import digest_of_source
+from tree_sway.core.tree_state import digest_of
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.models.model_file import read_model, SUFFIX
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -20,7 +20,7 @@ def read_prepared(path: Path) -> TreeFile:
     Raises a `FormatError` for a damaged file.
     """
     model = read_model(path)
-    source = digest_of_source(model.tree, model.species, model.settings)
+    source = digest_of(model.tree, model.species, model.settings)
     PREPARED.add(source, model.arrays())
     settings = model.settings
     leaves = 'in leaf' if settings.in_leaf else 'bare'

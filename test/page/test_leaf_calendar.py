@@ -5,11 +5,11 @@
 import numpy as np
 import pytest
 
-from tree_sway.core.leaves.calendar import is_bare, leaf_share, species_in_month
 from tree_sway.core.leaves.foliage import foliage_of
 from tree_sway.core.species.species import SPECIES
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
+from tree_sway.page.leaf_calendar import is_bare, leaf_share, species_in_month
 
 OAK = SPECIES['oak']
 

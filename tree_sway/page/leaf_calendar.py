@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from tree_sway.core.checks import within
-from tree_sway.core.leaves.foliage import foliage_of, stem_section
+from tree_sway.core.leaves import foliage_of, stem_section
 from tree_sway.core.species import Color, Look, Species
 from tree_sway.core.tree import Tree
 
