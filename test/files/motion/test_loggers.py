@@ -266,7 +266,7 @@ def test_a_zip_is_refused_by_cause(name: str, tmp_path: Path) -> None:
 def test_a_zip_that_is_cut_is_refused(cut: int, tmp_path: Path) -> None:
     path = zipped(tmp_path / 'a.zip', **PHONE)
     path.write_bytes(path.read_bytes()[:cut])
-    with pytest.raises(FormatError, match='a zip that cannot be read|a compressed file'):
+    with pytest.raises(FormatError, match=r'a zip that cannot be read|a compressed file'):
         read_motion(path)
 
 

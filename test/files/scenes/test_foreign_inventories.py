@@ -81,7 +81,8 @@ REFUSED = {
 
 
 ABOVE = (
-    'Baumkataster;;;;\nStand 2024, Anzahl 2;;;;\n\nBaumart;Höhe;BHD;Rechtswert;Hochwert\n;m;cm;m;m\n'
+    'Baumkataster;;;;\nStand 2024, Anzahl 2;;;;\n\n'
+    'Baumart;Höhe;BHD;Rechtswert;Hochwert\n;m;cm;m;m\n'
     'Quercus robur;18,5;40;390000,0;5820000,0\nTilia cordata;12;25;390010,0;5820005,0\n'
 )
 
