@@ -195,6 +195,48 @@ def laughs(path: Path) -> None:
     spreadsheet(path, SHEET, iter([f'{head}{body}</sheetData></worksheet>'.encode()]))
 
 
+def sheet_of(path: Path, entities: str, text: str) -> None:
+    head = f'<?xml version="1.0"?><!DOCTYPE b [{entities}]>'
+    body = f'<worksheet><sheetData><row><c t="inlineStr"><is><t>{text}</t></is></c></row>'
+    spreadsheet(path, SHEET, iter([f'{head}{body}</sheetData></worksheet>'.encode()]))
+
+
+def file_of_others(path: Path) -> None:
+    sheet_of(path, '<!ENTITY a SYSTEM "file:///etc/passwd">', '&a;')
+
+
+def blown_up(path: Path) -> None:
+    sheet_of(path, f'<!ENTITY a "{"ha" * 50_000}">', '&a;' * 50_000)
+
+
+def strings_without_end(path: Path) -> None:
+    head = b'<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
+    strings = (b'<si><t>oak</t></si>' * 100_000 for _ in range(40))
+    spreadsheet(path, 'xl/sharedStrings.xml', iter([head, *strings]))
+
+
+def zip_of(path: Path, name: str, size: int, count: int) -> None:
+    with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for k in range(count):
+            archive.writestr(f'{k}{name}', bytes(size))
+
+
+def packed_table(path: Path) -> None:
+    zip_of(path, '.csv', 1 << 28, 3)
+
+
+def packed_tables(path: Path) -> None:
+    zip_of(path, '.csv', 10, 5000)
+
+
+def zip_with_a_wrong_size(path: Path) -> None:
+    zip_of(path, '.csv', 1 << 28, 1)
+    data = bytearray(path.read_bytes())
+    for sign, at in ((b'PK\3\4', 22), (b'PK\1\2', 24)):
+        struct.pack_into('<I', data, data.index(sign) + at, 100)
+    path.write_bytes(data)
+
+
 BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
     'chunks.mcap': (chunks_in_chunks, 'Nested MCAP chunks'),
     'packed.mcap': (packed_chunk, 'more than 768 MiB of memory or 20 s'),
@@ -207,6 +249,12 @@ BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
     'cut.gpkg': (geometry_cut_off, 'no layer of points'),
     'packed.xlsx': (packed_sheet, 'more than 768 MiB when it is unpacked'),
     'laughs.xlsx': (laughs, 'not a spreadsheet that can be read'),
+    'others.xlsx': (file_of_others, 'not a spreadsheet that can be read'),
+    'blown.xlsx': (blown_up, 'not a spreadsheet that can be read'),
+    'strings.xlsx': (strings_without_end, 'no sheet with a header and rows'),
+    'table.zip': (packed_table, 'tables of more than 64 MiB in a zip'),
+    'tables.zip': (packed_tables, 'a zip of 5000 files'),
+    'wrong.zip': (zip_with_a_wrong_size, 'a zip that cannot be read'),
     'cells.mat': (many_cells, 'more than 100000 arrays'),
     'ends.csv': (line_ends, 'more than 4000000 lines'),
     'keys.yaml': (million_keys, 'more than 600000 keys and values'),

@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterator
 from contextlib import suppress
+import gzip
+from hashlib import sha1
 import json
 import random
 import socket
@@ -31,6 +34,12 @@ ANSWERS = {
     'no gzip': [OK + b'Content-Encoding: gzip\r\nContent-Length: 9\r\n\r\n\x1f\x8b\x08zzzzzz'],
     'noise': [random.Random(1).randbytes(5000)],
     'nothing': [b''],
+    'wrong types': [OK + b'\r\n[{"wind_speed": [5], "wind_dir": {"value": []}, "rawOb": 5}]'],
+    'packed zeros': [OK + b'Content-Encoding: gzip\r\n\r\n', gzip.compress(bytes(1 << 28), 1)],
+    'a redirect to another': [
+        b'HTTP/1.1 302 Found\r\nLocation: ftp://127.0.0.1/a\r\nContent-Length: 0\r\n\r\n'
+    ],
+    'a header in a body': [OK + b'Content-Length: 5\r\n\r\nHTTP/1.1 200 OK\r\n\r\n{}'],
 }
 
 
@@ -84,6 +93,92 @@ def test_a_hostile_answer_is_told_and_takes_no_memory(
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
+    assert heard.wind.accepted == 0
+    assert peak < 30_000_000
+    assert capfd.readouterr().err == ''
+    assert all(len(text) < 600 and 'Traceback' not in text for text in heard.said)
+
+
+@pytest.mark.parametrize('scheme', ['http', 'metar'])
+def test_an_answer_that_drips_ends_at_its_limit(
+    hear, monkeypatch: pytest.MonkeyPatch, scheme: str
+) -> None:
+    monkeypatch.setattr('tree_sway.live.transports.http_poll._TIMEOUT', 0.5)
+    server = socket.create_server(('127.0.0.1', 0))
+
+    def drip() -> None:
+        with suppress(OSError):
+            link, _ = server.accept()
+            link.settimeout(0.1)
+            link.recv(65_536)
+            link.sendall(OK + b'Content-Length: 10000\r\n\r\n')
+            while True:
+                with suppress(TimeoutError):
+                    link.sendall(b' ')
+                    if not link.recv(1):
+                        return
+
+    threading.Thread(target=drip, daemon=True).start()
+    place = f'127.0.0.1:{server.getsockname()[1]}'
+    address = f'http://{place}/' if scheme == 'http' else f'metar:EDDB?server=http://{place}/'
+    heard = hear(address)
+    heard.until(lambda: heard.wind.link.failure)
+    server.close()
+    assert heard.wind.link.failure == 'no answer within 0.5 s'
+
+
+def frame(opcode: int, body: bytes, size: int | None = None) -> bytes:
+    """Return a frame of a WebSocket, maybe with a wrong size."""
+    return bytes([opcode, 127]) + (len(body) if size is None else size).to_bytes(8, 'big') + body
+
+
+FRAMES = {
+    'noise': random.Random(2).randbytes(5000),
+    'a huge size': frame(0x81, b'x' * 1000, 1 << 62),
+    'a large message': frame(0x81, b' ' * (1 << 19)),
+    'a message without end': frame(0x01, b'x' * 1000) + frame(0x00, b' ' * 60_000) * 400,
+    'no text': frame(0x81, b'\xff\xfe\xfd'),
+    'an unknown kind': frame(0x83, b'x'),
+    'signs of life without end': frame(0x89, b'x' * 100) * 5000,
+    'deltas of nothing': frame(0x81, b'{"updates": [{"values": [null, 5, {"path": []}]}]}') * 50,
+    'no numbers': frame(
+        0x81,
+        b'{"updates": [{"values": [{"path": "environment.wind.speedTrue", "value": NaN},'
+        b' {"path": "environment.wind.directionTrue", "value": 1e999}]}]}',
+    ),
+    'an end': frame(0x88, b'\x03\xe8'),
+}
+
+
+@pytest.mark.parametrize('name', FRAMES)
+def test_frames_of_a_hostile_server_are_counted_or_refused(hear, name: str, capfd) -> None:
+    server = socket.create_server(('127.0.0.1', 0))
+
+    def run() -> None:
+        with suppress(OSError):
+            while True:
+                link, _ = server.accept()
+                with link, suppress(OSError, IndexError):
+                    link.settimeout(5.0)
+                    asked = link.recv(65_536).decode()
+                    key = asked.partition('Sec-WebSocket-Key: ')[2].split()[0]
+                    sign = sha1(f'{key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11'.encode()).digest()
+                    link.sendall(
+                        b'HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n'
+                        b'Connection: Upgrade\r\nSec-WebSocket-Accept: '
+                        + b64encode(sign) + b'\r\n\r\n' + FRAMES[name]
+                    )  # fmt: skip
+
+    threading.Thread(target=run, daemon=True).start()
+    tracemalloc.start()
+    try:
+        heard = hear(f'signalk://127.0.0.1:{server.getsockname()[1]}')
+        heard.until(lambda: heard.wind.link.connections and heard.wind.link.failure)
+        heard.wind.stop()
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+        server.close()
     assert heard.wind.accepted == 0
     assert peak < 30_000_000
     assert capfd.readouterr().err == ''

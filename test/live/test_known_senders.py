@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of stations that arrive at a plain port: each in its own units, as its own source has."""
+"""Messages of stations at a plain port: each is read in its units, as by its own source."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ CONDITIONS = {
     'conditions': [
         {'lsid': 3187671188, 'data_structure_type': 3, 'bar_sea_level': 30.1},
         {'lsid': 48308, 'data_structure_type': 1, 'txid': 1, 'wind_speed_last': 10.0,
-         'wind_dir_last': 270, 'wind_speed_avg_last_10_min': 4.0, 'wind_speed_hi_last_2_min': 20.0},
+         'wind_dir_last': 270, 'wind_speed_avg_last_10_min': 4.0,
+         'wind_speed_hi_last_2_min': 20.0},
     ],
 }  # fmt: skip
 TEMPEST = {
@@ -42,9 +43,7 @@ def deltas(**values: float) -> list[dict[str, object]]:
 def read(*documents: object) -> list[Reading]:
     reader = InstrumentLines()
     return [
-        each
-        for document in documents
-        for each in reader(Message(json.dumps(document).encode()))
+        each for document in documents for each in reader(Message(json.dumps(document).encode()))
     ]
 
 

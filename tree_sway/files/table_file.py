@@ -41,6 +41,7 @@ _MOST_UNITS = 6
 _MEND = 'correct the cell or remove the row'
 _NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
+_WORDS = re.compile(r'\w+(?:\s+[\w/]+){2,}')
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 
 
@@ -205,6 +206,8 @@ class TextTable:
 
 def split_row(line: str, separator: str) -> Sequence[str]:
     """Cells of one line, stripped; quoted cells may contain the separator but no line end."""
+    if separator == ' ':
+        return line.split()
     if '"' not in line:
         return list(map(str.strip, line.split(separator)))
     if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:
@@ -214,6 +217,12 @@ def split_row(line: str, separator: str) -> Sequence[str]:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
     except csv.Error:
         return []
+
+
+def separator_of(header: str) -> str:
+    """Return the sign between the cells of a header, the one that it has most; else a space."""
+    found = max(SEPARATORS, key=header.count)
+    return found if found in header or not _WORDS.fullmatch(header.strip()) else ' '
 
 
 def whole_rows(
@@ -276,7 +285,7 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     if len(texts) < 2:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
-    separator = max(SEPARATORS, key=header.count)
+    separator = separator_of(header)
     filled = list(filter(None, split_row(header, separator)))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
     if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 import zipfile
 
@@ -127,6 +126,12 @@ READ: dict[str, tuple[str, tuple[str, ...], str]] = {
     'arduino with a header': (
         'motion.csv', (ACCELERATION,), table('millis,ax,ay,az', '{ms},{g},0.0,1.0'),
     ),
+    'shimmer': (
+        'motion.csv', (ACCELERATION,),
+        'sep=\t\n' + table('Shimmer_8665_Timestamp_Unix_CAL\tShimmer_8665_Accel_LN_X_CAL\t'
+            'Shimmer_8665_Accel_LN_Y_CAL\tShimmer_8665_Accel_LN_Z_CAL',
+            '{unix_ms}\t{a}\t0.0\t9.80665', below='ms\tm/(s^2)\tm/(s^2)\tm/(s^2)'),
+    ),
     'shimmer with a name for its time': (
         'motion.csv', (ACCELERATION,),
         'sep=\t\n' + table('time\tShimmer_8665_Accel_LN_X_CAL\tShimmer_8665_Accel_LN_Y_CAL\t'
@@ -146,12 +151,6 @@ READ: dict[str, tuple[str, tuple[str, ...], str]] = {
 """Name of a file, what is in it, and its text."""
 
 REFUSED: dict[str, tuple[str, str]] = {
-    'shimmer': (
-        'sep=\t\n' + table('Shimmer_8665_Timestamp_Unix_CAL\tShimmer_8665_Accel_LN_X_CAL\t'
-            'Shimmer_8665_Accel_LN_Y_CAL\tShimmer_8665_Accel_LN_Z_CAL',
-            '{unix_ms}\t{a}\t0.0\t9.80665', below='ms\tm/(s^2)\tm/(s^2)\tm/(s^2)'),
-        'no time among Shimmer_8665_Timestamp_Unix_CAL',
-    ),
     'axivity without a header': (table('{date},0.0,0.0,1.0', '{date},{g},0.0,1.0'), 'no header'),
     'serial monitor': (
         '10:00:00.000 -> 0.01,0.02,9.81\n10:00:00.020 -> 0.02,0.02,9.81\n', 'no header',
@@ -199,13 +198,134 @@ def test_a_logger_is_refused_by_cause(name: str, tmp_path: Path) -> None:
     assert caught.value.cure
 
 
-def test_a_zip_is_to_be_unpacked(tmp_path: Path) -> None:
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, 'w', zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr('Raw Data.csv', READ['phyphox'][2])
-    path = tmp_path / 'phyphox.zip'
-    path.write_bytes(data.getvalue())
-    with pytest.raises(FormatError, match='a compressed file'):
+def zipped(path: Path, **texts: str) -> Path:
+    """Write texts into a zip under their names, in which `_` stands for the point."""
+    with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as archive:
+        for name, text in texts.items():
+            archive.writestr(name.replace('_', '.'), text)
+    return path
+
+
+PHONE = {
+    'Accelerometer_csv': table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},0.0,0.0,{a}'),
+    'TotalAcceleration_csv': table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},9.80665,0.0,{a}'),
+    'Gravity_csv': table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},9.80665,0.0,0.0'),
+    'Gyroscope_csv': table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},0.0,0.5,0.0'),
+    'Magnetometer_csv': table('time,seconds_elapsed,z,y,x', '{unix_ns},{s},0.0,0.0,9.8'),
+    'Annotation_csv': 'time,seconds_elapsed,text\n',
+    'Metadata_csv': 'version,platform,standardisation\n3,android,false\n',
+}
+
+
+def test_the_tables_of_a_zip_are_one_record(tmp_path: Path) -> None:
+    record = read_motion(zipped(tmp_path / 'phone.zip', **PHONE))
+    assert record.acceleration is not None
+    assert record.rate is not None
+    np.testing.assert_allclose(np.diff(record.time), STEP, atol=1e-6)
+    np.testing.assert_allclose(record.acceleration[:, 2], GRAVITY)
+    np.testing.assert_allclose(record.acceleration[:3, 0], [0.0, 0.1, 0.2], atol=1e-9)
+    np.testing.assert_allclose(record.rate[1:-1], [[0.0, 0.5, 0.0]] * (COUNT - 2), atol=1e-9)
+
+
+@pytest.mark.parametrize(('told', 'sign'), [('ios,false', -1.0), ('ios,true', 1.0)])
+@pytest.mark.parametrize('is_packed', [True, False])
+def test_the_signs_of_apple_are_turned(
+    tmp_path: Path, told: str, sign: float, is_packed: bool
+) -> None:
+    about = f'version,platform,standardisation\n3,{told}\n'
+    text = PHONE['Accelerometer_csv']
+    path = tmp_path / 'Accelerometer.csv'
+    if is_packed:
+        path = zipped(tmp_path / 'a.zip', Accelerometer_csv=text, Metadata_csv=about)
+    else:
+        path.write_text(text, encoding='utf-8')
+        (tmp_path / 'Metadata.csv').write_text(about, encoding='utf-8')
+    record = read_motion(path)
+    assert record.acceleration is not None
+    np.testing.assert_allclose(record.acceleration[1, 0], sign * 0.1)
+    assert any('Apple' in note for note in record.notes) == (sign < 0.0)
+
+
+BROKEN = {
+    'no table': ({'film_mp4': 'x'}, 'a zip of 1 files, 0 of them tables'),
+    'no motion': ({'a_csv': 'time,text\n0,a\n1,b\n'}, 'no motion among time, text'),
+    'no end': ({'a_csv': '0' * (70 << 20)}, 'tables of more than 64 MiB in a zip'),
+    'too many': ({f'{k}_csv': '' for k in range(300)}, 'a zip of 300 files'),
+}
+
+
+@pytest.mark.parametrize('name', BROKEN)
+def test_a_zip_is_refused_by_cause(name: str, tmp_path: Path) -> None:
+    texts, why = BROKEN[name]
+    path = zipped(tmp_path / 'a.zip', **texts)
+    with pytest.raises(FormatError, match=why):
+        read_motion(path)
+
+
+@pytest.mark.parametrize('cut', [30, 90, -30, -8])
+def test_a_zip_that_is_cut_is_refused(cut: int, tmp_path: Path) -> None:
+    path = zipped(tmp_path / 'a.zip', **PHONE)
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(FormatError, match=r'a zip that cannot be read|a compressed file'):
+        read_motion(path)
+
+
+DOT = 'sep=,\nDeviceTag:,D1\nOutputRate:,60Hz\nStartTime: ,2026-06-01_12:00:00_086 CEST\n\n'
+MTW = '// Start Time: Unknown\n// Update Rate: 50.0Hz\n// Firmware Version: 4.0.2\n'
+
+
+def test_a_movella_dot_measures_degrees_in_its_own_frame_and_in_that_of_the_earth(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / 'dot.csv'
+    head = 'PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z'
+    path.write_text(DOT + table(head, '{k},{us},{a},0.0,9.80665,0.0,0.5,0.0'))
+    record = read_motion(path)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[:, 1], 0.5 * DEGREE)
+    np.testing.assert_allclose(np.diff(record.time), STEP)
+    half = np.sqrt(0.5)
+    head = 'PacketCounter,SampleTimeFine,Quat_W,Quat_X,Quat_Y,Quat_Z,FreeAcc_X,FreeAcc_Y,FreeAcc_Z'
+    path.write_text(DOT + table(head, f'{{k}},{{us}},{half},0,0,{half},0.0,{{a}},0.0'))
+    turned = read_motion(path).acceleration  # its x points north
+    assert turned is not None
+    np.testing.assert_allclose(turned[:3], [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]], atol=1e-6)
+
+
+def test_an_xsens_counts_packets_and_tenths_of_milliseconds(tmp_path: Path) -> None:
+    path = tmp_path / 'mtw.txt'
+    head = 'PacketCounter\tSampleTimeFine\tAcc_X\tAcc_Y\tAcc_Z\tGyr_X\tGyr_Y\tGyr_Z'
+    lines = table(head, '{k}\t{t}\t{a}\t0.0\t9.80665\t0.0\t0.5\t0.0'.replace('{t}', ''))
+    rows = lines.splitlines()
+    for k in range(1, COUNT + 1):  # the counter begins anew
+        rows[k] = rows[k].replace(f'{k - 1}\t', f'{(65520 + k) % 65536}\t', 1)
+    path.write_text(MTW + '\n'.join(rows))
+    record = read_motion(path)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[:, 1], 0.5)
+    np.testing.assert_allclose(np.diff(record.time), STEP)
+    assert 'times are by the rate of 50 Hz' in record.notes
+    rows[1:] = [row.replace('\t\t', f'\t{200 * k}\t', 1) for k, row in enumerate(rows[1:])]
+    path.write_text(MTW + '\n'.join(rows))
+    np.testing.assert_allclose(np.diff(read_motion(path).time), STEP)
+
+
+def test_a_serial_monitor_is_read_with_its_clock(tmp_path: Path) -> None:
+    path = tmp_path / 'serial.txt'
+    rows = [f'10:00:{STEP * k:06.3f} -> 0.5,0.0,9.81' for k in range(COUNT)]
+    path.write_text('\n'.join(['10:00:00.000 -> ax,ay,az', *rows, '']))
+    np.testing.assert_allclose(np.diff(read_motion(path).time), STEP, atol=1e-9)
+    pairs = [row.replace('0.5,', 'ax:0.5,ay:').replace(',9', ',az:9') for row in rows]
+    path.write_text('\n'.join([*pairs, '']))
+    record = read_motion(path)
+    assert record.acceleration is not None
+    np.testing.assert_allclose(record.acceleration, [[0.5, 0.0, 9.81]] * COUNT)
+
+
+def test_an_error_names_the_line_of_the_header(tmp_path: Path) -> None:
+    path = tmp_path / 'a.csv'
+    path.write_text('made by a program\n\ntime,colour,ax\n0,red,1\n0.02,blue,2\n')
+    with pytest.raises(FormatError, match=r'a\.csv:3: no motion among time, colour, ax'):
         read_motion(path)
 
 

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -59,6 +60,11 @@ READ = {
 }
 
 REFUSED = {
+    'FIA, with all its columns': (
+        'CN,PLT_CN,INVYR,STATECD,UNITCD,COUNTYCD,PLOT,SUBP,TREE,AZIMUTH,DIST,STATUSCD,SPCD,DIA,HT\n'
+        '1,9,2019,10,1,1,5,1,1,45,10.5,1,318,9.84,39.4\n',
+        'the place .* among',
+    ),
     'FIA, by codes and azimuths': (
         'CN,TREE,SPCD,DIA,HT,AZIMUTH,DIST\n1,1,131,9.6,55,120,10.2\n',
         'the place .* among',
@@ -72,6 +78,31 @@ REFUSED = {
         'the species and none for the size .* among',
     ),
 }
+
+
+ABOVE = (
+    'Baumkataster;;;;\nStand 2024, Anzahl 2;;;;\n\n'
+    'Baumart;Höhe;BHD;Rechtswert;Hochwert\n;m;cm;m;m\n'
+    'Quercus robur;18,5;40;390000,0;5820000,0\nTilia cordata;12;25;390010,0;5820005,0\n'
+)
+
+
+@pytest.mark.parametrize('is_packed', [False, True])
+def test_lines_above_and_units_below_a_header_are_none_of_its_trees(
+    tmp_path: Path, is_packed: bool
+) -> None:
+    path = written(tmp_path, ABOVE)
+    if is_packed:
+        path = tmp_path / 'trees.zip'
+        with ZipFile(path, 'w') as archive:
+            archive.writestr('liesmich.md', 'two trees')
+            archive.writestr('trees.csv', ABOVE)
+    scene = open_scene(path)
+    assert [each.species.key for each in scene.trees] == ['oak', 'lime']
+    heights = [each.scale * each.tree.height for each in scene.trees]
+    assert heights == pytest.approx([18.5, 12.0], rel=1e-3)
+    assert scene.trees[1].x - scene.trees[0].x == pytest.approx(10.0)
+    assert not any('left out' in note for note in scene.notes)
 
 
 def written(folder: Path, text: str) -> Path:

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,7 @@ def rows(head: str, row: str, stamps: list[str]) -> str:
 
 
 MINUTES = ['2026-06-01 12:00', '2026-06-01 12:10', '2026-06-01 12:20']
+SECONDS = ['12:00:00', '12:00:01', '12:00:02']
 CLOCKS = ['12:00:00:000', '12:00:00:100', '12:00:00:200']
 FORMS = {
     'lidar': rows(
@@ -35,15 +38,51 @@ FORMS = {
     'microseconds': rows(
         'timestamp,timestamp_sample,wind_speed,wind_dir\n', '{t}00,{t}00,{s},240\n',
         ['5000', '6000', '7000']),
+    'gill behind a date': rows('', '2026-06-01T{t}Z,\x02Q,240,{s:06.2f},M,00,\x03\n', SECONDS),
+    'gill behind a date, without its first sign': rows(
+        '', '2026-06-01 {t} Q,240,{s:06.2f},M,00\n', SECONDS),
+    'young behind a date': rows('', '2026-06-01 {t} {s:6.2f} 240.0 0.0 345.11 20.10\n', SECONDS),
+    'vaisala behind a date': rows(
+        '', '2026-06-01T{t}Z 0R1,Dn=200D,Dm=240D,Dx=260D,Sn=0.5M,Sm={s}M,Sx=9.9M\n', SECONDS),
+    'masts': rows(
+        'Exported Date:\t2026-06-02\nSite:\t2\n\nTimestamp\tCh1_Anem_60.00m_N_Avg_m/s\t'
+        'Ch2_Anem_40.00m_N_Avg_m/s\tCh13_Vane_58.00m_N_Avg_deg\n',
+        '{t}\t9.9\t{s}\t240\n', MINUTES),
+    'heights behind the unit': rows(
+        'Time and Date,Wind Direction (deg) at 80m,Horizontal Wind Speed (m/s) at 80m,'
+        'Wind Direction (deg) at 39m,Horizontal Wind Speed (m/s) at 39m\n',
+        '{t},90,9.9,240,{s}\n', MINUTES),
+    'a table above': rows(
+        'latitude,longitude,elevation\n52.5,13.4,38.0\n\n'
+        'time,wind_speed_100m (m/s),wind_speed_10m (m/s),wind_direction_10m (°)\n',
+        '{t},9.9,{s},240\n', MINUTES),
+    'a unit on a second line': rows(
+        'TIMESTAMP,RECORD,WS_ms_S_WVT,WindDir_D1_WVT\nTS,RN,meters/second,Deg\n,,WVc,WVc\n',
+        '{t},1,{s},240\n', MINUTES),
+    'tempest': '{"type": "hub_status"}\n' + ''.join(
+        json.dumps({'type': 'rapid_wind', 'ob': [1_780_000_000 + k, speed, 240]}) + '\n'
+        for k, speed in enumerate(SPEEDS)),
+    'signal k': ''.join(
+        json.dumps({'updates': [{'timestamp': f'2026-06-01T{at}Z', 'values': [
+            {'path': 'environment.wind.directionTrue', 'value': 4.1887902},
+            {'path': 'environment.wind.speedTrue', 'value': speed},
+            {'path': 'environment.wind.speedApparent', 'value': 9.9},
+        ]}]}) + '\n' for at, speed in zip(SECONDS, SPEEDS, strict=True)),
 }  # fmt: skip
-SPANS = {'milliseconds behind a colon': 0.2, 'tags': 0.2, 'microseconds': 0.2}
+SPANS = {'milliseconds behind a colon': 0.2, 'tags': 0.2, 'microseconds': 0.2} | dict.fromkeys(
+    (
+        *('gill behind a date', 'gill behind a date, without its first sign', 'tempest'),
+        *('young behind a date', 'vaisala behind a date', 'signal k'),
+    ),
+    2.0,
+)
 
 
 @pytest.mark.parametrize('name', FORMS)
 def test_a_form_is_read_at_its_times(tmp_path, name):
     path = tmp_path / 'wind.txt'
     path.write_text(FORMS[name], encoding='utf-8')
-    options = {} if name in ('tags',) else {'turbulence': False}
+    options = {} if name.startswith(('tags', 'gill')) else {'turbulence': False}
     record = read_wind(path, **options)
     assert np.linalg.norm(record.velocity, axis=1) == pytest.approx(SPEEDS)
     toward = np.degrees(np.arctan2(record.velocity[:, 0], record.velocity[:, 1])) % 360.0

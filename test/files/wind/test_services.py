@@ -351,7 +351,7 @@ REFUSED: dict[str, tuple[str, str]] = {
         json.dumps({'updates': [{'timestamp': ISO[0], 'values': [
             {'path': 'environment.wind.speedApparent', 'value': 3.85},
             {'path': 'environment.wind.angleApparent', 'value': 0.52},
-        ]}]}), 'no column for',
+        ]}]}), 'no true wind among the paths angleApparent, speedApparent',
     ),
     'visual crossing': (
         table('name,datetime,windgust,windspeed,winddir,conditions',

@@ -16,12 +16,11 @@ from tree_sway.files.layouts.long import LONG
 from tree_sway.files.layouts.meteoblue import METEOBLUE
 from tree_sway.files.layouts.monitor import MONITOR
 from tree_sway.files.layouts.plain import PLAIN
-from tree_sway.files.layouts.spaced import SPACED
 from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
 LAYOUTS = (
-    *(JSON, SPACED, WEATHERLINK_TEXT, ISD_CSV, BADC_CSV, JMA, METEOBLUE, MONITOR),
+    *(JSON, WEATHERLINK_TEXT, ISD_CSV, BADC_CSV, JMA, METEOBLUE, MONITOR),
     *LINES,
     *LONG,
     PLAIN,

@@ -21,7 +21,7 @@ from tree_sway.files.column_names import (
     unit_known,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.table_file import parse_table, SEPARATORS, split_row, TextTable
+from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
 _MOST_COLUMNS = 200
@@ -73,7 +73,7 @@ def _uncommented(line: str) -> str:
 
 
 def _cells(line: str) -> list[str]:
-    return list(split_row(line, max(SEPARATORS, key=line.count)))
+    return list(split_row(line, separator_of(line)))
 
 
 @lru_cache(4096)
@@ -103,7 +103,9 @@ def _read(lines: list[str], source: str) -> TextTable:
     first = header_line(lines) or 0
     above = tuple(lines[:first])
     lines[:first] = [''] * first
-    lines[first] = _uncommented(lines[first])
+    header = _uncommented(lines[first])
+    # Of NDBC's two columns mm and MM one is the minute.
+    lines[first] = header.replace(' mm ', ' minute ') if ' MM ' in header else header
     return replace(_without_rows_below(parse_table(lines, source)), above=above)
 
 

@@ -37,12 +37,13 @@ from tree_sway.files.layouts.known import table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.row_times import counted_times, row_times, time_columns
-from tree_sway.files.table_file import split_row, TextTable
+from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.zipped import tables_in
 
 _AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
+_VECTORS = ('rate', 'acceleration')
 _BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis)?')
 _ABOUT = 'Metadata.csv'
 """File of Sensor Logger about the phone."""
@@ -138,14 +139,8 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
 
 def _is_of_apple(about: Sequence[str]) -> bool:
     """Whether Sensor Logger's lines about a phone say that it is Apple's, with its own signs."""
-    rows = [dict(zip(*map(_split_cells, about[:2]), strict=False))] if len(about) > 1 else []
-    return any(
-        each.get('platform') == 'ios' and each.get('standardisation') != 'true' for each in rows
-    )
-
-
-def _split_cells(line: str) -> Sequence[str]:
-    return split_row(line, ',')
+    told = dict(zip(*(line.split(',') for line in about[:2]), strict=False)) if about[1:] else {}
+    return told.get('platform') == 'ios' and told.get('standardisation') != 'true'
 
 
 def _turn_from_earth(values: dict[str, Floats]) -> str:
@@ -218,17 +213,12 @@ def _axes(table: TextTable, stem: str) -> dict[str, list[int]]:
 
 def _quantity_of(table: TextTable, columns: Sequence[int], stem: str) -> str:
     """Return what columns called x, y and z are; empty if nothing tells."""
-    for quantity in ('rate', 'acceleration'):
-        units = [table.unit_of(each, quantity) for each in columns]
-        if all(unit_known(quantity, unit) for unit in units):
-            return quantity
-        if any(units):
-            continue
-        for named, words in FILES_OF.items():
-            if words.search(stem):
-                return named
-        return 'acceleration' if _gravity(table.values(columns)) else ''
-    return ''
+    if any(table.unit_of(each, 'rate') for each in columns):
+        units = [(each, table.unit_of(column, each)) for each in _VECTORS for column in columns]
+        known = [each for each, unit in units if unit_known(each, unit)]
+        return next((each for each in known if known.count(each) == len(columns)), '')
+    named = [each for each, words in FILES_OF.items() if words.search(stem)]
+    return named[0] if named else 'acceleration' if _gravity(table.values(columns)) else ''
 
 
 def _gravity(values: Floats) -> tuple[str, ...]:

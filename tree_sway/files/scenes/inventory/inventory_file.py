@@ -28,14 +28,23 @@ def inventory_table(path: Path, head: str) -> TextTable:
         return read_spreadsheet(path)
     if looks_like_geojson(head):
         return read_geojson('\n'.join(read_table_lines(path)), str(path))
-    name, lines = next(tables_in(path))
+    found = list(tables_in(path))
+    name, lines = next((each for each in found if _is_inventory(each[1])), found[0])
     return PLAIN.read(lines, name)
 
 
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
-    is_sheet = path.suffix.lower() in ('.xlsx', '.xlsm')
+    suffix = path.suffix.lower()
+    if suffix == '.zip':
+        return any(_is_inventory(lines) for _, lines in tables_in(path))
+    is_sheet = suffix in ('.xlsx', '.xlsm')
     return is_geopackage(head, path) or is_sheet or looks_like_geojson(head)
+
+
+def _is_inventory(lines: list[str]) -> bool:
+    table = table_of_head('\n'.join(lines[:_HEAD]))
+    return table is not None and not missing_columns(table)
 
 
 def table_of_head(head: str) -> TextTable | None:
