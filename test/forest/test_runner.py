@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import math
 import os
 from pathlib import Path
 import signal
@@ -355,9 +356,15 @@ def test_no_page_of_the_cluster_answers_other_users() -> None:
 
 def test_only_the_rows_of_the_cases_are_an_outcome():
     asked = cases(2)
-    good = [(asked[0], {'a': 1.0}), (asked[1], TreeSwayError('no wind'))]
+    row = compute(asked[0])
+    good = [(asked[0], row), (asked[1], TreeSwayError('no wind'))]
     assert is_outcome(good, asked, {})
-    large = {'a': 'x' * (1 << 18)}
+    # Of a worker that lies: nothing, another case, not a number, a list, no results.
+    other = {name: value for name, value in row.items() if name.startswith(('tree', 'wind'))}
+    for lie in ({}, {'a': 1.0}, row | {'frequency [Hz]': math.nan}, row | {'wind_seed': -1},
+                row | {'tip_largest [m]': [0.1]}, other):  # fmt: skip
+        assert not is_outcome([(asked[0], lie), good[1]], asked, {})
+    large = row | {'notes': 'x' * (1 << 18)}
     for bad in (None, 'ab', good[:1], good[::-1], [*good, good[0]], [(asked[0], 3), good[1]],
                 [(asked[0], {'a': object()}), good[1]], [(asked[0], large), good[1]]):  # fmt: skip
         assert not is_outcome(bad, asked, {})

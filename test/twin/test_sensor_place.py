@@ -19,7 +19,7 @@ TREE = builtin_tree('broadleaf')
 
 def test_a_height_is_found_on_the_stem() -> None:
     height = 0.4 * TREE.end[: TREE.branch_first[1], 2].max()
-    segment, along, _ = place_on(TREE, str(height))
+    segment, along, *_ = place_on(TREE, str(height))
     assert TREE.branch_of_segment[segment] == 0
     at = TREE.start[segment] + along * (TREE.end[segment] - TREE.start[segment])
     assert at[2] - TREE.start[0, 2] == pytest.approx(height)
@@ -28,13 +28,13 @@ def test_a_height_is_found_on_the_stem() -> None:
 def test_a_share_of_a_branch_is_found_by_length() -> None:
     name = TREE.branch_names[3]
     first, last = TREE.branch_first[3], TREE.branch_first[4]
-    segment, along, _ = place_on(TREE, f'{name}:0.5')
+    segment, along, *_ = place_on(TREE, f'{name}:0.5')
     before = TREE.length[first:segment].sum() + along * TREE.length[segment]
     assert before == pytest.approx(0.5 * TREE.length[first:last].sum())
 
 
 def test_a_segment_is_taken_in_its_middle() -> None:
-    assert place_on(TREE, 'segment:7') == (7, 0.5, None)
+    assert place_on(TREE, 'segment:7') == (7, 0.5, None, False)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_other_places_are_refused_with_a_cure(where: str, what: str) -> None:
 
 def test_the_bearing_to_which_a_sensor_faces_may_follow() -> None:
     place = place_on(TREE, 'segment:7 facing 120')
-    assert place == (7, 0.5, pytest.approx(np.radians(-30.0)))
+    assert place[:3] == (7, 0.5, pytest.approx(np.radians(-30.0)))
     for bearing in ('north', '1000', ''):
         with pytest.raises(ParameterError, match='facing'):
             place_on(TREE, f'segment:7 facing {bearing}')

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import replace
 import json
+import math
 
 import numpy as np
 
@@ -64,6 +65,21 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
     row['notes'] = '; '.join((*warnings, *record.notes))
     return row
 
+
+def is_row_of(row: object, case: Case) -> bool:
+    """Whether something is a row of a case: with what was asked, results, and finite numbers."""
+    asked: Plain = {
+        **_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings,
+    }  # fmt: skip
+    if not (isinstance(row, dict) and asked.items() <= row.items() and row.keys() >= _RESULTS):
+        return False
+    values = [value for name, value in row.items() if name not in asked and value is not None]
+    numbers = [each for each in values if not isinstance(each, str)]
+    return all(isinstance(each, int | float) and math.isfinite(each) for each in numbers)
+
+
+_RESULTS = {'length [s]', 'frequency [Hz]', 'tip_largest [m]', 'strain_largest [-]', 'notes'}
+"""Names that every row has, among others."""
 
 _MOST_RIGS = 2
 _RIGS: OrderedDict[str, tuple[Rig, float, tuple[str, ...]]] = OrderedDict()

@@ -140,13 +140,15 @@ def compute_batch(cases: list[Case], files: dict[str, Any]) -> list[_Outcome]:
 
 def is_outcome(result: Any, cases: list[Case], _files: dict[str, Any]) -> bool:
     """Whether a worker returned the row or the error of each of its cases, and no more."""
+    from tree_sway.forest.compute import is_row_of
+
     try:
         found = [case for case, _ in result]
-        rows = [row for _, row in result if not isinstance(row, TreeSwayError)]
-        size = sum(len(json.dumps(row)) for row in rows)
+        rows = [(row, case) for case, row in result if not isinstance(row, TreeSwayError)]
+        size = sum(len(json.dumps(row)) for row, _ in rows)
     except (TypeError, ValueError, RecursionError):
         return False
-    is_all = found == cases and all(isinstance(row, dict) for row in rows)
+    is_all = found == cases and all(is_row_of(*each) for each in rows)
     return is_all and size <= _LARGEST_ROW * len(cases)
 
 

@@ -139,8 +139,9 @@ class SceneSimulator:
 
     @property
     def wind_told(self) -> str:
-        """By which gusts the trees sway, as `Settings.wind_told`; those of the first tree."""
-        return self._scene.settings_of(0, self.settings).wind_told
+        """By which gusts the trees sway, as `Settings.wind_told`; the way is the first tree's."""
+        seed = self.settings.gust_seed
+        return replace(self._scene.settings_of(0, self.settings), gust_seed=seed).wind_told
 
     @property
     def name(self) -> str:
