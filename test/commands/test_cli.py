@@ -63,6 +63,7 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
         (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
         (['convert', 'benjamina'], '--output: no file to write; name it last'),
+        (['calibrate', 'benjamina', '--frequency', '3'], '--output: no file to write; name it last'),
         (['convert', 'benjamina', 'a.yaml', 'b.yaml'], 'unrecognized arguments: a.yaml b.yaml'),
         (
             ['simulate', 'benjamina', '--seconds', '12m'],

@@ -14,7 +14,7 @@ import sys
 import time
 from typing import Any
 
-from tree_sway.commands import Ending
+from tree_sway.commands import Ending, waiting
 from tree_sway.core.wind import shorter_than
 from tree_sway.files.recording import BagWriter
 from tree_sway_ros.process.listener import Listener
@@ -46,6 +46,9 @@ def record_bag(arguments: argparse.Namespace, seconds: float) -> int:
         Recorder(None, bag, topics, arguments.namespace) as recorder,
     ):
         ending.look()
+        with waiting('waiting for a running tree, in this ROS_DOMAIN_ID; Ctrl-C ends it'):
+            while not ending.is_asked and not recorder.recorded:
+                recorder.spin(_LOOK)
         while not ending.is_asked and recorder.recorded < seconds:
             recorder.spin(_LOOK)
     if short := shorter_than(recorder.covered, seconds, arguments.output):

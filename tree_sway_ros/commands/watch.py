@@ -8,6 +8,7 @@ from collections.abc import Callable
 import sys
 import time
 
+from tree_sway.commands import waiting
 from tree_sway.errors import TransportError
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import status_line
@@ -27,14 +28,15 @@ def watch(
     `TransportError` is raised if no poses arrive within the ``patience`` [s].
     """
     deadline = time.monotonic() + patience
-    while not monitor.totals.poses.count and check():
-        monitor.spin(0.1)
-        if time.monotonic() > deadline:
-            raise TransportError(
-                f'no poses within {patience:g} s',
-                cure='is a solver running in this ROS_DOMAIN_ID? without multicast, '
-                'set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS',
-            )
+    with waiting(f'waiting for poses, {patience:g} s at most'):
+        while not monitor.totals.poses.count and check():
+            monitor.spin(0.1)
+            if time.monotonic() > deadline:
+                raise TransportError(
+                    f'no poses within {patience:g} s',
+                    cure='is a solver running in this ROS_DOMAIN_ID? without multicast, '
+                    'set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS',
+                )
     monitor.spin(_SETTLING)
     monitor.restart()
     begin = time.monotonic()

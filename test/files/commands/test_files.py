@@ -38,6 +38,18 @@ def test_plot_draws_wind_and_tip(
     assert capsys.readouterr().out == f'{picture}\n'
 
 
+@pytest.mark.parametrize(('leaves', 'season'), [([], 'in leaf'), (['--leaves', 'off'], 'bare')])
+def test_a_plot_of_motion_says_the_season_and_how_much_of_the_record_it_shows(
+    tmp_path, wind_file, installed, leaves, season
+):
+    installed('plot')
+    picture = tmp_path / 'sway.svg'
+    words = ['plot', SEEDLING, '--wind', str(wind_file), '--seconds', '2', *leaves]
+    assert cli.main([*words, '-o', str(picture)]) == 0
+    title = f'seedling, {season}, model 60, {wind_file.name}, 2 of 6 s'
+    assert f'<!-- {title} -->' in picture.read_text(encoding='utf-8')
+
+
 @pytest.mark.parametrize('arguments', [['goldcrest', '--portrait'], ['--portrait', SEEDLING]])
 def test_plot_tree_draws_the_tree(
     tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch,

@@ -1,8 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Pose arrays of other programs on the topic of a tree."""
+"""Pose arrays of other programs on the topic of a tree, and waits for what is not there."""
 
 from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from queue import Queue
+from typing import Any
 
 import pytest
 
@@ -10,12 +15,16 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from geometry_msgs.msg import Pose, PoseArray  # noqa: E402, I100
 
+from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway_ros.commands.bag_recorder import record_bag, Recorder  # noqa: E402
 from tree_sway_ros.commands.monitor import StreamMonitor  # noqa: E402
 from tree_sway_ros.commands.text import status_line, summary  # noqa: E402
+from tree_sway_ros.commands.watch import watch  # noqa: E402
 from tree_sway_ros.process.topics import qos_profile, SEGMENT_POSES  # noqa: E402
 
 pytestmark = pytest.mark.ros
+DEADLINE = 20.0
 
 
 @pytest.mark.parametrize('count', [0, 7, 100_000])
@@ -36,3 +45,44 @@ def test_poses_of_another_program_are_counted_apart(context: object, count: int)
         told = f'{monitor.totals.foreign} pose arrays of another program'
         assert told in summary(monitor.totals, 60.0)
         assert told in status_line(monitor.totals, 1.0)
+
+
+@pytest.fixture
+def reported(monkeypatch: pytest.MonkeyPatch) -> Queue[str]:
+    """Collect what is said of a wait, at once."""
+    said = Queue[str]()
+    monkeypatch.setattr('tree_sway.commands.progress.PATIENCE', 0.0)
+    monkeypatch.setattr('tree_sway.commands.progress._report', said.put)
+    return said
+
+
+def test_a_listener_says_that_it_waits_for_poses(context: object, reported: Queue[str]) -> None:
+    with (
+        StreamMonitor(context, None, 'nobody') as monitor,
+        pytest.raises(TransportError, match='no poses within 0'),
+    ):
+        watch(monitor, 1.0, lambda: bool(reported.get(timeout=DEADLINE)), patience=0.0)
+
+
+def test_a_recorder_says_that_it_waits_for_a_tree(
+    reported: Queue[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    class Waiting(Recorder):
+        recorded = covered = 0.0
+        said = ''
+
+        def __init__(self, _context: object, *others: Any) -> None:
+            """Leave the bag alone."""
+
+        def spin(self, seconds: float) -> None:
+            """Get what is said, and the first message after it."""
+            Waiting.said = Waiting.said or reported.get(timeout=DEADLINE)
+            Waiting.recorded += 1.0
+
+        def close(self) -> None:
+            """Leave all as it is."""
+
+    monkeypatch.setattr('tree_sway_ros.commands.bag_recorder.Recorder', Waiting)
+    given = argparse.Namespace(output=tmp_path / 'bag', format='mcap', poses=False, namespace='')
+    assert record_bag(given, 2.0) == 0
+    assert 'waiting for a running tree' in Waiting.said

@@ -14,6 +14,7 @@ from tree_sway.commands import bar, waiting
 from tree_sway.core.checks import within
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import Settings
+from tree_sway.core.setup import is_in_leaf
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files import is_file, path_of
 from tree_sway.files.commands import (
@@ -153,6 +154,8 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     seconds = arguments.seconds
     if isinstance(wind, RecordedWind):
         source = Path(arguments.wind).name
+        if seconds < wind.length:
+            source += f', {seconds:g} of {wind.length:.6g} s'
         seconds = min(seconds, wind.length)
     else:
         source = f'simulated westerly, mean of ten minutes {simulated_speed(arguments):g} m/s'
@@ -162,5 +165,8 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     frames = at_moments(simulator, wind, frame_times(_RATE, seconds))
     shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
     winds, tips = np.swapaxes(shown, 0, 1)
-    title = f'{scene.tree.name}, model {arguments.model}, {source}'
+    first = scene.trees[0]
+    asked = chosen_leaves(arguments) if first.leaf_on is None else first.leaf_on
+    season = 'in leaf' if is_in_leaf(first.species, asked) else 'bare'
+    title = f'{scene.tree.name}, {season}, model {arguments.model}, {source}'
     plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)

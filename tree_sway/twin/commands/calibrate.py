@@ -83,8 +83,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Fit the tree and write it."""
-    _check(arguments)
     output = output_path(arguments)
+    _check(arguments)
     tree_file = opened_tree(arguments)
     frequency = arguments.frequency
     damping = arguments.damping
