@@ -22,7 +22,6 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
-    NO_LAG,
     ROWS,
     SensorTrack,
 )
@@ -155,12 +154,15 @@ class SensorReadings:
     def _lags_of(self, track: SensorTrack) -> LagRange:
         """Find which lags of the wind a sensor may tell."""
         delay = self._wind.delay
-        none = track.reach / max(self._unknown.mean_speed, 1.0)
-        if self._wind.is_told or self._told_lag not in (None, track):
-            return NO_LAG._replace(none=none, is_told=self._wind.is_told)
+        about, none = self._wind.lag_at(track.reach)
+        way = LagRange(0, 0, 1, about, none, self._wind.is_told, later=self._wind.later)
+        if way.is_told or self._told_lag not in (None, track):
+            return way
         if delay:
             least = round(_LEAST_CHANGE / self._dt)
         else:
             least = max(round(_LEAST_LAG / self._dt), track.window)
-        earliest = -math.floor(delay / self._dt)
-        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least, none)
+        earliest, latest = -delay / self._dt, (LONGEST_WAY - delay) / self._dt
+        return way._replace(
+            earliest=math.ceil(earliest), latest=math.floor(latest), least=least
+        )

@@ -33,8 +33,8 @@ class SensorReport(NamedTuple):
     counts
         Counts of its samples.
     notes
-        Properties that were recognised, such as a unit, how late the wind is, and what the sensor
-        measures no more.
+        Properties that were recognised, such as a unit, how late the wind is, what the sensor
+        measures no more, and that its clock may be behind.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -64,6 +64,11 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
         sensor, alignment = track.sensor, track.alignment
         recognised = () if alignment is None else (*alignment.notes, *late)
         lost = [f'it measures no {name} any more: restart it' for name in sensor.lost]
+        if sensor.is_behind:
+            lost.append(
+                f'its samples come {sensor.lateness:.1f} s after their times: a slow connection, '
+                'or its clock is behind'
+            )
         found.append(
             SensorReport(
                 sensor.name,

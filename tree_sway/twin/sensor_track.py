@@ -10,14 +10,14 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.core.native import LIBRARY, NativeSensor
 from tree_sway.twin.alignment import (
     align,
@@ -98,17 +98,21 @@ class LagRange(NamedTuple):
     """
     Earliest and latest lag of the wind in steps, and the least change of it that counts.
 
-    ``none`` is the largest lag of a sensor that gusts on their way through the crown have [s], and
-    ``is_told`` whether the way of the wind is known: what is late then is the sensor.
-    ``is_doubted`` is whether it was late when it was looked at last.
+    ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown, and
+    how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what is
+    late then is the sensor.
+    ``is_doubted`` is whether it was late when it was looked at last, and ``later`` gives the phases
+    of gusts over those of the model (`sensor_lag`).
     """
 
     earliest: int
     latest: int
     least: int
+    about: float = 0.0
     none: float = 0.0
     is_told: bool = False
     is_doubted: bool = False
+    later: Callable[[Floats], Complexes] | None = None
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -193,7 +197,14 @@ def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) ->
     frequency = 1.0 / (windows.period * windows.dt)
     longest = _LONGEST if lags.is_told else LONGEST_WAY
     return sensor_lag(
-        moved[:, rows], model[:, rows], frequency, windows.dt, longest=longest, none=lags.none
+        moved[:, rows],
+        model[:, rows],
+        frequency,
+        windows.dt,
+        longest=longest,
+        about=lags.about,
+        none=lags.none,
+        later=lags.later,
     )
 
 
@@ -243,12 +254,16 @@ class SensorTrack:
     dt
         Time step in [s].
     reach
-        Level distance from the middle of the crown in [m].
+        Way from the middle of the crown to east and north in [m].
 
     """
 
     def __init__(
-        self, sensor: MotionSensor, frequency: float, dt: float, reach: float = 0.0
+        self,
+        sensor: MotionSensor,
+        frequency: float,
+        dt: float,
+        reach: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
