@@ -145,12 +145,13 @@ def sensor_lag(
     gusts at frequencies [Hz] over those that the model has of them.
     """
     block = max(round(1.0 / (_PER_SECOND * dt)), 1)
-    lines = [_lines(rows, block) for rows in (sensed, model)]
-    period = len(sensed) // block * block * dt
+    count = len(sensed) // block
+    period = count * block * dt
     slow = np.arange(1, int(_SLOW * frequency * period) + 1)
-    slow = slow[slow < len(lines[0]) // 2]
+    slow = slow[slow < count // 2]
     if 2 * len(slow) < _FEWEST:
         return SensorLag()
+    lines = [_lines(rows, block) for rows in (sensed, model)]
     # Bins of both signs: the last ones of a transform are those below 0.
     bins = np.concatenate([slow, -slow])
     hertz = bins / period

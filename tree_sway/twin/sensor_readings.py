@@ -22,6 +22,7 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
+    OtherSensor,
     ROWS,
     SensorTrack,
 )
@@ -124,13 +125,13 @@ class SensorReadings:
         for track in self._tracks:
             if track.heed() and self._search is not None and self._search[0] is track:
                 self._search = None  # it looks at what the sensor measured before
-        self._find_mounting()
+        self._find_mounting(step)
         then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
         if then >= 0:
             self.forces = self._forces[then % _KEPT]
         return then
 
-    def _find_mounting(self) -> None:
+    def _find_mounting(self, step: int) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""
         if self._search is None:
             for due in self._tracks:
@@ -138,6 +139,8 @@ class SensorReadings:
                     break
             else:
                 return
+            for each in self._tracks:
+                each.note_step(step)
             search = due.search(self._lags_of(due))
             self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
         track, work = self._search
@@ -155,7 +158,16 @@ class SensorReadings:
         """Find which lags of the wind a sensor may tell."""
         delay = self._wind.delay
         about, none = self._wind.lag_at(track.reach)
-        way = LagRange(0, 0, 1, about, none, self._wind.is_told, later=self._wind.later)
+        others = []
+        for each in self._tracks:
+            if each is not track and each.is_comparable:
+                motion = each.last_motion(min(each.whole, track.whole))
+                at, _ = self._wind.lag_at(each.reach)
+                others.append(OtherSensor(each.sensor.name, motion, at, each.late))
+        way = LagRange(
+            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later,
+            others=tuple(others),
+        )  # fmt: skip
         if way.is_told or self._told_lag not in (None, track):
             return way
         if delay:
