@@ -90,7 +90,7 @@ class LateWind:
 
     def lag_at(self, reach: tuple[float, float]) -> tuple[float, float]:
         """
-        How much later than in the crown gusts are at a way from its middle, and what that errs [s].
+        How much later than in the crown gusts are at a way from its middle, and its error [s].
 
         A limb moves by its own gusts and by those of the crown: the lag is half of the way to it.
         """

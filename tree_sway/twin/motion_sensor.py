@@ -251,7 +251,7 @@ class MotionSensor:
         return not self.trouble
 
     def _is_ahead(self, late: float, arrival: float) -> bool:
-        """Note how late a sample has come in [s]; whether all of the last seconds came too soon."""
+        """Note how late a sample comes in [s]; whether all of the last seconds came too soon."""
         if not 0.0 <= arrival - self._began < _WINDOW:
             self._began = arrival
             self._soonest_before, self._latest_before = self._soonest, self._latest

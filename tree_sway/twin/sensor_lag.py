@@ -141,8 +141,8 @@ def sensor_lag(
 
     Motions are to east and north at equal steps of dt [s], (n, 2). One that is too short tells
     nothing. Lags are looked for up to the longest [s] from the one ``about`` which a right sensor
-    is [s]; those up to ``none`` [s] beyond those of the wind are none. ``later`` gives the phases of
-    gusts at frequencies [Hz] over those that the model has of them.
+    is [s]; those up to ``none`` [s] beyond those of the wind are none. ``later`` gives the phases
+    of gusts at frequencies [Hz] over those that the model has of them.
     """
     block = max(round(1.0 / (_PER_SECOND * dt)), 1)
     count = len(sensed) // block

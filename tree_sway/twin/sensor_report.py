@@ -60,6 +60,11 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
     """Report every sensor of a tree."""
     found = []
     late = tuple(filter(None, [twin.late_wind.note]))
+    fit = twin.observer.fit
+    odd: tuple[str, ...] = ()
+    if fit is not None and fit.is_odd:
+        cure = 'check that it is on this tree, at this place'
+        odd = (f'its tree would be {fit} as this one is expected to be: {cure}',)
     for number, track in enumerate(twin.observer.tracks):
         sensor, alignment = track.sensor, track.alignment
         recognised = () if alignment is None else (*alignment.notes, *late)
@@ -78,7 +83,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
                 twin.observer.late * twin.period,
                 sensor.counts,
-                (*recognised, *lost),
+                (*recognised, *odd, *lost),
                 twin.observer.sway_change(number),
             )
         )

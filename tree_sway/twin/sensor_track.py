@@ -117,11 +117,11 @@ class LagRange(NamedTuple):
     """
     Earliest and latest lag of the wind in steps, and the least change of it that counts.
 
-    ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown, and
-    how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what is
-    late then is the sensor.
-    ``is_doubted`` is whether it was late when it was looked at last, and ``later`` gives the phases
-    of gusts over those of the model (`sensor_lag`). ``others`` are further sensors of the tree.
+    ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown,
+    and how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what
+    is late then is the sensor. ``is_doubted`` is whether it was late when it was looked at last,
+    ``later`` gives the phases of gusts over those of the model (`sensor_lag`), and ``others`` are
+    further sensors of the tree.
     """
 
     earliest: int
@@ -152,8 +152,8 @@ class FoundMounting(NamedTuple):
     How a sensor is mounted, and its mean difference from the model then, (9,).
 
     ``lag`` is by how many steps the tree moves later than the model, ``is_wrong`` whether the
-    sensor is that of another time or wind, so that it is not to be followed. ``late`` is its likeliest
-    lag [s].
+    sensor is that of another time or wind, so that it is not to be followed. ``late`` is its
+    likeliest lag [s].
     """
 
     alignment: Alignment
@@ -219,8 +219,8 @@ def _apart(moved: Floats, windows: Windows, lags: LagRange, late: float) -> str:
     """
     Tell from which other sensors the motion of one, (n, 9), is apart in time; empty from few.
 
-    Limbs lean together in slow gusts. Of several sensors that one is blamed which differs from most
-    others; of two both are, unless one is nearer to the model.
+    Limbs lean together in slow gusts. Of several sensors that one is blamed which differs from
+    most others; of two both are, unless one is nearer to the model.
     """
     said = []
     for other in lags.others:

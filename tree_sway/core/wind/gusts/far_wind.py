@@ -149,7 +149,7 @@ class FarWind:
 
     def later(self, hertz: Floats, mean: tuple[float, float]) -> Complexes:
         """
-        Phases of the gusts that a crown shares with its anemometer, over those of the expected wind.
+        Phases of the gusts that a crown shares with its anemometer, over those that are expected.
 
         Parameters
         ----------
@@ -161,8 +161,8 @@ class FarWind:
         Returns
         -------
         Complexes
-            Numbers of size 1, (f,): the low-passes have less delay the faster a gust is, travel has
-            one for all.
+            Numbers of size 1, (f,): travel has one delay for all gusts, the low-passes have less
+            the faster these are.
 
         """
         wavenumbers = hertz / max(math.hypot(*mean), 1.0)
