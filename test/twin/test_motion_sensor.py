@@ -212,3 +212,44 @@ def test_a_knock_of_some_length_is_no_spike() -> None:
         phone.offer(5.0 + 0.01 * k, acceleration=each, rate=RATE) for k, each in enumerate(knocked)
     ]
     assert taken == [False] * 3 + [True] * 6
+
+
+def streamed(ahead: float, delays: list[float], seconds: float = 5.0) -> MotionSensor:
+    """Return a sensor of 50 Hz whose clock is ahead [s], each sample under way for a delay."""
+    phone = sensor()
+    for k in range(round(50.0 * seconds)):
+        time = 100.0 + 0.02 * k
+        way = delays[k % len(delays)]
+        phone.offer(time + ahead, acceleration=(0.01 * k, 0.0, 9.81), arrival=time + way)
+    return phone
+
+
+@pytest.mark.parametrize('ahead', [0.2, 0.5, 1.0, 60.0])
+def test_a_clock_that_is_ahead_is_told_and_its_samples_refused(ahead: float) -> None:
+    phone = streamed(ahead, [0.0, 0.02, 0.05])
+    assert phone.counts.ahead > 25
+    assert float(phone.trouble.split()[3]) == pytest.approx(ahead, abs=0.11)
+    assert phone.trouble.endswith('s from the steps: check its clock')
+    assert not phone.is_behind
+
+
+@pytest.mark.parametrize('delays', [[0.0, 0.02], [0.0] * 40 + [1.0] * 5, [0.3, 0.02], [-0.05]])
+def test_a_right_clock_is_not_told_to_be_wrong(delays: list[float]) -> None:
+    phone = streamed(0.0, delays)
+    assert phone.counts.ahead == 0
+    assert not phone.is_behind
+
+
+def test_a_clock_that_is_set_right_is_followed_again() -> None:
+    phone = streamed(1.0, [0.02])
+    for k in range(300):
+        time = 106.0 + 0.02 * k
+        is_kept = phone.offer(time, acceleration=(0.01 * k, 0.0, 9.81), arrival=time + 0.02)
+    assert is_kept
+
+
+def test_a_clock_that_may_be_behind_is_told() -> None:
+    phone = streamed(-0.5, [0.02, 0.05])
+    assert phone.is_behind
+    assert phone.lateness == pytest.approx(0.52)
+    assert phone.counts.refused == 0

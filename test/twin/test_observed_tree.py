@@ -530,7 +530,9 @@ def test_the_correction_does_not_touch_the_motion_in_the_wind(
     [
         ('dead', 'repeats the same numbers'),
         ('silent', 'silent for'),
-        ('ahead', 'its times are +60.0 s from the steps'),
+        ('ahead 60', 'its times are +60.0 s from the steps'),
+        ('ahead 0.5', 'its times are +0.5 s from the steps'),
+        ('ahead -1', 'its times are -1.0 s from the steps'),
         ('nan', 'some values are no numbers'),
     ],
 )
@@ -539,12 +541,26 @@ def test_the_true_cause_is_told_within_five_seconds(fault: str, cause: str) -> N
     motion = measured()
     for k, each in enumerate(truth().wind[: 25 * 60]):
         time, row, is_wrong = (k + 1) * DT, motion.acceleration[k], k >= 20 * 60
+        ahead = float(fault.partition(' ')[2] or 0.0) if is_wrong else 0.0
         if is_wrong and fault == 'dead':
             row = motion.acceleration[20 * 60]
         if is_wrong and fault == 'nan':
             row = row * np.nan
         if not (is_wrong and fault == 'silent'):
-            twin.offer('phone', time + 60.0 * (is_wrong and fault == 'ahead'), acceleration=row)
+            twin.offer('phone', time + ahead, acceleration=row)
         twin.step(each, DT)
     assert len(twin.problems) == 1
     assert cause in twin.problems[0]
+
+
+def test_a_tree_unlike_any_of_its_species_is_told() -> None:
+    twin = told(FIT)
+    assert not any('check that it is on this tree' in each for each in notes(twin))
+    for odd in ({'stiffness': 0.55, 'damping': 2.7}, {'stiffness_error': 0.4}):
+        twin = told(FIT._replace(**odd))
+        assert any('check that it is on this tree' in each for each in notes(twin))
+
+
+def notes(twin: ObservedTree) -> tuple[str, ...]:
+    (report,) = sensor_reports(twin)
+    return report.notes

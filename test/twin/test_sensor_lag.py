@@ -7,12 +7,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.twin.alignment import GRAVITY
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
 from tree_sway.twin.sensor_place import SensorPlace
-from tree_sway.twin.sensor_track import NO_LAG, SensorTrack
+from tree_sway.twin.sensor_track import NO_LAG, OtherSensor, SensorTrack
 
 DT, F1, LOSS = 1.0 / 20.0, 1.2, 10.0
 
@@ -43,6 +43,20 @@ def test_a_late_or_early_sensor_is_told_with_its_lag(late: float) -> None:
     assert found.seconds == pytest.approx(late, abs=3.0 * found.error)
     assert found.error < 0.4
     assert ('after' if late > 0.0 else 'before') in str(found)
+
+
+def test_the_delay_of_the_expected_wind_is_not_that_of_the_sensor() -> None:
+    def later(hertz: Floats) -> Complexes:
+        return np.exp(-2j * np.pi * (1.0 - 2.0 * hertz) * hertz)
+
+    sensed, _ = noise(600.0, np.random.default_rng(2))
+    hertz = np.fft.rfftfreq(len(sensed), DT)
+    lines = np.fft.rfft(sensed, axis=0) * later(hertz).conj()[:, None]
+    model = np.fft.irfft(lines, len(sensed), axis=0)
+    found = sensor_lag(sensed, model, F1, DT, later=later)
+    assert found.seconds == pytest.approx(0.0, abs=0.1)
+    assert sensor_lag(sensed, model, F1, DT).over_none > 10.0
+    assert sensor_lag(sensed, model, F1, DT, later=later, about=0.6).seconds < -0.5
 
 
 def test_a_right_sensor_is_not_told_to_be_late() -> None:
@@ -133,3 +147,50 @@ def test_a_late_sensor_stays_late_until_that_is_unlikely() -> None:
     assert said(track, is_told=True)
     assert not track.in_use
     assert said(seeing(sensed, model), is_told=True) == ()
+
+
+def said_beside(late: float, others: dict[str, float], own: float = 0.0) -> str:
+    """Return what a late sensor says beside others, by the lag at which each moves [s]."""
+    model, sensed = noise(200.0, np.random.default_rng(3))
+    limb = sensed + 0.2 * noise(200.0, np.random.default_rng(4))[1]
+    track = seeing(np.roll(sensed, round(late / DT), axis=0), np.roll(model, round(late / DT)))
+    beside = tuple(
+        OtherSensor(name, np.roll(limb, round(lag / DT), axis=0), 0.0, abs(lag) + own)
+        for name, lag in others.items()
+    )
+    track.take(next(track.search(NO_LAG._replace(is_told=True, others=beside))))
+    assert track.alignment is not None
+    assert track.in_use == (not track.alignment.problem)
+    return track.alignment.problem
+
+
+@pytest.mark.parametrize('late', [-1.0, -0.5, 0.5, 1.0])
+def test_a_sensor_whose_times_are_not_those_of_most_is_left(late: float) -> None:
+    told = said_beside(late, {'a': 0.0, 'b': 0.0, 'c': 0.0})
+    side = 'after' if late > 0.0 else 'before'
+    assert told.startswith(f'its motion comes {abs(late):.1f} s')
+    assert told.endswith(f'{side} that of a: check its clock')
+
+
+def test_sensors_of_one_time_are_followed() -> None:
+    assert not said_beside(0.0, {'a': 0.0, 'b': 0.0})
+    assert not said_beside(0.0, {'a': 0.0, 'b': 1.0, 'c': 0.0})
+    assert not said_beside(0.0, {})
+
+
+def test_of_two_sensors_both_are_left_unless_one_is_nearer_to_the_model() -> None:
+    assert said_beside(0.0, {'a': 1.0}, own=-1.0)
+    assert not said_beside(0.0, {'a': 1.0})
+
+
+def test_steps_are_compared_of_which_no_sensor_has_missed_one() -> None:
+    model, sensed = noise(60.0, np.random.default_rng(6))
+    track = seeing(sensed, model)
+    count = track.native.count
+    track.note_step(count + 100)
+    assert track.whole == 0
+    track.native.count = count + 300
+    track.note_step(count + 400)
+    assert track.whole == 300
+    track.note_step(count + 402)  # two were missed
+    assert track.whole == 0

@@ -10,13 +10,16 @@ the time follows the mean speed of the last ten minutes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.wind.gusts import follow_mean, WindHistory
+from tree_sway.core.arrays import Complexes, Floats
+from tree_sway.core.wind.gusts import FarWind, follow_mean, WindHistory
 
 LONGEST_WAY = 15.0
 """Longest time in [s] by which gusts may be later than at the anemometer."""
@@ -41,11 +44,15 @@ class LateWind:
         Distance of the anemometer upwind of the tree in [m].
     is_told
         Whether whoever steps the tree knows the way of the wind, so that no sensor tells it.
+    far
+        The wind that is expected at a crown apart from its anemometer; None without.
 
     """
 
-    def __init__(self, distance: float = 0.0, *, is_told: bool = False) -> None:
-        self.is_told = is_told
+    def __init__(
+        self, distance: float = 0.0, *, is_told: bool = False, far: FarWind | None = None
+    ) -> None:
+        self.is_told, self._far = is_told, far
         self._history = WindHistory(_CAPACITY, LONGEST_WAY)
         self._mean, self._wanted = np.zeros(3), np.zeros(1)
         self._way = np.array([distance, 0.0])  # distance [m], and 1 while it is not yet known
@@ -75,6 +82,24 @@ class LateWind:
     def delay(self) -> float:
         """Time in [s] by which gusts are later than at the anemometer."""
         return float(self._delay[0])
+
+    @property
+    def later(self) -> Callable[[Floats], Complexes] | None:
+        """Phases of gusts over those of the expected wind in the present one (`FarWind.later`)."""
+        return None if self._far is None else partial(self._far.later, mean=self._far.mean)
+
+    def lag_at(self, reach: tuple[float, float]) -> tuple[float, float]:
+        """
+        How much later than in the crown gusts are at a way from its middle, and its error [s].
+
+        A limb moves by its own gusts and by those of the crown: the lag is half of the way to it.
+        """
+        speed = max(float(self._mean[0]), _SLOWEST)
+        if self._far is None:
+            return 0.0, math.hypot(*reach) / speed
+        east, north = self._far.mean
+        along = (reach[0] * east + reach[1] * north) / max(math.hypot(east, north), _SLOWEST)
+        return 0.5 * along / speed, 0.5 * abs(along) / speed
 
     @property
     def note(self) -> str:

@@ -53,7 +53,13 @@ _LEAST_CHANGE = LEAST_NOISE.tolist()
 _SPIKES, _USUAL = 3, 20
 """Spikes in a row that may be, and samples before the first."""
 
-STUCK, SPIKE = 6, 7
+_WINDOW, _AHEAD, _BEHIND = 2.0, 0.1, 0.3
+"""
+Time [s] over which stamps are compared with arrivals; by how much all of them are after these if
+the clock of the sensor is ahead, and by how much all are before if it may be behind [s].
+"""
+
+STUCK, SPIKE, AHEAD = 6, 7, 8
 """Results of `MotionSensor.offer` beside those of `SampleRing.keep`."""
 
 _COUNTED = {
@@ -65,6 +71,7 @@ _COUNTED = {
     RESTARTED: 'restarted',
     STUCK: 'stuck',
     SPIKE: 'spikes',
+    AHEAD: 'ahead',
 }
 
 _REASONS = {
@@ -74,6 +81,7 @@ _REASONS = {
     'out_of_order': 'their times do not rise',
     'stuck': 'it repeats the same numbers: restart the sensor',
     'spikes': 'single values far from the others: check its cable and supply',
+    'ahead': 'their times are after their arrival: synchronise its clock',
 }
 """What is wrong with a sample that is refused, and what to do."""
 
@@ -83,7 +91,7 @@ class SensorCounts:
     """
     Counts of the samples of a sensor.
 
-    ``not_finite`` to ``spikes`` are reasons for a refusal; ``restarted`` counts how often its
+    ``not_finite`` to ``ahead`` are reasons for a refusal; ``restarted`` counts how often its
     clock was set back; ``silent`` the times that it fell silent, ``disagreed`` the times that its
     motion was not that of the tree, ``clamped`` the steps in which its correction was limited to
     what storms do.
@@ -96,6 +104,7 @@ class SensorCounts:
     out_of_order: int = 0
     stuck: int = 0
     spikes: int = 0
+    ahead: int = 0
     restarted: int = 0
     silent: int = 0
     disagreed: int = 0
@@ -150,6 +159,27 @@ class MotionSensor:
         self._kept: list[float] = []
         self._changes = [0.0] * 3  # running medians
         self._n_spikes = -_USUAL
+        self._began = -inf
+        # Least and most time from stamp to arrival, in this window and in the one before.
+        self._soonest, self._latest = -inf, inf
+        self._soonest_before, self._latest_before = -inf, inf
+
+    @property
+    def lateness(self) -> float:
+        """
+        Time in [s] from stamp to arrival that all samples of the last seconds had at least.
+
+        It is negative where all came before their stamps; 0 before it is known.
+        """
+        latest = max(self._latest, self._latest_before)
+        if latest < 0.0:
+            return latest
+        return max(min(self._soonest, self._soonest_before), 0.0)
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether its samples come so late that its clock may be behind."""
+        return self.lateness > _BEHIND
 
     @property
     def newest(self) -> float:
@@ -168,6 +198,7 @@ class MotionSensor:
         acceleration: ArrayLike | None = None,
         rate: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
+        arrival: float | None = None,
     ) -> bool:
         """
         Add a sample.
@@ -184,6 +215,8 @@ class MotionSensor:
         orientation
             Rotation of the sensor's frame to any frame with an upright axis, such as east, north,
             up, as x y z w, (4,). Four zeros mean that it is not measured.
+        arrival
+            Time in [s] at which it came, on the same clock; None for a record.
 
         Returns
         -------
@@ -201,7 +234,11 @@ class MotionSensor:
             if orientation is not None:
                 values[6:9] = self._turn(np.asarray(orientation, dtype=float))
         try:
-            outcome = self._check(float(time), values.tolist())
+            stamp = float(time)
+            if arrival is not None and self._is_ahead(arrival - stamp, arrival):
+                outcome = AHEAD
+            else:
+                outcome = self._check(stamp, values.tolist())
         except (TypeError, ValueError, OverflowError):
             outcome = NOT_FINITE
         counts, name = self.counts, _COUNTED[outcome]
@@ -209,7 +246,21 @@ class MotionSensor:
         if outcome == RESTARTED:
             counts.accepted += 1
         self.trouble = _REASONS.get(name, '')
+        if outcome == AHEAD:
+            self.trouble = f'its times are {-self.lateness:+.1f} s from the steps: check its clock'
         return not self.trouble
+
+    def _is_ahead(self, late: float, arrival: float) -> bool:
+        """Note how late a sample comes in [s]; whether all of the last seconds came too soon."""
+        if not 0.0 <= arrival - self._began < _WINDOW:
+            self._began = arrival
+            self._soonest_before, self._latest_before = self._soonest, self._latest
+            self._soonest, self._latest = inf, -inf
+        if late < self._soonest:
+            self._soonest = late
+        if late > self._latest:
+            self._latest = late
+        return self._latest < -_AHEAD and self._latest_before < -_AHEAD
 
     def _check(self, time: float, numbers: list[float]) -> int:
         """Keep the sample in `_sample` unless it is bad; return what became of it."""

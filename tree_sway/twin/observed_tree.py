@@ -169,11 +169,15 @@ class ObservedTree(SwaySimulator):
         self._records: dict[str, _Record] = {}
         distance = within('upwind', upwind, 0.0, 1000.0, 'm')
         is_told = chosen.is_far and chosen.anemometer_bearing is not None
-        self.late_wind = LateWind(0.0 if self._places else distance, is_told=is_told)
-        """The wind on its way from the anemometer."""
         self._far_crown: FarCrown | None = None
         if chosen.is_far:
             self._far_crown = FarCrown(self.models[0], self._bank, None, chosen)
+        self.late_wind = LateWind(
+            0.0 if self._places else distance,
+            is_told=is_told,
+            far=None if self._far_crown is None else self._far_crown.wind,
+        )
+        """The wind on its way from the anemometer."""
         self.set_rate(rate)
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
@@ -261,12 +265,16 @@ class ObservedTree(SwaySimulator):
         orientation: ArrayLike | None = None,
     ) -> bool:
         """
-        Offer a sample of a sensor, as `MotionSensor.offer`; a `KeyError` for no such sensor.
+        Offer a sample of a sensor that comes now, as `MotionSensor.offer`.
 
-        The time is in [s] on the clock of the steps.
+        The time is in [s] on the clock of the steps. A `KeyError` is for no such sensor.
         """
         return self.sensors[name].offer(
-            time, acceleration=acceleration, rate=rate, orientation=orientation
+            time,
+            acceleration=acceleration,
+            rate=rate,
+            orientation=orientation,
+            arrival=self.now + 1.0 / self._rate,  # the step that is next
         )
 
     def replay(
@@ -302,7 +310,7 @@ class ObservedTree(SwaySimulator):
         for name, record in self._records.items():
             while record.next < len(record.time) and record.time[record.next] <= until:
                 row = {key: each[record.next] for key, each in record.rows.items()}
-                self.offer(name, record.time[record.next], **row)
+                self.sensors[name].offer(record.time[record.next], **row)
                 record.next += 1
 
     def set_time(self, time: float) -> None:

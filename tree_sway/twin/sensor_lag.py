@@ -10,17 +10,19 @@ a lag t::
     y(f) = b exp(-a |f| - 2 pi i f t) x(f) + n(f)
 
 for east and north as one complex number, whose spectra have both signs of f. The noise n is what
-the wind does not tell, its spectrum S that of what is left. Of all lags the likeliest one has the
-largest (Knapp & Carter 1976, IEEE Transactions on Acoustics, Speech, and Signal Processing 24,
-320-327, with this law in place of a measured coherence)::
+the wind does not tell, its spectrum S(f, t) the mean of what a lag leaves about each line. Of all
+lags the likeliest one has the largest (Whittle 1953, Arkiv för Matematik 2, 423-434)::
 
-    L(t) = |sum y x* g / S|^2 / sum |x g|^2 / S,    g = exp(-a |f| - 2 pi i f t)
+    L(t) = -sum ln S + |n|^2 / S
 
-L is the logarithm of the likelihood over that of a motion that has nothing of the model's.
+less that of a motion that has nothing of the model's. A noise that were the same for all lags, as
+in a generalised correlation (Knapp & Carter 1976, IEEE Transactions on Acoustics, Speech, and
+Signal Processing 24, 320-327), is that of the likeliest one, and the others seem too unlikely.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +32,7 @@ from tree_sway.core.arrays import Complexes, Floats
 _SLOW = 0.25
 """Fastest frequency that is compared, over the first one of the tree [-]."""
 
-_STEP, _OVER = 0.05, 20.0
+_STEP, _OVER = 0.1, 20.0
 """Step from one lag to the next [s], and least time that is compared over the longest lag [-]."""
 
 _CHANCE, _LONG = 8.0, 180.0
@@ -42,10 +44,13 @@ tells them: a tree 12 m away from its anemometer has 15 to 60 by then.
 _LOSSES = (2.0, 5.0, 10.0, 20.0, 40.0)
 """Values of a in [s]: an anemometer 12 m away loses 11 s in 7 m/s."""
 
-_NONE, _SURE = 0.4, 4.5
+_NONE = 0.25
+"""Largest lag [s] that is none: gusts do not travel with the mean wind alone."""
+
+_SURE, _OF_FEW = 3.0, 180.0
 """
-Largest lag [s] that is none, by which the wind expected at a tree errs itself (`far_wind`); and
-least logarithm of the likelihood of one over that of none, 3 standard deviations.
+Least logarithm of the likelihood of a lag over that of none, and what is added to it over the
+number of lines: of right sensors 1 in 100 has more within three minutes, 5 within ten.
 """
 
 _PER_SECOND = 4.0
@@ -54,8 +59,11 @@ _PER_SECOND = 4.0
 _FEWEST, _MANY = 32, 48
 """Numbers of lines of the spectra from which they are compared, and from which they tell a lag."""
 
+_WIDTH, _LEAST_WIDTH = 0.6, 4.5
+"""Lines to either side that are averaged to a spectrum, over their number [-], and at least."""
+
 _TAPERED = 0.1
-_PASSES = 3
+_PASSES = 2
 
 
 class SensorLag(NamedTuple):
@@ -76,6 +84,8 @@ class SensorLag(NamedTuple):
         Angle from east to north by which it is turned from the model [rad].
     n_lines
         Number of lines of the spectra that were compared.
+    told
+        Sum over them of what the model tells over what it does not [-].
 
     """
 
@@ -86,6 +96,7 @@ class SensorLag(NamedTuple):
     motion: float = 0.0
     turn: float = 0.0
     n_lines: int = 0
+    told: float = 0.0
 
     @property
     def turn_error(self) -> float:
@@ -95,7 +106,7 @@ class SensorLag(NamedTuple):
         It is 1.4 times that of the likelihood's curvature: the noise is found of the same lines.
         """
         is_known = self.evidence > _CHANCE and self.n_lines >= _MANY
-        return self.evidence**-0.5 if is_known else np.inf
+        return self.told**-0.5 if is_known else np.inf
 
     @property
     def is_by_chance(self) -> bool:
@@ -106,7 +117,8 @@ class SensorLag(NamedTuple):
     def is_sure(self) -> bool:
         """Whether the lag is believed."""
         is_beyond_chance = self.evidence > _CHANCE and self.n_lines >= _MANY
-        return self.over_none > _SURE and is_beyond_chance
+        least = _SURE + _OF_FEW / max(self.n_lines, 1)
+        return self.over_none > least and is_beyond_chance
 
     def __str__(self) -> str:
         side = 'after' if self.seconds > 0.0 else 'before'
@@ -120,38 +132,42 @@ def sensor_lag(
     dt: float,
     *,
     longest: float = 4.0,
+    about: float = 0.0,
     none: float = 0.0,
+    later: Callable[[Floats], Complexes] | None = None,
 ) -> SensorLag:
     """
     Find by how much a sensor is behind a model, whose first frequency is given in [Hz].
 
     Motions are to east and north at equal steps of dt [s], (n, 2). One that is too short tells
-    nothing. Lags are looked for up to the longest [s]; those up to ``none`` [s]
-    beyond those of the wind are none.
+    nothing. Lags are looked for up to the longest [s] from the one ``about`` which a right sensor
+    is [s]; those up to ``none`` [s] beyond those of the wind are none. ``later`` gives the phases
+    of gusts at frequencies [Hz] over those that the model has of them.
     """
     block = max(round(1.0 / (_PER_SECOND * dt)), 1)
-    lines = [_lines(rows, block) for rows in (sensed, model)]
-    period = len(sensed) // block * block * dt
+    count = len(sensed) // block
+    period = count * block * dt
     slow = np.arange(1, int(_SLOW * frequency * period) + 1)
-    slow = slow[slow < len(lines[0]) // 2]
+    slow = slow[slow < count // 2]
     if 2 * len(slow) < _FEWEST:
         return SensorLag()
+    lines = [_lines(rows, block) for rows in (sensed, model)]
     # Bins of both signs: the last ones of a transform are those below 0.
     bins = np.concatenate([slow, -slow])
     hertz = bins / period
     y, x = (each[bins] for each in lines)
+    if later is not None:
+        turned = later(hertz[: len(slow)])
+        x = x * np.concatenate([turned, turned.conj()])
     most = round(min(longest, period / _OVER) / _STEP)
     lags = _STEP * np.arange(-most, most + 1)
-    back = np.exp(2j * np.pi * hertz * lags[:, None])
-    power = np.square(np.abs(y))
-    for _ in range(_PASSES):
-        noise = _smoothed(np.abs(bins), power)
-        found = [_likelihood(y, x * np.exp(-a * np.abs(hertz)), noise, back) for a in _LOSSES]
-        best = int(np.argmax([each.max() for each, _ in found]))
-        likelihood, gain = found[best]
-        at = int(np.argmax(likelihood))
-        told = gain[at] * x * np.exp(-_LOSSES[best] * np.abs(hertz)) * back[at].conj()
-        power = np.square(np.abs(y - told))
+    back = np.exp(-2j * np.pi * hertz * (about + lags[:, None]))
+    share = _near(np.abs(bins))
+    noise = share @ np.square(np.abs(y))
+    found = [_likelihood(y, x * np.exp(-a * np.abs(hertz)) * back, noise) for a in _LOSSES]
+    told = x * np.exp(-_LOSSES[int(np.argmax([each.max() for each in found]))] * np.abs(hertz))
+    likelihood, gain, noise = _over_noise(y, told * back, share)
+    at = int(np.argmax(likelihood))
     near = lags[likelihood > likelihood[at] - 0.5]
     return SensorLag(
         float(lags[at]),
@@ -161,6 +177,7 @@ def sensor_lag(
         period,
         float(np.angle(gain[at])),
         len(bins),
+        float((np.square(np.abs(gain[at] * told)) / noise[at]).sum()),
     )
 
 
@@ -174,17 +191,30 @@ def _lines(rows: Floats, block: int) -> Complexes:
     return np.asarray(np.fft.fft((both - both.mean()) * fade))
 
 
-def _smoothed(bins: Floats, power: Floats) -> Floats:
-    """Average powers over a third of their frequency about it, and three bins at least."""
-    width = np.maximum(2.5, 0.3 * bins)
-    near = np.abs(bins[:, None] - bins) <= width[:, None]
-    return np.asarray(near @ power / near.sum(axis=1))
+def _near(bins: Floats) -> Floats:
+    """Weights of the lines whose mean is the spectrum about each line, (f, f)."""
+    width = np.maximum(_LEAST_WIDTH, _WIDTH * bins)
+    near = (np.abs(bins[:, None] - bins) <= width[:, None]).astype(float)
+    return np.asarray(near / near.sum(axis=1, keepdims=True))
 
 
-def _likelihood(
-    y: Complexes, x: Complexes, noise: Floats, back: Complexes
-) -> tuple[Floats, Complexes]:
-    """Logarithm of the likelihood at each lag, (l,), and the turn and gain there."""
-    size = float((np.square(np.abs(x)) / noise).sum())
-    gain = back @ (y * x.conj() / noise) / max(size, 1e-300)
-    return np.square(np.abs(gain)) * size, gain
+def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> Floats:
+    """Logarithm of the likelihood of what is told at each lag, (l, f), in a known noise, (l,)."""
+    shared = (y * told.conj() / noise).sum(axis=1)
+    size = (np.square(np.abs(told)) / noise).sum(axis=1)
+    return np.asarray(np.square(np.abs(shared)) / np.maximum(size, 1e-300))
+
+
+def _over_noise(
+    y: Complexes, told: Complexes, share: Floats
+) -> tuple[Floats, Complexes, Floats]:
+    """Logarithm of the likelihood of each lag with its own noise, (l,), gain and noise there."""
+    alone = share @ np.square(np.abs(y))
+    noise = np.broadcast_to(alone, told.shape)
+    for _ in range(_PASSES):
+        size = (np.square(np.abs(told)) / noise).sum(axis=1)
+        gain = (y * told.conj() / noise).sum(axis=1) / np.maximum(size, 1e-300)
+        left = np.square(np.abs(y - gain[:, None] * told))
+        noise = left @ share.T
+    own = np.log(noise) + left / noise
+    return (np.log(alone) + np.square(np.abs(y)) / alone - own).sum(axis=1), gain, noise

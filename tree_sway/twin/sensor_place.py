@@ -110,13 +110,13 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     return _along(int(first), ends, value * float(ends[-1]))
 
 
-def reach_of(tree: Tree, place: SensorPlace) -> float:
-    """Level distance of a place from the middle of the branches in the wind, at rest, in [m]."""
+def reach_of(tree: Tree, place: SensorPlace) -> tuple[float, float]:
+    """Way to a place from the middle of the branches in the wind, at rest, east and north [m]."""
     area = tree.length * (tree.base_diameter + tree.tip_diameter)
     middle = np.average(0.5 * (tree.start + tree.end), axis=0, weights=area)
     start, end = tree.start[place.segment], tree.end[place.segment]
     east, north, _ = (start + place.along * (end - start) - middle).tolist()
-    return math.hypot(east, north)
+    return east, north
 
 
 def _number(text: str) -> float:

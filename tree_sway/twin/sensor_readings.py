@@ -22,7 +22,7 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
-    NO_LAG,
+    OtherSensor,
     ROWS,
     SensorTrack,
 )
@@ -125,13 +125,13 @@ class SensorReadings:
         for track in self._tracks:
             if track.heed() and self._search is not None and self._search[0] is track:
                 self._search = None  # it looks at what the sensor measured before
-        self._find_mounting()
+        self._find_mounting(step)
         then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
         if then >= 0:
             self.forces = self._forces[then % _KEPT]
         return then
 
-    def _find_mounting(self) -> None:
+    def _find_mounting(self, step: int) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""
         if self._search is None:
             for due in self._tracks:
@@ -139,6 +139,8 @@ class SensorReadings:
                     break
             else:
                 return
+            for each in self._tracks:
+                each.note_step(step)
             search = due.search(self._lags_of(due))
             self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
         track, work = self._search
@@ -155,12 +157,24 @@ class SensorReadings:
     def _lags_of(self, track: SensorTrack) -> LagRange:
         """Find which lags of the wind a sensor may tell."""
         delay = self._wind.delay
-        none = track.reach / max(self._unknown.mean_speed, 1.0)
-        if self._wind.is_told or self._told_lag not in (None, track):
-            return NO_LAG._replace(none=none, is_told=self._wind.is_told)
+        about, none = self._wind.lag_at(track.reach)
+        others = []
+        for each in self._tracks:
+            if each is not track and each.is_comparable:
+                motion = each.last_motion(min(each.whole, track.whole))
+                at, _ = self._wind.lag_at(each.reach)
+                others.append(OtherSensor(each.sensor.name, motion, at, each.late))
+        way = LagRange(
+            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later,
+            others=tuple(others),
+        )  # fmt: skip
+        if way.is_told or self._told_lag not in (None, track):
+            return way
         if delay:
             least = round(_LEAST_CHANGE / self._dt)
         else:
             least = max(round(_LEAST_LAG / self._dt), track.window)
-        earliest = -math.floor(delay / self._dt)
-        return LagRange(earliest, math.floor((LONGEST_WAY - delay) / self._dt), least, none)
+        earliest, latest = -delay / self._dt, (LONGEST_WAY - delay) / self._dt
+        return way._replace(
+            earliest=math.ceil(earliest), latest=math.floor(latest), least=least
+        )

@@ -33,8 +33,8 @@ class SensorReport(NamedTuple):
     counts
         Counts of its samples.
     notes
-        Properties that were recognised, such as a unit, how late the wind is, and what the sensor
-        measures no more.
+        Properties that were recognised, such as a unit, how late the wind is, what the sensor
+        measures no more, and that its clock may be behind.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -60,10 +60,20 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
     """Report every sensor of a tree."""
     found = []
     late = tuple(filter(None, [twin.late_wind.note]))
+    fit = twin.observer.fit
+    odd: tuple[str, ...] = ()
+    if fit is not None and fit.is_odd:
+        cure = 'check that it is on this tree, at this place'
+        odd = (f'its tree would be {fit} as this one is expected to be: {cure}',)
     for number, track in enumerate(twin.observer.tracks):
         sensor, alignment = track.sensor, track.alignment
         recognised = () if alignment is None else (*alignment.notes, *late)
         lost = [f'it measures no {name} any more: restart it' for name in sensor.lost]
+        if sensor.is_behind:
+            lost.append(
+                f'its samples come {sensor.lateness:.1f} s after their times: a slow connection, '
+                'or its clock is behind'
+            )
         found.append(
             SensorReport(
                 sensor.name,
@@ -73,7 +83,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
                 twin.observer.late * twin.period,
                 sensor.counts,
-                (*recognised, *lost),
+                (*recognised, *odd, *lost),
                 twin.observer.sway_change(number),
             )
         )

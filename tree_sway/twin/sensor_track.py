@@ -10,14 +10,14 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 from tree_sway.core.native import LIBRARY, NativeSensor
 from tree_sway.twin.alignment import (
     align,
@@ -47,6 +47,12 @@ mounting: gusts of less are not those of a mast 10 m away.
 
 _LONGEST = 4.0
 """Longest lag of a sensor in [s] that is looked for where the way of the wind is known."""
+
+_NEARER = 0.3
+"""
+By how much nearer to the model a sensor is than another one [s], from which on it is right: what
+the wind at the anemometer errs is common to both.
+"""
 
 _DOUBTED = 0.5
 """Logarithm of the likelihood of a lag over that of none above which a late sensor stays late."""
@@ -94,21 +100,39 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
     return out
 
 
+class OtherSensor(NamedTuple):
+    """
+    Another sensor on the tree: its name, and its last motion to east and north, (n, 2).
+
+    ``about`` is its lag behind the crown by the way of the gusts, ``late`` the one found last [s].
+    """
+
+    name: str
+    motion: Floats
+    about: float
+    late: float
+
+
 class LagRange(NamedTuple):
     """
     Earliest and latest lag of the wind in steps, and the least change of it that counts.
 
-    ``none`` is the largest lag of a sensor that gusts on their way through the crown have [s], and
-    ``is_told`` whether the way of the wind is known: what is late then is the sensor.
-    ``is_doubted`` is whether it was late when it was looked at last.
+    ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown,
+    and how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what
+    is late then is the sensor. ``is_doubted`` is whether it was late when it was looked at last,
+    ``later`` gives the phases of gusts over those of the model (`sensor_lag`), and ``others`` are
+    further sensors of the tree.
     """
 
     earliest: int
     latest: int
     least: int
+    about: float = 0.0
     none: float = 0.0
     is_told: bool = False
     is_doubted: bool = False
+    later: Callable[[Floats], Complexes] | None = None
+    others: tuple[OtherSensor, ...] = ()
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -128,13 +152,15 @@ class FoundMounting(NamedTuple):
     How a sensor is mounted, and its mean difference from the model then, (9,).
 
     ``lag`` is by how many steps the tree moves later than the model, ``is_wrong`` whether the
-    sensor is that of another time or wind, so that it is not to be followed.
+    sensor is that of another time or wind, so that it is not to be followed. ``late`` is its
+    likeliest lag [s].
     """
 
     alignment: Alignment
     bias: Floats
     lag: int = 0
     is_wrong: bool = False
+    late: float = 0.0
 
 
 def _mountings(
@@ -143,7 +169,7 @@ def _mountings(
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
-    sign = 0.0
+    sign, whole = 0.0, sensed
     found = align(sensed, upright, free, *known)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
@@ -175,7 +201,10 @@ def _mountings(
         model = upright if found.has_gravity else free
         bias = (found.motion(sensed) - model).mean(axis=0)
     is_wrong, said = False, ''
-    if left.is_by_chance:
+    apart = '' if found.problem else _apart(found.motion(whole), windows, lags, left.seconds)
+    if apart:
+        is_wrong, said = True, apart
+    elif left.is_by_chance:
         is_wrong, said = sensor.place.facing is None, _ALIEN
     elif left.is_sure or (lags.is_doubted and left.over_none > _DOUBTED):
         is_wrong, said = lags.is_told, f'{left} that of the tree in this wind: check its clock'
@@ -183,17 +212,56 @@ def _mountings(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    yield FoundMounting(found, bias, lag, is_wrong)
+    yield FoundMounting(found, bias, lag, is_wrong, left.seconds)
+
+
+def _apart(moved: Floats, windows: Windows, lags: LagRange, late: float) -> str:
+    """
+    Tell from which other sensors the motion of one, (n, 9), is apart in time; empty from few.
+
+    Limbs lean together in slow gusts. Of several sensors that one is blamed which differs from
+    most others; of two both are, unless one is nearer to the model.
+    """
+    said = []
+    for other in lags.others:
+        count = min(len(moved), len(other.motion))
+        found = sensor_lag(
+            moved[len(moved) - count :, _first_rows(moved)],
+            other.motion[len(other.motion) - count :],
+            1.0 / (windows.period * windows.dt),
+            windows.dt,
+            longest=_LONGEST,
+            about=lags.about - other.about,
+            none=abs(lags.about - other.about),
+        )
+        if found.is_sure or (lags.is_doubted and found.over_none > _DOUBTED):
+            said.append(f'{found} that of {other.name}: check its clock')
+    if 2 * len(said) <= len(lags.others):
+        return ''
+    is_nearer = len(lags.others) == 1 and abs(late) + _NEARER < abs(lags.others[0].late)
+    return '' if is_nearer else said[0]
+
+
+def _first_rows(moved: Floats) -> slice:
+    """East and north of the lean, or else of the first quantity that is measured, (n, 9)."""
+    first = int(np.argmax(np.isfinite(moved).all(axis=0)))
+    return slice(first, first + 2)
 
 
 def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) -> SensorLag:
     """Find the lag of a sensor (n, 9) by its lean, or else by the first quantity it measures."""
-    first = int(np.argmax(np.isfinite(moved).all(axis=0)))
-    rows = slice(first, first + 2)
+    rows = _first_rows(moved)
     frequency = 1.0 / (windows.period * windows.dt)
     longest = _LONGEST if lags.is_told else LONGEST_WAY
     return sensor_lag(
-        moved[:, rows], model[:, rows], frequency, windows.dt, longest=longest, none=lags.none
+        moved[:, rows],
+        model[:, rows],
+        frequency,
+        windows.dt,
+        longest=longest,
+        about=lags.about,
+        none=lags.none,
+        later=lags.later,
     )
 
 
@@ -243,12 +311,16 @@ class SensorTrack:
     dt
         Time step in [s].
     reach
-        Level distance from the middle of the crown in [m].
+        Way from the middle of the crown to east and north in [m].
 
     """
 
     def __init__(
-        self, sensor: MotionSensor, frequency: float, dt: float, reach: float = 0.0
+        self,
+        sensor: MotionSensor,
+        frequency: float,
+        dt: float,
+        reach: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
@@ -270,6 +342,9 @@ class SensorTrack:
         self._next_fit = round(LEARNING / dt)
         self._quantities = sensor.quantities
         self._is_doubted = False
+        self.late = 0.0
+        """Its likeliest lag behind the model when its mounting was found last [s]."""
+        self._behind, self._whole_from = 0, 0
         self._moved = np.zeros(9)
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
@@ -398,6 +473,28 @@ class SensorTrack:
         memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
         return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
 
+    def note_step(self, step: int) -> None:
+        """Note by how many steps it is behind; if by more than before, some are missing."""
+        if (behind := step - self.native.count) != self._behind:
+            self._behind, self._whole_from = behind, self.native.count
+
+    @property
+    def is_comparable(self) -> bool:
+        """Whether its motion is known, in use or left for its times."""
+        return bool(self.native.is_mounted) or self._is_doubted
+
+    @property
+    def whole(self) -> int:
+        """Number of the last steps of which none is missing."""
+        return min(max(self.native.count - self._whole_from, 0), len(self._sensed))
+
+    def last_motion(self, count: int) -> Floats:
+        """Return the motion to east and north of the last steps, (n, 2)."""
+        assert self.alignment is not None
+        sensed, _ = self._remembered()
+        moved = self.alignment.motion(sensed[len(sensed) - count :])
+        return moved[:, _first_rows(moved)] if count else moved[:, :2]
+
     def delay_model(self, lag: int) -> None:
         """Remember the model as if its wind had been later by a number of steps."""
         sensed, computed = self._remembered()
@@ -412,7 +509,7 @@ class SensorTrack:
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
-        self._is_doubted = mounting.is_wrong
+        self._is_doubted, self.late = mounting.is_wrong, mounting.late
         is_kept = native.is_mounted and not native.is_refused and not mounting.is_wrong
         if found.problem and is_kept:
             return

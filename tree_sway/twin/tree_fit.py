@@ -35,6 +35,12 @@ from tree_sway.twin.sensor_spectrum import Waves
 STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
 """Standard deviations of the logarithms of stiffness and damping, before any measurement."""
 
+_ODD, _UNSURE = 3.0, 1.5
+"""
+Deviations of stiffness and damping from which a tree is none of its species, and error of the
+stiffness over its spread from which what is told does not fit together.
+"""
+
 _STIFFNESSES = np.geomspace(0.5, 1.8, 53)
 _DAMPINGS = np.geomspace(0.35, 3.0, 9)
 _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
@@ -74,6 +80,19 @@ class TreeFit(NamedTuple):
     drag: float
     drag_error: float
     hours: float
+
+    @property
+    def is_odd(self) -> bool:
+        """Whether no tree of the species sways so: as the one of another sensor's tree."""
+        beyond = math.hypot(
+            math.log(self.stiffness) / STIFFNESS_SPREAD, math.log(self.damping) / DAMPING_SPREAD
+        )
+        # Less is known than before where two tell of different trees, such as place and frequency.
+        return beyond > _ODD or self.stiffness_error > _UNSURE * STIFFNESS_SPREAD
+
+    def __str__(self) -> str:
+        stiffer = f'{self.stiffness:.2g} times (+- {self.stiffness_error:.2g}) as stiff'
+        return f'{stiffer}, {self.damping:.2g} times as damped'
 
 
 class Spectrum(NamedTuple):

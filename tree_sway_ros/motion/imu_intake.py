@@ -81,7 +81,7 @@ class ImuIntake(SolverAnnex):
                 count, _ = self._clocks_apart.get(topic, (0, 0.0))
                 self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
                 return
-            self._run.request(lambda: self._offer(topic, stamp, sample))
+            self._run.request(lambda: self._offer(topic, stamp, sample, now))
             self._newest[topic] = stamp
             self._arrived()
 
@@ -96,7 +96,7 @@ class ImuIntake(SolverAnnex):
             if newest <= read and (newest != UNHEARD or self.node.count_publishers(topic)):
                 yield topic, newest
 
-    def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:
+    def _offer(self, topic: str, stamp: int, sample: ImuSample, now: int) -> None:
         """Offer a sample, in the thread of the steps."""
         sensor = self.twin.sensors[topic]
         sensor.stated_noise = sample.noise
@@ -105,6 +105,7 @@ class ImuIntake(SolverAnnex):
             acceleration=sample.acceleration,
             rate=sample.rate,
             orientation=sample.orientation,
+            arrival=now * 1e-9,
         )
 
     def _learned_values(self) -> dict[str, float]:

@@ -15,7 +15,8 @@ the time that the band of 80 % holds the tips, the time of a step, median and 99
 and the time per step of the thread that finds gains, mountings and fits beside the steps.
 ``sensor r`` is the correlation at the first sensor, then follow the times at which it was first
 in use, and first out of use after that. ``--fault`` adds faults of the sensors (`sensor_faults`),
-those that begin later from 90 s on. The model knows how far the mast is.
+those that begin later from 90 s on; ``late`` is a record of a wrong clock, ``live`` one that comes
+in time, ``first`` the fault of one of several sensors. The model knows how far the mast is.
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip (outdoors at the frequency that

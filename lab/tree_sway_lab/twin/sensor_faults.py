@@ -58,6 +58,15 @@ def _late(lag: float) -> Fault:
     return lambda motion, rng: motion._replace(time=motion.time + lag)
 
 
+FIRST, LIVE = 'first ', 'live '
+"""
+What names of faults begin with: those that the first of several sensors alone has, and those of
+samples that come as they are measured, whatever their stamps.
+"""
+
+WAY = 0.02
+"""Time [s] in which a live sample comes."""
+
 FAULTS: dict[str, Fault] = {
     'none': lambda motion, rng: motion,
     'spikes': _spikes,
@@ -73,7 +82,9 @@ FAULTS: dict[str, Fault] = {
         acceleration=motion.acceleration / _G, rate=np.degrees(motion.rate)
     ),
     'late 0.15': lambda motion, rng: motion._replace(time=motion.time + 0.15),
-    **{f'late {lag:g}': _late(lag) for lag in (0.2, 0.5, 1.0, 2.0, -1.0, -2.0)},
+    **{f'late {lag:g}': _late(lag) for lag in (0.2, 0.5, 1.0, 2.0, -0.5, -1.0, -2.0)},
+    **{f'{FIRST}late {lag:g}': _late(lag) for lag in (0.5, 1.0, -0.5, -1.0)},
+    **{f'{LIVE}{lag:g}': _late(lag) for lag in (0.0, 0.2, 0.5, 1.0, -0.2, -0.5, -1.0)},
     'drift 200 ppm': lambda motion, rng: motion._replace(time=motion.time * 1.0002),
     'bias 5 deg/s': lambda motion, rng: motion._replace(rate=motion.rate + np.radians(5.0)),
 }

@@ -20,8 +20,8 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import LATE_STEPS, ObservedTree, sensor_reports
 from tree_sway.worker import submit_beside
-from tree_sway_lab.twin.sensor_faults import FAULTS
-from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
+from tree_sway_lab.twin.sensor_faults import FAULTS, FIRST, LIVE, WAY
+from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
 from tree_sway_lab.twin.true_tree import Circumstances, DT, pose_at, TrueMotion
 
@@ -191,13 +191,20 @@ def twin_score(
         **changes,
     )
     rng = np.random.default_rng(seed)
+    live: list[tuple[str, SensedMotion, Floats]] = []
     for name in places:
         mount = Rotation.random(rng=rng)
         sensor = SimulatedSensor(mount=mount)
         if faulty:
             sensor = replace(FAULTY, mount=mount, lateness=rng.uniform(0.0, _LATEST))
-        motion = FAULTS[fault](sensor.measured(true.poses[name], DT, rng), rng)
-        twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
+        motion = sensor.measured(true.poses[name], DT, rng)
+        came = motion.time + WAY
+        if name == places[0] or not fault.startswith(FIRST):
+            motion = FAULTS[fault](motion, rng)
+        if fault.startswith(LIVE):
+            live.append((name, motion, came))
+        else:
+            twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
     tips, smoothed = np.empty_like(true.tips), np.empty_like(true.tips)
     bands = np.full((len(tips), 2, *tips.shape[1:]), np.nan)
@@ -206,6 +213,8 @@ def twin_score(
     place, in_use = np.zeros((len(tips), 3)), np.zeros(len(tips), dtype=np.bool_)
     both = time.process_time_ns() - time.thread_time_ns()
     for k, each in enumerate(true.wind):
+        for name, motion, came in live:
+            _offer_new(twin, name, motion, came, k)
         began = time.thread_time_ns()
         twin.step(each, DT)
         spent[k] = time.thread_time_ns() - began
@@ -244,6 +253,17 @@ def twin_score(
         error, roughness, late_error, late_roughness, stem, held, *_costs(spent), beside,
         at, found, told, tuple(notes),
     )  # fmt: skip
+
+
+def _offer_new(
+    twin: ObservedTree, name: str, motion: SensedMotion, came: Floats, step: int
+) -> None:
+    """Offer the samples of a sensor that come, (n,) in [s], before the end of a step."""
+    first, last = np.searchsorted(came, [step * DT, (step + 1) * DT]).tolist()
+    for k in range(first, last):
+        twin.offer(
+            name, motion.time[k], acceleration=motion.acceleration[k], rate=motion.rate[k]
+        )
 
 
 def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, float]:

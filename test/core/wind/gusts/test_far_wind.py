@@ -95,3 +95,18 @@ def test_an_anemometer_of_unknown_bearing_tells_less() -> None:
         winds(far(12.0, bearing=bearing), WIND)[0][4000:, 0].std() for bearing in (UPWIND, None)
     )
     assert unknown < known
+
+
+def test_the_delay_that_the_expected_wind_lacks_is_known() -> None:
+    wind, distance = far(30.0), 30.0
+    whole = winds(wind, WIND)[0]
+    n = 8192  # of 1200 s, where the mean is known
+    lines = [np.fft.rfft(each[-n:, 0] * np.hanning(n)) for each in (WIND, whole)]
+    hertz = np.fft.rfftfreq(n, DT)
+    slow = (hertz > 0.01) & (hertz < 0.1)
+    delayed = lines[1][slow] * wind.later(hertz[slow], wind.mean)
+    travel = lines[0][slow] * np.exp(-2j * np.pi * hertz[slow] * distance / wind.mean[0])
+    assert np.abs(np.angle((delayed * travel.conj()).sum())) < 0.1
+    # As it is, the expected wind has not this delay.
+    of_line = np.abs(np.angle(lines[1][slow] * travel.conj()))
+    assert of_line.max() > 3.0 * np.abs(np.angle(delayed * travel.conj())).max() > 0.0

@@ -33,11 +33,12 @@ falls as ``f^-2``, ``l = size min(1, 2 / (1 + (f / f_1)^2))``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.arrays import Complexes, Floats, Ints, Singles
 from tree_sway.core.native import Address, contiguous, LIBRARY, NativeFarWind
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 
@@ -54,7 +55,7 @@ travel (2 pi) tells gusts apart too.
 """
 
 _WAVENUMBERS = np.geomspace(1e-4, 2.0, 300)
-_DIRECTIONS = 36
+_ANGLES = (2.0 * np.pi * np.arange(36) / 36).tolist()
 SAMPLES = 1 << 14
 """Number of samples of a drawn field, after which it repeats: 4 km of wind."""
 
@@ -103,7 +104,8 @@ class FarWind:
         *,
         is_sample: bool = False,
     ) -> None:
-        self._share = share
+        self._share, self._places = share, places
+        self._mast = distance, bearing
         self._weights = _weights(places, distance, bearing)
         self._memory = np.zeros((len(LENGTHS) + 4, 3))
         self._mean, self._variance, _, self._run = self._memory[len(LENGTHS) :]
@@ -152,6 +154,37 @@ class FarWind:
         first = int(self._run[0] / _SPACING)
         return np.asarray(self._rest[(first + offsets) % SAMPLES] @ turned)
 
+    def later(self, hertz: Floats, mean: tuple[float, float]) -> Complexes:
+        """
+        Phases of the gusts that a crown shares with its anemometer, over those that are expected.
+
+        Parameters
+        ----------
+        hertz
+            Frequencies in [Hz], (f,).
+        mean
+            Mean wind to east and north in [m/s], as `mean`.
+
+        Returns
+        -------
+        Complexes
+            Numbers of size 1, (f,): travel has one delay for all gusts, the low-passes have less
+            the faster these are.
+
+        """
+        wavenumbers = hertz / max(math.hypot(*mean), 1.0)
+        angle = math.atan2(mean[1], mean[0])
+        (true,) = _coherences(self._places, *self._mast, wavenumbers, [angle])
+        nearest = round(angle * len(self._weights) / (2.0 * np.pi)) % len(self._weights)
+        stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
+        turn = true @ self._share * (stages @ self._weights[nearest].T @ self._share).conj()
+        return np.asarray(turn / np.maximum(np.abs(turn), 1e-300))
+
+    @property
+    def mean(self) -> tuple[float, float]:
+        """Mean wind at the anemometer to east and north [m/s]."""
+        return float(self._mean[0]), float(self._mean[1])
+
     def _turned(self, east: float, north: float) -> Floats:
         """Wind per drawn one along the mean wind, across it and up, (3, 3)."""
         level = math.hypot(east, north)
@@ -184,7 +217,7 @@ def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
     square = (weighed @ stages).real
     return np.array(
         [np.linalg.solve(square, (weighed @ each).real).T
-         for each in _coherences(places, distance, bearing, _WAVENUMBERS)]
+         for each in _coherences(places, distance, bearing, _WAVENUMBERS, _ANGLES)]
     )  # fmt: skip
 
 
@@ -195,12 +228,19 @@ def _told(wavenumbers: Floats, weights: Floats) -> Floats:
 
 
 def _coherences(
-    places: Floats, distance: float, bearing: float | None, wavenumbers: Floats
-) -> list[Floats]:
-    """Complex coherence G of places and anemometer, (k, g), in each direction of the wind."""
-    to_mast = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    places: Floats,
+    distance: float,
+    bearing: float | None,
+    wavenumbers: Floats,
+    angles: Sequence[float],
+) -> list[Complexes]:
+    """
+    Complex coherence G of places and anemometer, (k, g), in winds to angles from east to north.
+
+    Without a bearing it is the mean over all ways to the anemometer.
+    """
     found = []
-    for angle in to_mast:  # of the wind, from east to north
+    for angle in _ANGLES if bearing is None else angles:
         seen = angle if bearing is None else 0.5 * np.pi - bearing
         mast = distance * np.array([math.cos(seen), math.sin(seen), 0.0])
         c, s = (1.0, 0.0) if bearing is None else (math.cos(angle), math.sin(angle))
