@@ -123,8 +123,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     segment = mesh.segment[::4]
     number = (np.cumsum(tree.segment_parent < 0) - 1)[segment]  # of the tree in a forest
     centre = corners.mean(axis=1)
-    middle = np.stack([np.bincount(number, each) for each in centre.T], axis=1)
-    middle /= np.maximum(np.bincount(number), 1)[:, None]
+    total = np.stack([np.bincount(number, each) for each in centre.T], axis=1)
+    middle = total / np.maximum(np.bincount(number), 1)[:, None]
     foot = tree.start[tree.segment_parent < 0, 2][number]
     away = _unit(centre - middle[number])
     away[:, 2] += _SKYWARD
@@ -157,7 +157,7 @@ def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
         orientation=(turns * lean).as_quat()[:, [3, 0, 1, 2]],
         size=size / np.sqrt(shoots),
         frequency=np.repeat(leaves.frequency, shoots),
-        phase=around % (2.0 * np.pi),
+        phase=np.asarray(around % (2.0 * np.pi), dtype=np.float64),
     )
 
 
