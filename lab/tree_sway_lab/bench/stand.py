@@ -45,7 +45,7 @@ def time_stand(
     make: Callable[[], SceneSimulator] | None = None, *, n_trees: int = 1000, frames: int = 60
 ) -> list[Measured]:
     """
-    Time a stand, on all processors of the process; ``taskset -c 0`` leaves it one.
+    Time a stand.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def time_stand(
     Returns
     -------
     list of Measured
-        Times of a frame in [ms], medians; set-up in [s] of CPU time; memory in [GB].
+        CPU times of a frame in [ms], medians; set-up in [s] of CPU time; memory in [GB].
 
     """
     begun = time.process_time()
@@ -71,11 +71,11 @@ def time_stand(
     set_up = time.process_time() - begun
     spent = np.empty((frames, 2))
     for row, wind in zip(spent, bar(list(winds), 'frames of the stand'), strict=True):
-        begun = time.perf_counter()
+        begun = time.thread_time()
         stand.step(wind, _DT)
-        stepped = time.perf_counter()
+        stepped = time.thread_time()
         stand.place(poses)
-        row[:] = stepped - begun, time.perf_counter() - stepped
+        row[:] = stepped - begun, time.thread_time() - stepped
     solve, place = (1e3 * np.median(spent, axis=0)).tolist()
     what = f'{len(stand.names)} trees, {len(poses)} segments'
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6

@@ -14,7 +14,6 @@ from drawn_trees import weeping
 import numpy as np
 import pytest
 
-from tree_sway.core.native import stand
 from tree_sway.core.native.library import address, Opened
 from tree_sway.core.native.model import AT_POSE, bytes_of, NativeModel
 from tree_sway.core.native.stand import NativeStand
@@ -102,39 +101,26 @@ def test_two_threads_that_step_a_limp_tree_stay_within_its_memory(hanging):
     assert np.isfinite(stand.states.eta).all()
 
 
-def large_stand(model):
-    """Return a stand of small trees whose poses are more than caches hold, and their number."""
+def test_a_stand_beyond_the_caches_is_placed_as_each_of_its_trees(model):
     own = NativeModel(bytes_of(model.native_arrays()))
-    count = stand._LARGE // own.sizes.segments + 1
+    segments = own.sizes.segments
+    count = 100_000 // segments + 1
     rng = np.random.default_rng(1)
     places = np.column_stack([rng.uniform(0.0, 9.0, (count, 4)), rng.uniform(0.7, 1.3, count)])
-    made = NativeStand([own], np.zeros(count, dtype=np.int64), places, np.ones(count))
-    made.set_step(1 / 60)
-    return made, count
-
-
-@pytest.mark.parametrize('threads', [1, 2, 3])
-def test_a_large_stand_has_the_same_bits_on_any_number_of_threads(model, monkeypatch, threads):
-    monkeypatch.setattr(stand, '_threads', lambda: threads)
-    large, count = large_stand(model)
-    winds = np.random.default_rng(2).normal(0.0, 5.0, (count, 3))
-    segments = large.models[0].sizes.segments
-    # Poses begin at any number of a line.
-    poses = np.zeros((count * segments + 1, 7))[1:]
+    stand = NativeStand([own], np.zeros(count, dtype=np.int64), places, np.ones(count))
+    stand.set_step(1 / 60)
+    for _ in range(3):
+        assert stand.step(rng.normal(0.0, 5.0, (count, 3))) == (0, 0)
     rows = np.stack([np.arange(count), segments * np.arange(count)], axis=1)
-    for _ in range(3):
-        assert large.step(winds) == (0, 0)
-    large.place(rows, poses)
-    keys, expected = np.zeros(large.models[0].sizes.keys), np.zeros((segments, 7))
-    for tree in range(0, count, 997):
-        large.keys(tree, keys)
-        large.place_keys(tree, keys, expected)
-        assert np.array_equal(poses[rows[tree, 1] :][:segments], expected)
-    monkeypatch.setattr(stand, '_threads', lambda: 1)
-    alone, _ = large_stand(model)
-    for _ in range(3):
-        alone.step(winds)
-    assert np.array_equal(alone.states.eta, large.states.eta)
+    keys, expected = np.zeros(own.sizes.keys), np.zeros((segments, 7))
+    for first in (0, 1):  # poses begin at any number of a line
+        poses = np.zeros((count * segments + 1, 7))[first:]
+        stand.place(rows, poses)
+        for tree in range(0, count, 997):
+            stand.keys(tree, keys)
+            stand.place_keys(tree, keys, expected)
+            assert np.array_equal(poses[rows[tree, 1] :][:segments], expected)
+        assert not poses[count * segments :].any()
 
 
 AT_EXIT = """

@@ -4,9 +4,9 @@
 The native core of ``native/``, as Python calls it: by ctypes, with checked arrays.
 
 `LIBRARY` is opened once, the build for this processor chosen by itself. `NativeModel` is a model
-that the library has checked; `NativeStand` has the states of trees, steps and places them, a large
-stand on several threads, with the same bits for any number. `structures` mirrors the structs of
-``library.h`` for observers. What each call does stands in ``sway.h`` and ``library.h``.
+that the library has checked; `NativeStand` has the states of trees, steps and places them.
+`structures` mirrors the structs of ``library.h`` for observers. What each call does stands in
+``sway.h`` and ``library.h``.
 """
 
 from typing import TYPE_CHECKING

@@ -4,10 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import ctypes
-import os
-from threading import Thread
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +16,6 @@ from tree_sway.core.native.model import NativeModel
 from tree_sway.errors import ParameterError
 
 _ROOM = 300
-_LARGE = 100_000
-"""Trees times segments of the largest beyond which each frame is shared among processors."""
-
-_MOST_THREADS = 8
-"""Threads beyond which the memory is the limit."""
-
 _TREE = np.dtype(
     [('model', 'i8'), ('at', 'f8', 3), ('yaw', 'f8'), ('scale', 'f8'), ('speed', 'f8')]
 )
@@ -62,9 +54,6 @@ class NativeStand:
     """
     Trees of some models, each at a place.
 
-    A stand of some 100,000 segments or more is stepped and placed by as many threads as the process
-    has processors, up to eight; their number does not change a bit of the result.
-
     Parameters
     ----------
     models
@@ -96,17 +85,15 @@ class NativeStand:
         trees['speed'] = speeds
         handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
-        largest = max((each.sizes.segments for each in models), default=0)
-        self._n_rooms = _threads() if largest * len(trees) > _LARGE else 1
         handle = LIBRARY.sway_stand_open(
-            handles, len(models), address(trees), len(trees), self._n_rooms, error, _ROOM
+            handles, len(models), address(trees), len(trees), 1, error, _ROOM
         )
         if not handle:
             raise ParameterError(error.value.decode(), where='trees')
         opened = Opened(handle, LIBRARY.sway_stand_close, *self.models)
         self._handle = opened.handle
         self.states = self._views(len(trees), opened)
-        self._counts = np.zeros((self._n_rooms, 2), dtype=np.int64)
+        self._counts = np.zeros(2, dtype=np.int64)
         self._counts_at = address(self._counts)
         self._winds_at = LastAddress()
         self._rows_at = LastAddress()
@@ -166,29 +153,10 @@ class NativeStand:
             go on from rest.
 
         """
-        first, counts = self._winds_at.of(winds), self._counts_at
-
-        def step(room: int, begin: int, end: int) -> None:
-            own = first + 24 * begin, counts + 16 * room
-            LIBRARY.sway_step(self._handle, room, begin, end - begin, *own)
-
-        self._share(len(winds), step)
-        clamped, restarted = self._counts.sum(axis=0).tolist()
+        winds_at = self._winds_at.of(winds)
+        LIBRARY.sway_step(self._handle, 0, 0, len(winds), winds_at, self._counts_at)
+        clamped, restarted = self._counts.tolist()
         return clamped, restarted
-
-    def _share(self, count: int, work: Callable[[int, int, int], None]) -> None:
-        """Share trees among threads: work by number of the room, first tree and end."""
-        if self._n_rooms == 1:
-            work(0, 0, count)
-            return
-        ends = [count * room // self._n_rooms for room in range(self._n_rooms + 1)]
-        own, *others = zip(range(self._n_rooms), ends, ends[1:], strict=False)
-        threads = [Thread(target=work, args=part) for part in others]
-        for thread in threads:
-            thread.start()
-        work(*own)
-        for thread in threads:
-            thread.join()
 
     def place_first(self, out: Floats) -> None:
         """Place the first tree, (n, 7); ``out`` is contiguous."""
@@ -196,12 +164,8 @@ class NativeStand:
 
     def place(self, rows: Ints, out: Floats) -> None:
         """Place trees: their numbers and first rows in a pose block, (w, 2)."""
-        first, poses = self._rows_at.of(rows), self._poses_at.of(out)
-
-        def place(room: int, begin: int, end: int) -> None:
-            LIBRARY.sway_place(self._handle, room, first + 16 * begin, end - begin, poses)
-
-        self._share(len(rows), place)
+        rows_at, poses_at = self._rows_at.of(rows), self._poses_at.of(out)
+        LIBRARY.sway_place(self._handle, 0, rows_at, len(rows), poses_at)
 
     def keys(self, tree: int, out: Floats) -> None:
         """Write the key rotations of a tree [rad], (N,)."""
@@ -211,10 +175,3 @@ class NativeStand:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
         keys_at = self._keys_at.of(keys)
         LIBRARY.sway_place_keys(self._handle, 0, tree, keys_at, self._poses_at.of(out))
-
-
-def _threads() -> int:
-    """Return the number of threads of a large stand."""
-    of_process = getattr(os, 'sched_getaffinity', None)
-    count = len(of_process(0)) if of_process else os.cpu_count() or 1
-    return min(count, _MOST_THREADS)
