@@ -28,13 +28,15 @@ from tree_sway.stream import SceneState, why_no_tables
 _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)
 _LEAVES = 1000
+"""Number of clusters of leaves, as in `SceneState`."""
+
 _BOOT = 'boot.js'
 _CORE = 'sway.wasm'
 _BITS = 14
 """Bits of the fraction of each number: errors of drawing are some hundredths of a millimetre."""
 
 
-def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
+def page_of_scene(simulator: Simulator) -> str:
     """
     Return the HTML of a scene at rest that sways in wind.
 
@@ -42,8 +44,6 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
     ----------
     simulator
         A tree or a scene on a number of coordinates.
-    n_leaves
-        Number of clusters of leaves, as in `SceneState`.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
         `why_no_tables`.
 
     """
-    return page_of_state(SceneState(simulator, n_leaves))
+    return page_of_state(SceneState(simulator, _LEAVES))
 
 
 def page_of_state(scene: SceneState, script: str = '') -> str:

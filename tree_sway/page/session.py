@@ -35,6 +35,10 @@ _LOGGER = logging.getLogger('tree_sway.page')
 RATE = 60.0
 """Steps per second in [Hz]."""
 
+_PERIOD = 1.0 / RATE
+_TOLERANCE = 0.005
+"""Largest error that the model ``auto`` allows at first in [m]."""
+
 _MOST_LATE = 0.25
 """Delay [s] that steps catch up at most."""
 _NEWEST = 0.05
@@ -124,10 +128,6 @@ class Session:
         Initial choices.
     wind
         Source of the wind.
-    rate
-        Steps per second in [Hz].
-    tolerance
-        Largest error that model ``auto`` allows in [m].
     motion
         Live sensors, which an observed tree follows.
     warnings
@@ -146,8 +146,6 @@ class Session:
         choices: Choices,
         wind: WindSource,
         *,
-        rate: float = RATE,
-        tolerance: float = 0.005,
         motion: MotionFeed | None = None,
         warnings: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
@@ -155,10 +153,8 @@ class Session:
         self._motion = MotionFeed() if motion is None else motion
         self._build = build
         self.wind = wind
-        self._rate = rate
-        self._period = 1.0 / rate
         self.choices = choices
-        self._tolerance = tolerance
+        self._tolerance = _TOLERANCE
         self._scene, self._runtime = self._made(choices)
         self._next: tuple[SceneState, Run] | None = None
         self._server: PageServer | None = None
@@ -168,7 +164,7 @@ class Session:
         self._steps = 0
         self._band: list[float] | None = None
         self._work = 0.0
-        self._spacing = self._period
+        self._spacing = _PERIOD
         self._last = time.perf_counter()
         self._builder = Newest(self._build_wanted, 'builder')
         self._thread = threading.Thread(target=self._run, name='session', daemon=True)
@@ -337,9 +333,9 @@ class Session:
         set_demand(simulator.simulators, tolerance=self._tolerance)
         simulator.reset()
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
-        run = Run(simulator, self._rate, intake=intake)
+        run = Run(simulator, RATE, intake=intake)
         if isinstance(simulator, ObservedTree):
-            run = Run(simulator, self._rate, intake=intake, starting=simulator.set_time)
+            run = Run(simulator, RATE, intake=intake, starting=simulator.set_time)
         return scene, run
 
     def _build_wanted(self, wanted: Choices) -> None:
@@ -364,7 +360,7 @@ class Session:
             due = self._last = time.perf_counter()
             while not self._stop.is_set():
                 self._step(time.perf_counter())
-                due += self._period
+                due += _PERIOD
                 now = time.perf_counter()
                 due = now if now - due > _MOST_LATE else due
                 self._stop.wait(max(0.0, due - now))
@@ -395,7 +391,7 @@ class Session:
             blow(self._runtime, self.wind, self._ticks * self._runtime.period)
             self._note_band()
         self._steps += 1
-        if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
+        if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * _PERIOD:
             frame = self._scene.frame(
                 time.time_ns(),
                 is_paused=self._is_paused,
