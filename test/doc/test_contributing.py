@@ -95,6 +95,13 @@ CHANGES = {
         "from tree_sway.files.table_file import UNITS; print(UNITS['speed']['yd/s'])",
         '0.9144',
     ),
+    'maker': (
+        'tree_sway/files/makers.csv', 'Netatmo,windstrength windangle,,,,km/h',
+        'Netatmo,windstrength windangle,,,,kn',
+        'from tree_sway.files.makers import maker_of; from tree_sway.files.table_file import *;'
+        "print(maker_of(parse_table(['WindStrength,WindAngle', '1,2'], ''))['speed'])",
+        'kn',
+    ),
     'format': (
         'tree_sway/files/trees/formats/swc.py', "FileFormat('swc'", "FileFormat('neuron'",
         'from tree_sway.files.trees.tree_file import TREE_FORMATS;'

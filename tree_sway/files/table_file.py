@@ -309,7 +309,7 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
     if 2 * len(long) > len(table.texts):
         what = f'more cells than the {len(columns)} columns of the header, as in most rows'
-        cure = 'export decimal commas as points, or name every column in the header'
+        cure = 'name every column right above the rows, or export decimal commas as points'
         raise table.error(what, long[0], cure)
     return table
 

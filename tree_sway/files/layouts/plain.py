@@ -28,7 +28,7 @@ _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
 _DIGIT = re.compile(r'[-+]?\.?\d')
-_COMMENT = re.compile(r'[#;%/\s]*(?:[Hh]eaders\s*,)?\s*')
+_COMMENT = re.compile(r'(?:[#%/\s]+|;)\s*(?:[Hh]eaders\s*,)?\s*')
 _PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
@@ -86,17 +86,10 @@ def is_known(cell: str) -> bool:
     return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
 
 
-def _has_time(line: str) -> bool:
-    cells = _cells(_uncommented(line))[:_MOST_COLUMNS]
-    named = [cell for cell in cells if cell and _NUMBER.fullmatch(cell) is None]
-    return len(cells) > 1 and any(
-        rank_of(cell, 'time') is not None or cell.lower() in _PARTS for cell in named
-    )
-
-
 def _is_table(lines: Sequence[str]) -> bool:
     found = header_line(lines)
-    return found is not None and _has_time(lines[found])
+    cells = [] if found is None else _cells(_uncommented(lines[found]))
+    return any(rank_of(cell, 'time') is not None or cell.lower() in _PARTS for cell in cells)
 
 
 def _read(lines: list[str], source: str) -> TextTable:

@@ -13,13 +13,12 @@ from collections.abc import Sequence
 from itertools import zip_longest
 import re
 
-from tree_sway.files.cell_table import numbered, table_of_lines
 from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import TextTable
 
 _NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
 _WORD = re.compile(r'\S+')
-_WIND = ('Date', 'Time', 'Wind Speed', 'Wind Dir', 'Hi Speed')
 
 
 def _has_two_lines(lines: Sequence[str]) -> bool:
@@ -30,15 +29,8 @@ def _has_two_lines(lines: Sequence[str]) -> bool:
 
 def _read(lines: list[str], source: str) -> TextTable:
     names = _names(lines[0], lines[1])
-    wanted = [column for column, name in enumerate(names) if name in _WIND]
-    rows = []
-    for number, line in numbered(lines, 2):
-        cells = line.split('\t') if '\t' in line else line.split()
-        if len(cells) == len(names):
-            row = [cells[column].strip() for column in wanted]
-            rows.append((number, row))
-    columns = [names[column] for column in wanted]
-    return table_of_lines(columns, rows, source)
+    rows = ['\t'.join(line.split()) if '\t' not in line else line for line in lines[2:]]
+    return PLAIN.read(['', '\t'.join(names), *rows], source)
 
 
 def _names(above: str, below: str) -> list[str]:

@@ -248,7 +248,9 @@ def _without_unit(
     if (size := _size(values)) > most:
         what = f'{name} without a unit is {size:.4g} as a median, which is no {unit}'
         raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
-    return 1.0, f'no unit of {name} in the header: taken in {unit}'
+    other = 'g' if quantity == 'acceleration' else 'deg/s'
+    note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
+    return 1.0, note
 
 
 def _refuse_several(table: TextTable) -> None:

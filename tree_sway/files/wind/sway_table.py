@@ -21,9 +21,10 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import motion_of
-from tree_sway.files.table_file import Column, parse_table, TextTable
-from tree_sway.files.text_file import read_lines
-from tree_sway.files.time_stamps import times_of
+from tree_sway.files.layouts.known import table_of
+from tree_sway.files.row_times import Join, row_times, time_columns
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import read_table_lines
 
 MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
@@ -58,7 +59,7 @@ class SwayRecord:
 
 def read_csv_sway(path: Path) -> SwayRecord:
     """Read the motion of a tree from a table, as `parse_sway`."""
-    return parse_sway(read_lines(path), str(path))
+    return parse_sway(read_table_lines(path), str(path))
 
 
 def parse_sway(lines: list[str], source: str) -> SwayRecord:
@@ -73,8 +74,8 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
         number.
 
     """
-    table = parse_table(lines, source)
-    clock = table.find('time')
+    table = table_of(lines, source)
+    clock = time_columns(table)
     motion = [(i, found[0]) for i, name in enumerate(table.columns) if (found := motion_of(name))]
     if clock is None or not motion:
         what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
@@ -97,14 +98,15 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     for row, column in np.argwhere(~is_plausible)[:1]:
         what = f'{columns[column]} is {values[row, column]:.3g}, which is implausible'
         raise table.error(what, row, 'correct the cell or remove the row')
-    times = _times(table, clock)
+    times = _times(table, *clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
 
-def _times(table: TextTable, clock: Column) -> Floats:
+def _times(table: TextTable, columns: list[int], join: Join | None, factor: float) -> Floats:
     """Seconds of each row, from numbers or from dates."""
-    stamps = table.cells(clock.index, range(len(table.texts)))
-    times = times_of(stamps, clock.factor).seconds
+    rows = list(range(len(table.texts)))
+    times = row_times(table, columns, join, factor, rows).seconds
+    stamps = table.cells(columns[0], rows)
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
         raise table.error(what, row, 'correct the cell or remove the row')
