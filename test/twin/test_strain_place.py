@@ -19,6 +19,7 @@ from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
 from tree_sway.simulation.wood_strain import WoodStrain
+from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import as_orientation, bend_at, place_on, strain_of
 
@@ -61,6 +62,13 @@ def test_a_branch_of_one_segment_has_no_joint() -> None:
         with pytest.raises(ParameterError, match='one segment'):
             place_on(TREE, f'{short}:0.5 strain')
     assert place_on(TREE, '1.3 strain facing 0').is_strain
+
+
+def test_a_phone_at_a_place_of_strain_is_refused() -> None:
+    sensor = MotionSensor('phone', place_on(TREE, '1.3 strain'))
+    assert not sensor.offer(0.0, acceleration=(0.0, 0.0, 9.8), rate=(0.0, 0.0, 0.1))
+    assert 'a quantity is missing' in sensor.trouble
+    assert sensor.offer(0.1, orientation=as_orientation(np.array([[1e-4, 0.0]]))[0])
 
 
 def moved(twin: ObservedTree, winds: Floats) -> Floats:

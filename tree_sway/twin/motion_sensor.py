@@ -226,6 +226,8 @@ class MotionSensor:
         """
         values = self._sample
         values[:] = nan
+        if self.place.is_strain:
+            acceleration = rate = None  # gauges measure neither
         with suppress(TypeError, ValueError, OverflowError):
             if acceleration is not None:
                 values[0:3] = acceleration
