@@ -81,7 +81,11 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
             "--height: '0,45' is no number; give it in m, with a point",
         ),
         (['info', 'benjamina', '--seed', 'one'], "--seed: 'one' is no number; give it with"),
-        (['info', 'oak'], 'it is a species: tree-sway grow oak --height 10 -o oak.yaml'),
+        (
+            ['info', 'oak'],
+            "it is a species: tree-sway grow oak --height 10 -o oak.yaml, or grow('oak', 10)",
+        ),
+        (['info', 'oka'], "no tree 'oka'; did you mean 'oak'? give a file, or one of benjamina"),
         (['info', 'x' * 300], 'File name too long'),
         (['info'], 'required: TREE'),
         (['info', 'nope'], "no tree 'nope'; give a file, or one of benjamina"),
