@@ -98,7 +98,7 @@ def _main(given: list[str]) -> int:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends
         return code
     except TreeSwayError as error:
-        line = shlex.join(['tree-sway', *given])  # which a reader does not know
+        line = shlex.join(['tree-sway', *given])
         return _fail(command, str(error).replace('tree-sway ...', line))
     except ModuleNotFoundError as error:
         if str(error.name).startswith('tree_sway'):

@@ -35,7 +35,7 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
 
 @contextmanager
 def counting(total: int, what: str) -> Iterator[Callable[[int], object]]:
-    """Give a function that is told how many of a total are done, and show it under a label."""
+    """Give a function that shows how many of a total are done."""
     counted = _bar_on_terminal(what, total=total) if total > 1 else None
     if counted is None:
         with waiting(what):
