@@ -61,9 +61,16 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
         (['sway'], "invalid choice: 'sway'"),
         (['dmeo'], "did you mean 'demo'?"),
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
+        (
+            ['calibrate', 'benjamina', '--at', '3'],
+            'unrecognized arguments: --at 3; see tree-sway calibrate --help',
+        ),
         (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
         (['convert', 'benjamina'], '--output: no file to write; name it last'),
-        (['calibrate', 'benjamina', '--frequency', '3'], '--output: no file to write; name it last'),
+        (
+            ['calibrate', 'benjamina', '--frequency', '3'],
+            '--output: no file to write; name it last',
+        ),
         (['convert', 'benjamina', 'a.yaml', 'b.yaml'], 'unrecognized arguments: a.yaml b.yaml'),
         (
             ['simulate', 'benjamina', '--seconds', '12m'],
@@ -74,7 +81,11 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
             "--height: '0,45' is no number; give it in m, with a point",
         ),
         (['info', 'benjamina', '--seed', 'one'], "--seed: 'one' is no number; give it with"),
-        (['info', 'oak'], 'it is a species: tree-sway grow oak --height 10 -o oak.yaml'),
+        (
+            ['info', 'oak'],
+            "it is a species: tree-sway grow oak --height 10 -o oak.yaml, or grow('oak', 10)",
+        ),
+        (['info', 'oka'], "no tree 'oka'; did you mean 'oak'? give a file, or one of benjamina"),
         (['info', 'x' * 300], 'File name too long'),
         (['info'], 'required: TREE'),
         (['info', 'nope'], "no tree 'nope'; give a file, or one of benjamina"),
@@ -234,6 +245,19 @@ def test_a_command_says_what_it_lacks_before_it_opens_anything(
     printed = one_line(capsys.readouterr().err)
     assert module in printed
     assert extras.cure_of_missing(module).rpartition(' ')[0] in printed
+
+
+def test_the_cure_of_a_reader_has_the_whole_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing(*_: object) -> None:
+        monkeypatch.setattr(extras, 'line_in_venv', 'python3 in_venv.py tree-sway {}'.format)
+        raise MissingDependencyError('no openpyxl', cure=extras.cure_of_missing('openpyxl'))
+
+    monkeypatch.setattr(cli, 'refuse_missing', missing)
+    assert cli.main(['info', 'two words.xlsx', '--count', '1']) == 2
+    said = one_line(capsys.readouterr().err)
+    assert said.endswith("python3 in_venv.py tree-sway info 'two words.xlsx' --count 1")
 
 
 def test_every_extra_that_is_advised_is_one_of_the_package() -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import io
 import sys
+import time
 
 import pytest
 
@@ -46,6 +47,22 @@ def test_a_long_wait_on_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) 
     assert list(progress.bar(range(3), 'working')) == [0, 1, 2]
     assert 'working:' in terminal.getvalue()
     assert '/3' in terminal.getvalue()
+
+
+def test_what_counts_by_itself_is_shown_as_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip('tqdm')
+    terminal = Terminal()
+    monkeypatch.setattr(sys, 'stderr', terminal)
+    monkeypatch.setattr(sys, '__stderr__', terminal)
+    monkeypatch.setattr(progress, 'PATIENCE', 0.0)
+    end = time.monotonic() + 20.0
+    with progress.counting(3, 'setting up') as tell:
+        while '2/3' not in terminal.getvalue():  # drawn anew after a tenth of a second
+            assert time.monotonic() < end, terminal.getvalue()
+            tell(2)
+    with progress.counting(1, 'alone') as tell:
+        tell(1)
+    assert 'alone:' not in terminal.getvalue()
 
 
 def test_a_wait_that_is_not_counted_is_reported(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tree_sway.commands.entries import additions as additions
     from tree_sway.commands.entries import own_commands as own_commands
     from tree_sway.commands.progress import bar as bar
+    from tree_sway.commands.progress import counting as counting
     from tree_sway.commands.progress import waiting as waiting
     from tree_sway.commands.refusals import refuse_overwriting as refuse_overwriting
     from tree_sway.commands.refusals import refuse_unused as refuse_unused

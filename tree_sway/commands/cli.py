@@ -46,7 +46,8 @@ class _OneLineParser(argparse.ArgumentParser):
         if wrong := _CHOICE.search(message):
             guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
         elif wrong := _UNRECOGNIZED.search(message):
-            guess = nearest(wrong[1], (self.chosen or self)._option_string_actions)
+            names = (name.lstrip('-') for name in (self.chosen or self)._option_string_actions)
+            guess = nearest(wrong[1].lstrip('-'), names).replace("'", "'--", 1)
         elif wrong := _NO_NUMBER.search(message):
             message = f"argument {wrong[1]}: '{wrong[2]}' is no number"
             guess = f'give it {self._unit_of(wrong[1])}with a point, as 12 or 0.45'
@@ -97,7 +98,8 @@ def _main(given: list[str]) -> int:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends
         return code
     except TreeSwayError as error:
-        return _fail(command, str(error))
+        line = shlex.join(['tree-sway', *given])
+        return _fail(command, str(error).replace('tree-sway ...', line))
     except ModuleNotFoundError as error:
         if str(error.name).startswith('tree_sway'):
             raise

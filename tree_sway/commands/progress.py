@@ -9,11 +9,11 @@ terminal there is a line.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 import sys
 import threading
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from tree_sway.errors import shown
 
@@ -25,16 +25,36 @@ PATIENCE = 2.0
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
     """Yield the items, and show their progress under a label: "MuJoCo", "settling"."""
-    if sys.stderr is not None and sys.stderr.isatty():
-        with suppress(ImportError):
-            from tqdm import tqdm
-
-            # The bar moves the cursor, which `sys.stderr` escapes inside a command.
-            terminal = sys.__stderr__
-            yield from tqdm(items, desc=shown(what), delay=PATIENCE, leave=False, file=terminal)
-            return
+    counted = _bar_on_terminal(what, iterable=items)
+    if counted is not None:
+        yield from counted
+        return
     with waiting(what):
         yield from items
+
+
+@contextmanager
+def counting(total: int, what: str) -> Iterator[Callable[[int], object]]:
+    """Give a function that shows how many of a total are done."""
+    counted = _bar_on_terminal(what, total=total) if total > 1 else None
+    if counted is None:
+        with waiting(what):
+            yield lambda done: None
+        return
+    with counted:
+        yield lambda done: counted.update(done - counted.n)
+
+
+def _bar_on_terminal(what: str, **given: Any) -> Any:
+    """Make a bar of tqdm; None without it or without a terminal."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return None
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        return None
+    # The bar moves the cursor, which `sys.stderr` escapes inside a command.
+    return tqdm(**given, desc=shown(what), delay=PATIENCE, leave=False, file=sys.__stderr__)
 
 
 @contextmanager

@@ -210,7 +210,8 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
     elif error.validator == 'required':
         key = next(key for key in error.validator_value if key not in error.instance)
         what = f"{name} has no '{key}'"
-        cure = f"add '{key}'"
+        meaning = error.schema.get('properties', {}).get(key, {}).get('description')
+        cure = f"add '{key}'" + f': {meaning}' * bool(meaning)
     else:
         node = _node_at(document.root, path)
         cure = _wanted(error.schema, document.schema)

@@ -28,7 +28,7 @@ def watch(
     `TransportError` is raised if no poses arrive within the ``patience`` [s].
     """
     deadline = time.monotonic() + patience
-    with waiting(f'waiting for poses, {patience:g} s at most'):
+    with waiting('waiting for poses'):
         while not monitor.totals.poses.count and check():
             monitor.spin(0.1)
             if time.monotonic() > deadline:

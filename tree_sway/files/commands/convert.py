@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 import sys
 
-from tree_sway.commands import refuse_unused, waiting
+from tree_sway.commands import counting, refuse_unused, waiting
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator, Scene, solved
 from tree_sway.core.settings import Settings
@@ -142,8 +142,10 @@ def _write_moments(
         write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
         return
     wind = opened_wind(arguments)
-    with waiting('setting up the tree'):
-        simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
+    with counting(len(scene.kinds), 'setting up the trees') as done:
+        simulator = scene.simulator(
+            in_leaf=chosen_leaves(arguments), model=arguments.model, progress=done
+        )
     for number, time in at_moments(simulator, wind, moments):
         comment = f'{name} at {time:.4f} s; {axes}'
         write_text_whole(paths[number], files.text(simulator.place(), comment))
@@ -154,8 +156,8 @@ def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
     from tree_sway.page import page_of_scene
 
     settings = Settings(in_leaf=chosen_leaves(arguments))
-    with waiting('finding what sways'):
-        simulator = scene.simulator(settings, model=arguments.model)
+    with counting(len(scene.kinds), 'finding what sways') as done:
+        simulator = scene.simulator(settings, model=arguments.model, progress=done)
         page = page_of_scene(simulator)
     write_text_whole(arguments.output, page)
 

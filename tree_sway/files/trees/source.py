@@ -100,9 +100,10 @@ def _warn(faults: Sequence[str]) -> None:
 
 def unknown_tree(name: str) -> FormatError:
     """Return the error for a name that is neither that of a built-in tree nor that of a file."""
-    guess = nearest(name, BUILTIN_TREES)
+    guess = nearest(name, [*BUILTIN_TREES, *species_keys()])
     if name in species_keys():
-        guess = f'it is a species: tree-sway grow {name} --height 10 -o {name}.yaml;'
+        line = f'tree-sway grow {name} --height 10 -o {name}.yaml'
+        guess = f"it is a species: {line}, or grow('{name}', 10) in Python;"
     cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
     return FormatError(f"no tree '{name}'", cure=cure)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.commands import bar, waiting
+from tree_sway.commands import bar, counting
 from tree_sway.core.checks import within
 from tree_sway.core.scene import Scene, Simulator
 from tree_sway.core.settings import Settings
@@ -129,8 +129,10 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 
 def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
-    with waiting('setting up the tree'):
-        return scene.simulator(model=arguments.model, in_leaf=chosen_leaves(arguments))
+    with counting(len(scene.kinds), 'setting up the trees') as done:
+        return scene.simulator(
+            model=arguments.model, in_leaf=chosen_leaves(arguments), progress=done
+        )
 
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:

@@ -55,7 +55,8 @@ def test_a_measured_modulus_is_no_estimate():
     [
         ('', FormatError, 't: empty'),
         ('a: [1', FormatError, 't:2: not YAML'),
-        ('name: x', FormatError, "t:1: the file has no 'branches'"),
+        ('name: x', FormatError,
+         "t:1: the file has no 'branches'; add 'branches': The branches, .*`tree-sway grow`"),
         ('[1, 2]', FormatError, 't:1: the file is a list of 2; give a mapping'),
         (STEM + 'name: {a: b}\n', FormatError, 't:4: name is a mapping of 1; give a text'),
         (STEM + 'name: a\nname: b\n', FormatError,
