@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.arrays import Complexes, Floats
-from tree_sway.twin.alignment import GRAVITY
+from tree_sway.twin.alignment import Alignment, GRAVITY
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
 from tree_sway.twin.sensor_place import SensorPlace
@@ -152,10 +152,13 @@ def test_a_late_sensor_stays_late_until_that_is_unlikely() -> None:
 def said_beside(late: float, others: dict[str, float], own: float = 0.0) -> str:
     """Return what a late sensor says beside others, by the lag at which each moves [s]."""
     model, sensed = noise(200.0, np.random.default_rng(3))
-    limb = sensed + 0.2 * noise(200.0, np.random.default_rng(4))[1]
-    track = seeing(np.roll(sensed, round(late / DT), axis=0), np.roll(model, round(late / DT)))
+    limb = np.full((len(sensed), 9), np.nan)
+    limb[:, :3] = 0.0, 0.0, GRAVITY
+    limb[:, :2] += sensed + 0.2 * noise(200.0, np.random.default_rng(4))[1]
+    upright = Alignment(np.eye(3), np.ones(2), True, 1.0, np.zeros(3))
+    track = seeing(np.roll(sensed, round(late / DT), axis=0), model)
     beside = tuple(
-        OtherSensor(name, np.roll(limb, round(lag / DT), axis=0), 0.0, abs(lag) + own)
+        OtherSensor(name, upright, np.roll(limb, round(lag / DT), axis=0), 0.0, abs(lag) + own)
         for name, lag in others.items()
     )
     track.take(next(track.search(NO_LAG._replace(is_told=True, others=beside))))

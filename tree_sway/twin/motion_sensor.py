@@ -14,7 +14,6 @@ What a sensor measures is decided by a majority vote (Boyer and Moore 1991, Auto
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 from math import dist, inf, isfinite, nan
 
@@ -36,6 +35,9 @@ from tree_sway.twin.sensor_place import SensorPlace, turn_between
 
 QUANTITIES = ('acceleration', 'rate', 'orientation')
 """Quantities of a sample: [m/s^2], [rad/s], and a quaternion x y z w."""
+
+_ROWS = slice(0, 3), slice(3, 6), slice(6, 9)
+"""Numbers of each quantity."""
 
 _MOST_LEAD = 100
 """Most votes by which the quantities of a sensor lead."""
@@ -63,7 +65,6 @@ STUCK, SPIKE, AHEAD = 6, 7, 8
 """Results of `MotionSensor.offer` beside those of `SampleRing.keep`."""
 
 _COUNTED = {
-    KEPT: 'accepted',
     NOT_FINITE: 'not_finite',
     TOO_LARGE: 'too_large',
     SATURATED: 'saturated',
@@ -228,13 +229,15 @@ class MotionSensor:
         values[:] = nan
         if self.place.is_strain:
             acceleration = rate = None  # gauges measure neither
-        with suppress(TypeError, ValueError, OverflowError):
+        try:
             if acceleration is not None:
                 values[0:3] = acceleration
             if rate is not None:
                 values[3:6] = rate
             if orientation is not None:
                 values[6:9] = self._turn(np.asarray(orientation, dtype=float))
+        except (TypeError, ValueError, OverflowError):
+            pass  # what is no vector stays not a number
         try:
             stamp = float(time)
             if arrival is not None and self._is_ahead(arrival - stamp, arrival):
@@ -243,7 +246,12 @@ class MotionSensor:
                 outcome = self._check(stamp, values.tolist())
         except (TypeError, ValueError, OverflowError):
             outcome = NOT_FINITE
-        counts, name = self.counts, _COUNTED[outcome]
+        counts = self.counts
+        if outcome == KEPT:
+            counts.accepted += 1
+            self.trouble = ''
+            return True
+        name = _COUNTED[outcome]
         setattr(counts, name, getattr(counts, name) + 1)
         if outcome == RESTARTED:
             counts.accepted += 1
@@ -282,7 +290,8 @@ class MotionSensor:
     def _vote(self, is_given: tuple[bool, ...]) -> None:
         """Let a sample vote for its quantities; a majority for others begins the sensor anew."""
         if is_given == self._is_given:
-            self._lead = min(self._lead + 1, _MOST_LEAD)
+            if self._lead < _MOST_LEAD:
+                self._lead += 1
             return
         self._lead -= any(is_given)
         if self._lead >= 0:
@@ -311,15 +320,21 @@ class MotionSensor:
 
     def _is_spike(self, numbers: list[float]) -> bool:
         """Whether a sample is far from the one before, unless it is the last of several."""
-        is_far = False
+        is_far, kept, changes = False, self._kept, self._changes
         for k, is_given in enumerate(self._is_given):
             if not is_given:
                 continue
-            change = dist(self._kept[3 * k : 3 * k + 3], numbers[3 * k : 3 * k + 3])
-            usual = max(self._changes[k] or change, _LEAST_CHANGE[k])
-            is_far |= change > _APART * usual
-            # A running median: up or down by a twentieth.
-            self._changes[k] = usual * (1.05 if change > usual else 0.95)
+            rows = _ROWS[k]
+            change = dist(kept[rows], numbers[rows])
+            usual = changes[k] or change
+            if usual < _LEAST_CHANGE[k]:
+                usual = _LEAST_CHANGE[k]
+            if change > usual:
+                # A running median: up or down by a twentieth.
+                changes[k] = 1.05 * usual
+                is_far = is_far or change > _APART * usual
+            else:
+                changes[k] = 0.95 * usual
         self._n_spikes += 1
         if self._n_spikes <= 0:
             return False

@@ -22,7 +22,6 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
     LagRange,
-    OtherSensor,
     ROWS,
     SensorTrack,
 )
@@ -158,16 +157,14 @@ class SensorReadings:
         """Find which lags of the wind a sensor may tell."""
         delay = self._wind.delay
         about, none = self._wind.lag_at(track.reach)
-        others = []
-        for each in self._tracks:
-            if each is not track and each.is_comparable:
-                motion = each.last_motion(min(each.whole, track.whole))
-                at, _ = self._wind.lag_at(each.reach)
-                others.append(OtherSensor(each.sensor.name, motion, at, each.late))
+        others = tuple(
+            each.beside(track, self._wind.lag_at(each.reach)[0])
+            for each in self._tracks
+            if each is not track and each.is_comparable
+        )
         way = LagRange(
-            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later,
-            others=tuple(others),
-        )  # fmt: skip
+            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later, others=others
+        )
         if way.is_told or self._told_lag not in (None, track):
             return way
         if delay:

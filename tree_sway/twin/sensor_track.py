@@ -102,13 +102,14 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
 
 class OtherSensor(NamedTuple):
     """
-    Another sensor on the tree: its name, and its last motion to east and north, (n, 2).
+    Another sensor on the tree: its name, its mounting, and its last samples, (n, 9).
 
     ``about`` is its lag behind the crown by the way of the gusts, ``late`` the one found last [s].
     """
 
     name: str
-    motion: Floats
+    alignment: Alignment
+    sensed: Floats
     about: float
     late: float
 
@@ -222,12 +223,14 @@ def _apart(moved: Floats, windows: Windows, lags: LagRange, late: float) -> str:
     Limbs lean together in slow gusts. Of several sensors that one is blamed which differs from
     most others; of two both are, unless one is nearer to the model.
     """
-    said = []
+    said, rows = [], _first_rows(moved)
     for other in lags.others:
-        count = min(len(moved), len(other.motion))
+        motion = other.alignment.motion(other.sensed)
+        if not len(motion) or _first_rows(motion) != rows:
+            continue
         found = sensor_lag(
-            moved[len(moved) - count :, _first_rows(moved)],
-            other.motion[len(other.motion) - count :],
+            moved[-len(motion) :, rows],
+            motion[:, rows],
             1.0 / (windows.period * windows.dt),
             windows.dt,
             longest=_LONGEST,
@@ -488,12 +491,12 @@ class SensorTrack:
         """Number of the last steps of which none is missing."""
         return min(max(self.native.count - self._whole_from, 0), len(self._sensed))
 
-    def last_motion(self, count: int) -> Floats:
-        """Return the motion to east and north of the last steps, (n, 2)."""
+    def beside(self, track: SensorTrack, about: float) -> OtherSensor:
+        """Return it as another sensor beside one, by their last samples of the same steps."""
         assert self.alignment is not None
-        sensed, _ = self._remembered()
-        moved = self.alignment.motion(sensed[len(sensed) - count :])
-        return moved[:, _first_rows(moved)] if count else moved[:, :2]
+        count, last = min(self.whole, track.whole), self.native.count
+        sensed = self._sensed[np.arange(last - count, last) % len(self._sensed)]
+        return OtherSensor(self.sensor.name, self.alignment, sensed, about, self.late)
 
     def delay_model(self, lag: int) -> None:
         """Remember the model as if its wind had been later by a number of steps."""
