@@ -205,9 +205,7 @@ def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> Floats:
     return np.asarray(np.square(np.abs(shared)) / np.maximum(size, 1e-300))
 
 
-def _over_noise(
-    y: Complexes, told: Complexes, share: Floats
-) -> tuple[Floats, Complexes, Floats]:
+def _over_noise(y: Complexes, told: Complexes, share: Floats) -> tuple[Floats, Complexes, Floats]:
     """Logarithm of the likelihood of each lag with its own noise, (l,), gain and noise there."""
     alone = share @ np.square(np.abs(y))
     noise = np.broadcast_to(alone, told.shape)

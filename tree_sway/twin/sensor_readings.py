@@ -172,6 +172,4 @@ class SensorReadings:
         else:
             least = max(round(_LEAST_LAG / self._dt), track.window)
         earliest, latest = -delay / self._dt, (LONGEST_WAY - delay) / self._dt
-        return way._replace(
-            earliest=math.ceil(earliest), latest=math.floor(latest), least=least
-        )
+        return way._replace(earliest=math.ceil(earliest), latest=math.floor(latest), least=least)

@@ -74,9 +74,7 @@ def of_usual_wood(tree: Tree) -> Tree:
     wanted = scanned**SCAN_WEIGHT * wood_volume(diameter, tree.height) ** (1.0 - SCAN_WEIGHT)
     left = wanted - float(tree.volume[:first].sum())
     ratio = math.sqrt(max(left, 0.0) / float(tree.volume[first:].sum()))
-    of_segment = np.where(
-        np.arange(tree.n_segments) < first, 1.0, min(max(ratio, _THINNEST), 1.0)
-    )
+    of_segment = np.where(np.arange(tree.n_segments) < first, 1.0, min(max(ratio, _THINNEST), 1.0))
     return replace(
         tree,
         base_diameter=of_segment * tree.base_diameter,
