@@ -296,3 +296,39 @@ def test_it_names_places_of_motion_sensors(capsys: pytest.CaptureFixture[str]) -
     notes = ' '.join(facts(capsys, 'goldcrest', '--sensors', '2')['notes'])
     assert 'motion sensors tell most' in notes
     assert notes.count('% left') == 2
+
+
+@pytest.mark.parametrize(('diameter', 'where', 'is_asked'), [
+    (0.05, 'open', True), (0.05, 'stand', False), (0.07, 'street', False),
+])  # fmt: skip
+def test_a_slender_tree_of_the_open_is_asked_whether_it_stood_in_a_stand(
+    diameter: float,
+    where: str,
+    is_asked: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = write_pole(tmp_path / 'pole.yaml', 6.0, diameter)
+    cli.main(['info', path, '--speed', '3', '--exposure', where])
+    said = capsys.readouterr()
+    assert ('did it stand in one? With --exposure stand' in said.err) == is_asked
+    assert 'roots      do not turn' in said.out
+
+
+def test_a_tree_below_the_top_of_its_stand_is_sheltered_by_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_pole(tmp_path / 'pole.yaml', 6.0, 0.07)
+    stand = ['--speed', '5', '--exposure', 'stand']
+    own, low, high = (
+        facts(capsys, path, *stand, *height)['strength']['base_moment']
+        for height in (
+            [],
+            ['--stand-height', f'{6.0 / np.hypot(0.2, 1.0)}'],
+            ['--stand-height', '12'],
+        )
+    )
+    assert low == pytest.approx(own)
+    assert high < 0.5 * own
+    assert cli.main(['info', path, '--speed', '5', '--stand-height', '12']) == 2
+    assert '--stand-height: trees in the open' in capsys.readouterr().err

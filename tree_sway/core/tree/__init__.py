@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tree_sway.core.tree.crown_allometry import crown_change as crown_change
     from tree_sway.core.tree.crown_allometry import crown_size as crown_size
     from tree_sway.core.tree.crown_allometry import CrownChange as CrownChange
-    from tree_sway.core.tree.crown_allometry import wood_volume as wood_volume
     from tree_sway.core.tree.grown_tree import GrownTree as GrownTree
     from tree_sway.core.tree.grown_tree import rooted as rooted
     from tree_sway.core.tree.grown_tree import tree_and_species as tree_and_species

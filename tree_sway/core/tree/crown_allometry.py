@@ -98,16 +98,6 @@ def crown_size(species: str, diameter: float, height: float) -> CrownSize | None
     return CrownSize(width_0 + width_1 * diameter, depth)
 
 
-def wood_volume(diameter: float, height: float) -> float:
-    """
-    Volume of all wood of a tree by diameter at breast height and height in [m], in [m^3].
-
-    Dry mass 0.0673 (rho D^2 H)^0.976 [kg, g/cm^3, cm, m] of a basic density rho of 0.55 (Chave et
-    al. 2014, Global Change Biology 20, 3177-3190, equation 4).
-    """
-    return 0.0673 * (0.55 * (100.0 * diameter) ** 2 * height) ** 0.976 / 550.0
-
-
 class CrownChange(NamedTuple):
     """How a crown differs from that of a tree of the usual diameter for its height."""
 

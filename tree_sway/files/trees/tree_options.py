@@ -18,7 +18,7 @@ from tree_sway.core.species import Species, species_named
 from tree_sway.core.tree import refuse_implausible, Tree
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs, of_usual_wood
+from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.growth import grown_beyond, is_cut
 
@@ -58,8 +58,8 @@ class TreeOptions:
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
         Diameter in [m] of the last twigs, which are too thick in a scan (`corrected_twigs`); that
-        of the species if None, or where the scan ends at a thickness (`is_cut`) the wood of trees
-        of its size (`of_usual_wood`); 0 leaves all branches as they are.
+        of the species if None, unless the scan ends at a thickness (`is_cut`), and 0 to leave all
+        twigs as they are.
     trusted_diameter
         Diameter above which a scan is trusted in [m].
     beyond_scan
@@ -126,17 +126,13 @@ class TreeOptions:
         species = wood(given)
         faults = list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
-        thinned = f'twigs are made {1e3 * twig:g} mm thick'
-        if self.twig_diameter is None and is_cut(tree):
-            thinned = 'branches are made thinner, to the wood of trees of its diameter and height'
-            tree = of_usual_wood(tree) if species.habit == 'broadleaf' else tree
-        elif twig > 0.0:
+        if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
         left = float(tree.volume.sum() / content.tree.volume.sum())
         if left < 1.0:
             notes.append(
-                f'{thinned}: {100.0 * (1.0 - left):.0f} % of the wood taken off (twig_diameter=0 '
-                'leaves it)'
+                f'twigs are made {1e3 * twig:g} mm thick: {100.0 * (1.0 - left):.0f} % of the '
+                'wood taken off (twig_diameter=0 leaves it)'
             )
         if self.beyond_scan == 'grow':
             tree, beyond = grown_beyond(

@@ -280,7 +280,7 @@ def _tree_lines(facts: dict[str, Any]) -> list[str]:
         f'  wood       {facts["wood"]}: {facts["modulus"] / 1e9:.3g} GPa, '
         f'{facts["density"]:.4g} kg/m^3',
         f'  mass       {facts["mass"]:.4g} kg, {"in leaf" if facts["in_leaf"] else "leafless"}',
-        f'  root plate {"does not turn" if roots is None else f"turns by {roots:.3g} N m/rad"}',
+        f'  roots      {"do not turn" if roots is None else f"turn by {roots:.3g} N m/rad"}',
     ]
 
 

@@ -9,35 +9,32 @@ The scans are no part of this package: ``QSMs`` of TobyDJackson/WindAndTrees_FEM
 
 from __future__ import annotations
 
+from dataclasses import replace
 import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.settings import Settings
-from tree_sway.core.setup import TreeReductions
+from tree_sway.core.setup import standing_tree, TreeReductions
 from tree_sway.core.tree import breast_height_diameter
-from tree_sway.errors import TreeError
-from tree_sway.files.trees import open_tree
+from tree_sway.files.trees import open_tree, TreeFile
+from tree_sway.simulation import simulate
+from tree_sway_lab.validation.drawn_scans import by_one_length, by_one_ratio, TWIG
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.published import FOREST_BROADLEAVES
 
 NEAR = 0.05
 """Largest difference of the logarithms of diameter and height of a scan and a measured tree."""
-WAYS = {'as scanned': 0.0, 'by the second rule': None, 'twigs corrected': 0.0029}
-"""Diameters of twigs with which a scan is opened."""
-_RULE = 'by the second rule'
-_TEXT = (Path(__file__).with_suffix('.md')).read_text(encoding='utf-8')
-
-
-class Scored(NamedTuple):
-    """A scan: its stem diameter and height in [m], and its first frequency by `WAYS` in [Hz]."""
-
-    diameter: float
-    height: float
-    frequencies: list[float]
+RULES = {'first rule': by_one_length, 'second rule': by_one_ratio}
+WAYS = ('as scanned', *RULES, 'twigs corrected')
+"""How a scan is opened; the first is what the program does."""
+_RATE = 20
+_BLOWN, _LEFT = 20, 80
+"""Frames per second, and seconds with a steady wind and after it."""
+_TEXT = Path(__file__).with_suffix('.md').read_text(encoding='utf-8')
 
 
 def measure(effort: Effort) -> Section:
@@ -46,38 +43,32 @@ def measure(effort: Effort) -> Section:
     files = sorted(folder.glob('*.mat')) if folder and folder.is_dir() else []
     sizes = np.array(effort.each(size, files)).reshape(-1, 2)
     pairs = nearest_pairs(sizes)
-    found = effort.each(frequencies, [files[scan] for scan, _ in pairs])
-    rows = list[list[str]]()
-    ratios = np.zeros((len(pairs), len(WAYS)))
-    for number, ((scan, row), each) in enumerate(zip(pairs, found, strict=True)):
-        tree = FOREST_BROADLEAVES[row]
-        ratios[number] = np.array(each) / tree['frequency']
-        rows.append([
-            files[scan].stem.removeprefix('cyl_data_').partition('_')[0], tree['species'],
-            f'{sizes[scan, 0]:.3f}', f'{sizes[scan, 1]:.2f}', f'{tree["frequency"]:.3f}',
-            *(f'{ratio:.2f}' for ratio in ratios[number]),
-        ])  # fmt: skip
-    head = ['scan', 'species', 'diameter [m]', 'height [m]', 'measured [Hz]',
-            *(f'{way}, over measured' for way in WAYS)]  # fmt: skip
+    trees = [FOREST_BROADLEAVES[row] for _, row in pairs]
+    found = np.array(effort.each(frequencies, [files[scan] for scan, _ in pairs]))
     checks = list[Check]()
-    if rows:
-        ruled = ratios[:, list(WAYS).index(_RULE)]
-        within = float(np.mean((ruled > 0.5) & (ruled < 2.0)))
-        checks = [
-            Check('by the second rule, over measured, median', float(np.median(ruled)), 0.85, 1.2),
-            Check('by the second rule, share within a factor of 2', within, 1.0),
-        ]
-        sums = {'median': np.median(ratios, axis=0), 'log-deviation': _spreads(ratios)}
-        rows += [
-            [name, *[''] * 4, *(f'{each:.2f}' for each in of_ways)]
-            for name, of_ways in sums.items()
-        ]
+    rows = list[list[str]]()
+    if pairs:
+        measured = np.array([tree['frequency'] for tree in trees])
+        ratios = found.reshape(len(pairs), -1) / measured[:, None]
+        for number, way in enumerate(WAYS[: 1 + len(RULES)]):
+            of_way = ratios[:, number]
+            within = float(np.mean((of_way > 0.5) & (of_way < 2.0)))
+            checks += [
+                Check(f'{way}, over measured, median', float(np.median(of_way)), 0.85, 1.2),
+                Check(f'{way}, share within a factor of 2', within, 1.0),
+            ]
+        names = [files[scan].stem.removeprefix('cyl_data_').partition('_')[0] for scan, _ in pairs]
+        for name, tree, each in zip(names, trees, ratios, strict=True):
+            rows.append([name, tree['species'], f'{tree["frequency"]:.3f}', *_two(each)])
+        rows.append(['median', '', '', *_two(np.median(ratios, axis=0))])
+        rows.append(['log-deviation', '', '', *_two(np.std(np.log(ratios), axis=0))])
+    head = ['scan', 'species', 'measured [Hz]', *WAYS, *(f'{way}, gauge' for way in WAYS)]
     title = 'First frequencies of scans that were cut'
     return Section(title, _TEXT, checks, markdown_table(head, rows))
 
 
-def _spreads(ratios: Floats) -> Floats:
-    return np.asarray(np.std(np.log(ratios), axis=0))
+def _two(values: Floats) -> list[str]:
+    return [f'{each:.2f}' for each in values]
 
 
 def size(file: Path) -> tuple[float, float]:
@@ -98,13 +89,33 @@ def nearest_pairs(sizes: Floats) -> list[tuple[int, int]]:
 
 
 def frequencies(file: Path) -> list[float]:
-    """Return the first frequency of a scan, bare, by each of `WAYS` in [Hz]."""
-    found = list[float]()
-    for twig in WAYS.values():
-        opened = open_tree(file, in_leaf=False, twig_diameter=twig)
-        reductions = TreeReductions(opened.tree, opened.species, Settings(in_leaf=False))
-        try:
-            found.append(float(reductions.natural_frequencies(1)[0]))
-        except TreeError:
-            found.append(math.nan)
-    return found
+    """Return the slowest modes of a scan, bare, by `WAYS`, then what a gauge on it feels [Hz]."""
+    trees = [opened(file, way) for way in WAYS]
+    return [*map(slowest, trees), *map(felt, trees)]
+
+
+def opened(file: Path, way: str) -> TreeFile:
+    """Open a scan, bare, in one of `WAYS`."""
+    found = open_tree(file, in_leaf=False, twig_diameter=TWIG if way == WAYS[-1] else 0.0)
+    if way not in RULES:
+        return found
+    whole = open_tree(file, twig_diameter=0.0, thicken=False).tree
+    tree, _ = standing_tree(RULES[way](whole), found.species, in_leaf=False)
+    return replace(found, tree=tree)
+
+
+def slowest(found: TreeFile) -> float:
+    """Return the frequency of the slowest mode in [Hz]."""
+    reductions = TreeReductions(found.tree, found.species, Settings(in_leaf=False))
+    return float(reductions.natural_frequencies(1)[0])
+
+
+def felt(found: TreeFile) -> float:
+    """Return the peak of the moment at the base after a steady wind has ended in [Hz]."""
+    wind = np.zeros((_RATE * (_BLOWN + _LEFT), 3))
+    wind[: _RATE * _BLOWN, 0] = 8.0
+    record: Any = simulate(found, wind, rate=_RATE, in_leaf=False)
+    moment = record.base_moment[_RATE * _BLOWN :, 1]
+    spectrum = np.abs(np.fft.rfft((moment - moment.mean()) * np.hanning(len(moment)), 2**15))
+    frequency = np.fft.rfftfreq(2**15, 1.0 / _RATE)
+    return float(frequency[np.argmax(np.where(frequency < 0.04, 0.0, spectrum))])

@@ -54,8 +54,8 @@ _TEXT = (
     'so that these limits say how far the methods are apart. By the method for single trees a '
     'moment of d^2 h U^2 meets roots of d^2 h, so that one wind fells all trees but for taper and '
     'species: a spread within that of one wind is hardly met by any other. Our pines break at 1.6 '
-    'times its wind and other conifers at 0.9 to 1.0 times, since its load knows no species and '
-    'ours has the thin crowns of pines; without pines the spread is some 0.09.'
+    'times its wind and other conifers at 0.9 to 1.0 times, in part since its load knows no '
+    'species and ours has the thin crowns of pines; without pines the spread is some 0.09.'
 )
 
 
