@@ -156,12 +156,14 @@ def test_the_oldest_go_first(kept, files, monkeypatch, bound):
 def test_what_is_used_stays(kept, files):
     kept.most = 2
 
-    def write(digest):
-        for path in files():  # everything there is a second older than what comes
+    def age():
+        """Make all a second older, as files of one tick of the clock are of one time."""
+        for path in files():
             os.utime(path, ns=(0, path.stat().st_mtime_ns - 10**9))
-        kept.write(digest, {'number': np.zeros(1)})
 
-    write('daily')
+    kept.write('daily', {'number': np.zeros(1)})
     for other in ('one', 'two', 'three'):
-        write(other)
+        age()
+        kept.write(other, {'number': np.zeros(1)})
+        age()
         assert kept.read('daily') is not None

@@ -523,7 +523,7 @@ class ObservedTree(SwaySimulator):
         Parameters
         ----------
         per_rotation
-            Load per unit of the first key rotations, (k, ...), such as `moment_per_rotation`.
+            Load per unit of the first key rotations, (k, ...), such as that of the base moment.
 
         Returns
         -------
