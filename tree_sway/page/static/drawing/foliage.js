@@ -19,8 +19,8 @@ const LEAST_CARD = 0.08;
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 1.2;
-/** How much lighter or darker a card is than others. */
-const UNEVEN = 0.12;
+/** How much lighter or darker a cluster is than others, and a card than others of it. */
+const UNEVEN = 0.16;
 /** Number of different small cards. */
 const VARIETY = 200;
 /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
@@ -93,7 +93,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - shoot.at[c])));
-      const tint = 1 + UNEVEN * Math.sin(7 * shoot.phase + 2 * card);
+      const tint = 1 + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -220,8 +220,8 @@ function cardsOf(look, mean, clusters, cards, most) {
     const along = leavesAlong(look, larger * length * mean);
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
   }
-  // As much area as the full ones have.
-  const small = length * Math.max(LEAST_CARD, Math.sqrt(rolls.length / each));
+  // About two thirds of the area of the full ones, which hide each other more.
+  const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
   if (look.has_needles || small * mean > 1.6 * leaf) {
     const along = leavesAlong(look, small * mean);
     return { each, along, spray: { rolls, width: pictureWidth(look, along, true), length: small }, isSpread: true };

@@ -27,7 +27,7 @@ const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
 /** Largest number of segments and of cards of leaves per tree, and of both in all trees; height on the screen from
  * which on a tree has all of its cards, and below which it is a picture [px]. */
-const MOST = { segments: 40000, cards: 64000, all: 200000, near: 700, far: 90 };
+const MOST = { segments: 40000, cards: 96000, all: 200000, near: 450, far: 90 };
 /** Cost of a card over that of a segment, which the processor places for each frame. */
 const CARD = 0.35;
 /** The same for a crowd, whose many kinds take memory. */

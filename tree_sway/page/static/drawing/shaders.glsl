@@ -106,8 +106,9 @@ void main() {
     thickness += 2.0;
   } else {
     vec3 across = turned(q, vec3(0.0, ring.yz));
-    // The shadow is wider at the foot of a stem, where the sky is hidden too.
-    p += root.w * (1.0 + 1.6 * step(0.5, shadowArea.w) * max(0.0, 1.0 - 40.0 * (p.z - ground) * shadowTop)) * across;
+    // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
+    float foot = max(0.0, 1.0 - 40.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
+    p += root.w * (1.0 + (0.3 + 1.3 * step(0.5, shadowArea.w)) * foot) * across;
     normal = across;
   }
   at = skin.xy;
@@ -152,8 +153,9 @@ void main() {
   }
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
-  float open = (0.5 + 0.5 * tone.y) * (0.5 + 0.5 * smoothstep(0.0, 0.05, high));
-  vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x);
+  // Within the crown, and at the foot among grass, bark is dark.
+  float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.3 + 0.7 * smoothstep(0.0, 0.05, high));
+  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
   base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
@@ -200,14 +202,16 @@ void main() {
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
+  // Leaves deep in the crown are darker than those at its surface.
+  float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.5 + 0.5 * open);
-  vec3 up = sky * (0.2 + 0.8 * open) * (0.8 + 0.2 * n.z * side);
+  float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.25 + 0.75 * near);
+  vec3 up = sky * (0.12 + 0.83 * near) * (0.8 + 0.2 * n.z * side);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.15, 1.25, 0.5) * (0.75 * max(-across, 0.0));
+  vec3 through = vec3(1.2, 1.25, 0.4) * (0.9 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
   // Greens vary. In autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(1.0, 0.99, 1.06) + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y);
+  vec3 hue = vec3(1.0, 0.99, 1.06) + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
