@@ -108,7 +108,7 @@ void main() {
     vec3 across = turned(q, vec3(0.0, ring.yz));
     // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
     float foot = max(0.0, 1.0 - 40.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
-    p += root.w * (1.0 + (0.3 + 1.3 * step(0.5, shadowArea.w)) * foot) * across;
+    p += root.w * (1.0 + (0.25 + 1.35 * step(0.5, shadowArea.w)) * foot) * across;
     normal = across;
   }
   at = skin.xy;
@@ -154,7 +154,7 @@ void main() {
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
-  float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.3 + 0.7 * smoothstep(0.0, 0.05, high));
+  float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
   vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
   base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
