@@ -121,7 +121,7 @@ class LagRange(NamedTuple):
     and how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what
     is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
     last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the phases
-    of gusts over those of the model (`sensor_lag`), and ``others`` are further sensors of the tree.
+    of gusts over those of the model (`sensor_lag`), ``others`` are further sensors of the tree.
     """
 
     earliest: int
