@@ -143,10 +143,27 @@ def test_a_late_sensor_stays_late_until_that_is_unlikely() -> None:
     model, sensed = noise(200.0, np.random.default_rng(3))
     track = seeing(sensed[:-25], model[25:])
     assert said(track, is_told=True) == ()
-    track._is_doubted = True
+    track._left_for = -1.25
     assert said(track, is_told=True)
     assert not track.in_use
     assert said(seeing(sensed, model), is_told=True) == ()
+
+
+def test_a_sensor_that_was_left_returns_by_evidence_for_its_own_times_alone() -> None:
+    """Evidence of a lag that falls, as in gusts that tell little, is none for its own times."""
+
+    def found(late: float, seed: int, seconds: float) -> tuple[bool, str]:
+        model, sensed = noise(seconds, np.random.default_rng(seed))
+        track = seeing(np.roll(sensed, round(late / DT), axis=0), model)
+        track._left_for = -1.0
+        (told,) = said(track, is_told=True)
+        return track.in_use, told
+
+    early = [found(-1.0, seed, 150.0) for seed in range(40)]
+    assert sum(is_back for is_back, _ in early) <= 2
+    right = [found(0.0, seed, 500.0) for seed in range(20)]
+    assert sum(is_back for is_back, _ in right) > 10
+    assert all(('followed again' in told) == is_back for is_back, told in early + right)
 
 
 def said_beside(late: float, others: dict[str, float], own: float = 0.0) -> str:

@@ -53,6 +53,9 @@ Least logarithm of the likelihood of a lag over that of none, and what is added 
 number of lines: of right sensors 1 in 100 has more within three minutes, 5 within ten.
 """
 
+_DOUBTED = 0.5
+"""Logarithm of the likelihood of a lag over that of none above which a sensor stays left."""
+
 _PER_SECOND = 4.0
 """Samples in which motion is averaged before it is compared, per second."""
 
@@ -78,6 +81,8 @@ class SensorLag(NamedTuple):
         Logarithm of its likelihood over that of a motion that has nothing of the model's.
     over_none
         The same over that of any lag that is none.
+    for_own
+        Logarithm of the likelihood of no lag over that of the lag for which it was left.
     motion
         Time in [s] that was compared.
     turn
@@ -97,6 +102,7 @@ class SensorLag(NamedTuple):
     turn: float = 0.0
     n_lines: int = 0
     told: float = 0.0
+    for_own: float = 0.0
 
     @property
     def turn_error(self) -> float:
@@ -120,6 +126,22 @@ class SensorLag(NamedTuple):
         least = _SURE + _OF_FEW / max(self.n_lines, 1)
         return self.over_none > least and is_beyond_chance
 
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the lag is likelier than none by enough for a sensor to stay left."""
+        return self.over_none > _DOUBTED
+
+    @property
+    def is_cleared(self) -> bool:
+        """Whether its own times are so much likelier that a sensor that was left may return."""
+        return not self.is_doubtful and self.for_own > _SURE
+
+    def said_of(self, other: str) -> str:
+        """Say why a sensor is left for its times, beside another motion."""
+        if self.is_doubtful:
+            return f'{self} that of {other}: check its clock'
+        return f'its times were off, and those of {other} do not clear it yet: check its clock'
+
     def __str__(self) -> str:
         side = 'after' if self.seconds > 0.0 else 'before'
         return f'its motion comes {abs(self.seconds):.1f} s (+- {self.error:.1f}) {side}'
@@ -134,6 +156,7 @@ def sensor_lag(
     longest: float = 4.0,
     about: float = 0.0,
     none: float = 0.0,
+    left_for: float | None = None,
     later: Callable[[Floats], Complexes] | None = None,
 ) -> SensorLag:
     """
@@ -141,8 +164,9 @@ def sensor_lag(
 
     Motions are to east and north at equal steps of dt [s], (n, 2). One that is too short tells
     nothing. Lags are looked for up to the longest [s] from the one ``about`` which a right sensor
-    is [s]; those up to ``none`` [s] beyond those of the wind are none. ``later`` gives the phases
-    of gusts at frequencies [Hz] over those that the model has of them.
+    is [s]; those up to ``none`` [s] beyond those of the wind are none. ``left_for`` is the lag for
+    which it was left [s], None if it was not. ``later`` gives the phases of gusts at frequencies
+    [Hz] over those that the model has of them.
     """
     block = max(round(1.0 / (_PER_SECOND * dt)), 1)
     count = len(sensed) // block
@@ -169,15 +193,20 @@ def sensor_lag(
     likelihood, gain, noise = _over_noise(y, told * back, share)
     at = int(np.argmax(likelihood))
     near = lags[likelihood > likelihood[at] - 0.5]
+    own = likelihood[np.abs(lags) <= _NONE + none].max()
+    for_own = np.inf
+    if left_for is not None and abs(left_for) > _NONE + none:
+        for_own = own - likelihood[np.argmin(np.abs(lags - left_for))]
     return SensorLag(
         float(lags[at]),
         float(0.5 * (near[-1] - near[0]) + _STEP),
         float(likelihood[at]),
-        float(likelihood[at] - likelihood[np.abs(lags) <= _NONE + none].max()),
+        float(likelihood[at] - own),
         period,
         float(np.angle(gain[at])),
         len(bins),
         float((np.square(np.abs(gain[at] * told)) / noise[at]).sum()),
+        float(for_own),
     )
 
 

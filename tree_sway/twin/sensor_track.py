@@ -54,9 +54,6 @@ By how much nearer to the model a sensor is than another one [s], from which on 
 the wind at the anemometer errs is common to both.
 """
 
-_DOUBTED = 0.5
-"""Logarithm of the likelihood of a lag over that of none above which a late sensor stays late."""
-
 _MIRRORED = 10.0
 """
 Logarithm of the likelihoods from which a lean is believed to be mirrored, as by an acceleration of
@@ -67,6 +64,8 @@ _ALIEN = (
     'its lean in gusts has nothing of that of the tree in this wind: check that it is of this '
     'tree and time, or bring the anemometer nearer'
 )
+
+_AGAIN = 'it was left, and is followed again: its lean in gusts is that of its own times'
 
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
@@ -120,9 +119,9 @@ class LagRange(NamedTuple):
 
     ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown,
     and how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what
-    is late then is the sensor. ``is_doubted`` is whether it was late when it was looked at last,
-    ``later`` gives the phases of gusts over those of the model (`sensor_lag`), and ``others`` are
-    further sensors of the tree.
+    is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
+    last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the phases
+    of gusts over those of the model (`sensor_lag`), ``others`` are further sensors of the tree.
     """
 
     earliest: int
@@ -131,7 +130,7 @@ class LagRange(NamedTuple):
     about: float = 0.0
     none: float = 0.0
     is_told: bool = False
-    is_doubted: bool = False
+    left_for: float | None = None
     later: Callable[[Floats], Complexes] | None = None
     others: tuple[OtherSensor, ...] = ()
 
@@ -152,15 +151,15 @@ class FoundMounting(NamedTuple):
     """
     How a sensor is mounted, and its mean difference from the model then, (9,).
 
-    ``lag`` is by how many steps the tree moves later than the model, ``is_wrong`` whether the
-    sensor is that of another time or wind, so that it is not to be followed. ``late`` is its
-    likeliest lag [s].
+    ``lag`` is by how many steps the tree moves later than the model, ``left_for`` the lag
+    [s] for which the sensor is not to be followed, 0 if it is that of another wind, and None if it
+    is right. ``late`` is its likeliest lag [s].
     """
 
     alignment: Alignment
     bias: Floats
     lag: int = 0
-    is_wrong: bool = False
+    left_for: float | None = None
     late: float = 0.0
 
 
@@ -201,29 +200,48 @@ def _mountings(
     if not found.problem:
         model = upright if found.has_gravity else free
         bias = (found.motion(sensed) - model).mean(axis=0)
-    is_wrong, said = False, ''
-    apart = '' if found.problem else _apart(found.motion(whole), windows, lags, left.seconds)
-    if apart:
-        is_wrong, said = True, apart
+    left_for: float | None = None
+    said = ''
+    apart = None if found.problem else _apart(found.motion(whole), windows, lags, left.seconds)
+    if apart is not None:
+        left_for, said = apart
     elif left.is_by_chance:
-        is_wrong, said = sensor.place.facing is None, _ALIEN
-    elif left.is_sure or (lags.is_doubted and left.over_none > _DOUBTED):
-        is_wrong, said = lags.is_told, f'{left} that of the tree in this wind: check its clock'
-    if is_wrong:
+        left_for, said = 0.0 if sensor.place.facing is None else None, _ALIEN
+    elif _is_off(left, lags):
+        left_for = _lag_left_for(left, lags) if lags.is_told else None
+        said = left.said_of('the tree in this wind')
+    elif lags.left_for is not None and not found.problem:
+        said = _AGAIN
+    if left_for is not None:
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    yield FoundMounting(found, bias, lag, is_wrong, left.seconds)
+    yield FoundMounting(found, bias, lag, left_for, left.seconds)
 
 
-def _apart(moved: Floats, windows: Windows, lags: LagRange, late: float) -> str:
+def _is_off(found: SensorLag, lags: LagRange) -> bool:
+    """Whether the times of a sensor are off, or were and are not known to be right."""
+    return found.is_sure or (lags.left_for is not None and not found.is_cleared)
+
+
+def _lag_left_for(found: SensorLag, lags: LagRange) -> float:
+    """Return the lag that a sensor must be unlikely to have before it returns [s]."""
+    return found.seconds if found.is_doubtful or lags.left_for is None else lags.left_for
+
+
+def _apart(
+    moved: Floats, windows: Windows, lags: LagRange, late: float
+) -> tuple[float, str] | None:
     """
-    Tell from which other sensors the motion of one, (n, 9), is apart in time; empty from few.
+    Tell from which other sensors the motion of one, (n, 9), is apart in time; None from few.
+
+    Returns the lag for which it is left [s], and what is said.
 
     Limbs lean together in slow gusts. Of several sensors that one is blamed which differs from
     most others; of two both are, unless one is nearer to the model.
     """
-    said, rows = [], _first_rows(moved)
+    said: list[tuple[float, str]] = []
+    rows = _first_rows(moved)
     for other in lags.others:
         motion = other.alignment.motion(other.sensed)
         if not len(motion) or _first_rows(motion) != rows:
@@ -236,13 +254,14 @@ def _apart(moved: Floats, windows: Windows, lags: LagRange, late: float) -> str:
             longest=_LONGEST,
             about=lags.about - other.about,
             none=abs(lags.about - other.about),
+            left_for=lags.left_for,
         )
-        if found.is_sure or (lags.is_doubted and found.over_none > _DOUBTED):
-            said.append(f'{found} that of {other.name}: check its clock')
+        if _is_off(found, lags):
+            said.append((_lag_left_for(found, lags), found.said_of(other.name)))
     if 2 * len(said) <= len(lags.others):
-        return ''
+        return None
     is_nearer = len(lags.others) == 1 and abs(late) + _NEARER < abs(lags.others[0].late)
-    return '' if is_nearer else said[0]
+    return None if is_nearer else said[0]
 
 
 def _first_rows(moved: Floats) -> slice:
@@ -264,6 +283,7 @@ def _slow_lag(moved: Floats, model: Floats, windows: Windows, lags: LagRange) ->
         longest=longest,
         about=lags.about,
         none=lags.none,
+        left_for=lags.left_for,
         later=lags.later,
     )
 
@@ -344,7 +364,7 @@ class SensorTrack:
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(LEARNING / dt)
         self._quantities = sensor.quantities
-        self._is_doubted = False
+        self._left_for: float | None = None
         self.late = 0.0
         """Its likeliest lag behind the model when its mounting was found last [s]."""
         self._behind, self._whole_from = 0, 0
@@ -461,7 +481,7 @@ class SensorTrack:
         """Find its mounting from the motion so far, as a work of one part."""
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
-        lags = lags._replace(is_doubted=self._is_doubted)
+        lags = lags._replace(left_for=self._left_for)
         return _mountings(sensed, computed.T.copy(), self.sensor, self._windows, lags)
 
     @property
@@ -484,7 +504,7 @@ class SensorTrack:
     @property
     def is_comparable(self) -> bool:
         """Whether its motion is known, in use or left for its times."""
-        return bool(self.native.is_mounted) or self._is_doubted
+        return bool(self.native.is_mounted) or self._left_for is not None
 
     @property
     def whole(self) -> int:
@@ -512,8 +532,9 @@ class SensorTrack:
     def take(self, mounting: FoundMounting) -> None:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
-        self._is_doubted, self.late = mounting.is_wrong, mounting.late
-        is_kept = native.is_mounted and not native.is_refused and not mounting.is_wrong
+        self._left_for, self.late = mounting.left_for, mounting.late
+        is_left = mounting.left_for is not None
+        is_kept = native.is_mounted and not native.is_refused and not is_left
         if found.problem and is_kept:
             return
         self.alignment = found
