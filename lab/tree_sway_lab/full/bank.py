@@ -38,7 +38,7 @@ from tree_sway_lab.full.load_layouts import Loads, WORK, Works
 from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.kernel import entry_of, fused, part
 
-MOST_TRIALS = 20
+MOST_TRIALS = 40
 """Largest number of iterations for the load of a step."""
 
 ENOUGH, WITHIN = 0.02, 1.0 / 60.0
@@ -266,7 +266,7 @@ def _advance(
     n = len(moment)
     change, found, impulse = trials[2], trials[3, :n], trials[3, n:]
     _read_impulses(loads, impulse)
-    trial = 0
+    best, least, trial = trials[-1], math.inf, 0
     while True:
         _to_middle(motion, keys, law)
         wind_moments(
@@ -275,15 +275,23 @@ def _advance(
         )  # fmt: skip
         most = _find_residual(loads, moment, limit, trials)
         trial += 1
+        if most < least:
+            least = most
+            _copy(moment, best[:n])
+            _copy(impulse, best[n:])
         enough = law.enough[0] if trial == 1 else SOLVED * law.enough[0]
         if most <= enough or trial == MOST_TRIALS:
             break
-        _try_next(trials, trial, n)
-        for i in range(n):
-            moment[i] += change[i] * limit[i] / LOAD_MAX
-            moment[i] = min(max(moment[i], -limit[i]), limit[i])
-        for i in range(len(impulse)):
-            impulse[i] += change[n + i]
+        if trial == MOST_TRIALS - 1:
+            _copy(best[:n], moment)
+            _copy(best[n:], impulse)
+        else:
+            _try_next(trials, trial, n)
+            for i in range(n):
+                moment[i] += change[i] * limit[i] / LOAD_MAX
+                moment[i] = min(max(moment[i], -limit[i]), limit[i])
+            for i in range(len(impulse)):
+                impulse[i] += change[n + i]
         _write_impulses(impulse, loads)
         _project_load(motion, keys, law)
     n_clamped = 0
@@ -302,6 +310,13 @@ def _advance(
             _clamp(motion, keys, law)
             return n_clamped + 1
     return n_clamped
+
+
+@part
+def _copy(values: Floats, into: Floats) -> None:
+    """Write values into memory of the same length."""
+    for i in range(len(values)):
+        into[i] = values[i]
 
 
 @part
