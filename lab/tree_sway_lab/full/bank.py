@@ -10,9 +10,9 @@ motion of each, at the state in the middle of the step, and is constant over the
 wind within a fraction of a step. The drag of a bent tree may stop a coordinate within a hundredth
 of a step: its inertia is that at rest, where a stem that twists moves no crown. So the load is
 iterated until it is that of the resulting state; in light wind, where the last step's load is
-close enough, once. The moments and the drag impulses of the branches, by which the load of each is
-implicit in its own motion, are mixed alike, for the load depends on both. Rotations beyond the
-limit of a step are clamped and counted.
+close enough, once. The best of `MOST_TRIALS` is taken where none is close. Moments and drag
+impulses of the branches, by which the load of each is implicit in its own motion, are mixed alike,
+for the load depends on both. Rotations beyond the limit of a step are clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -38,7 +38,7 @@ from tree_sway_lab.full.load_layouts import Loads, WORK, Works
 from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.kernel import entry_of, fused, part
 
-MOST_TRIALS = 20
+MOST_TRIALS = 60
 """Largest number of iterations for the load of a step."""
 
 ENOUGH, WITHIN = 0.02, 1.0 / 60.0
@@ -50,6 +50,12 @@ one without iteration, and the length [s] of the shortest such step; less in sho
 SOLVED = 0.05
 """Tolerance of an iterated load, over the change with which no step is iterated."""
 
+DEPENDENT = 1e-3
+"""
+Share of a trial's response that newer ones must leave unexplained, or it is forgotten.
+
+First trials of a step may miss by 100 rad: what they tell of the load is wrong near the solution.
+"""
 
 TURNS = 10
 """Iterations for the accelerations of the bent tree: each leaves `MOST_CHANGE` of the error."""
@@ -138,7 +144,7 @@ class FullBank(ModalCoordinates):
         self.state = np.zeros((3, n))
         self._keys = Keys(*self.state)
         self._fastest, self._enough = np.zeros((2, 1))
-        self._tried = np.zeros((2 + 2 * MOST_TRIALS, n + self.loads['drag_impulse'].size))
+        self._tried = np.zeros((2 + 4 * MOST_TRIALS, n + self.loads['drag_impulse'].size))
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
@@ -266,7 +272,7 @@ def _advance(
     n = len(moment)
     change, found, impulse = trials[2], trials[3, :n], trials[3, n:]
     _read_impulses(loads, impulse)
-    trial = 0
+    best, least, trial = trials[-1], math.inf, 0
     while True:
         _to_middle(motion, keys, law)
         wind_moments(
@@ -275,15 +281,23 @@ def _advance(
         )  # fmt: skip
         most = _find_residual(loads, moment, limit, trials)
         trial += 1
+        if most < least:
+            least = most
+            _copy(moment, best[:n])
+            _copy(impulse, best[n:])
         enough = law.enough[0] if trial == 1 else SOLVED * law.enough[0]
         if most <= enough or trial == MOST_TRIALS:
             break
-        _try_next(trials, trial, n)
-        for i in range(n):
-            moment[i] += change[i] * limit[i] / LOAD_MAX
-            moment[i] = min(max(moment[i], -limit[i]), limit[i])
-        for i in range(len(impulse)):
-            impulse[i] += change[n + i]
+        if trial == MOST_TRIALS - 1:
+            _copy(best[:n], moment)
+            _copy(best[n:], impulse)
+        else:
+            _try_next(trials, trial, n)
+            for i in range(n):
+                moment[i] += change[i] * limit[i] / LOAD_MAX
+                moment[i] = min(max(moment[i], -limit[i]), limit[i])
+            for i in range(len(impulse)):
+                impulse[i] += change[n + i]
         _write_impulses(impulse, loads)
         _project_load(motion, keys, law)
     n_clamped = 0
@@ -302,6 +316,13 @@ def _advance(
             _clamp(motion, keys, law)
             return n_clamped + 1
     return n_clamped
+
+
+@part
+def _copy(values: Floats, into: Floats) -> None:
+    """Write values into memory of the same length."""
+    for i in range(len(values)):
+        into[i] = values[i]
 
 
 @part
@@ -426,27 +447,32 @@ def _try_next(trials: Floats, trial: int, n: int) -> None:
     Find the change of moments and drag impulses that should make the residual zero.
 
     Rows of ``trials`` are the residual, the one before, and the last change, which is written;
-    after the next row, pairs of a response, orthonormal in its n moments, and the change that
-    causes it (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49,
-    1715-1735).
+    after the next row, pairs of a response and the change that causes it; in the second half, the
+    same pairs, orthonormal in their n moments from the newest on, and zero where newer ones leave
+    no more than `DEPENDENT` of it; last, the best trial (Anderson's mixing; Walker & Ni 2011, SIAM
+    Journal on Numerical Analysis 49, 1715-1735).
     """
     residual, before, change = trials[0], trials[1], trials[2]
-    if trial > 1:
-        response, step = trials[2 * trial], trials[2 * trial + 1]
-        for i in range(len(residual)):
-            response[i], step[i] = residual[i] - before[i], change[i]
-        for other in range(2, trial):
-            _project_out(response, step, trials[2 * other], trials[2 * other + 1], n)
-        square = 0.0
-        for i in range(n):
-            square += response[i] * response[i]
-        scale = 1.0 / math.sqrt(max(square, 1e-300))
+    for i in range(len(residual)):
+        if trial > 1:
+            trials[2 * trial, i] = residual[i] - before[i]
+            trials[2 * trial + 1, i] = change[i]
+        before[i], change[i] = residual[i], 0.0
+    for of in range(trial, 1, -1):
+        at = 2 * MOST_TRIALS + 2 * of
+        response, step = trials[at], trials[at + 1]
+        _copy(trials[2 * of], response)
+        _copy(trials[2 * of + 1], step)
+        square = _square(response[:n])
+        for newer in range(trial, of, -1):
+            other = 2 * MOST_TRIALS + 2 * newer
+            _project_out(response, step, trials[other], trials[other + 1], n)
+        left, scale = _square(response[:n]), 0.0
+        if left > DEPENDENT * DEPENDENT * square:
+            scale = 1.0 / math.sqrt(left)
         for i in range(len(residual)):
             response[i], step[i] = scale * response[i], scale * step[i]
-    for i in range(len(residual)):
-        before[i], change[i] = residual[i], 0.0
-    for other in range(2, trial + 1):
-        _project_out(residual, change, trials[2 * other], trials[2 * other + 1], n)
+        _project_out(residual, change, response, step, n)
     most = 0.0
     for i in range(len(residual)):
         change[i] += residual[i]
@@ -454,6 +480,15 @@ def _try_next(trials: Floats, trial: int, n: int) -> None:
         most = max(most, abs(change[i]))
     for i in range(len(residual)):
         change[i] *= min(1.0, MOST_TURN / most)
+
+
+@part
+def _square(values: Floats) -> float:
+    """Sum the squares of values."""
+    total = 0.0
+    for i in range(len(values)):
+        total += values[i] * values[i]
+    return total
 
 
 @part

@@ -33,10 +33,10 @@ def simulator(tree, model):
     )  # fmt: skip
 
 
-def sway(sim, speed, seconds=12.0, n_substeps=1):
-    """Tips over time from rest on, (t, b, 3)."""
+def sway(sim, speed, seconds=12.0, n_substeps=1, factor=1.0):
+    """Tips over time from rest on, (t, b, 3), in a wind times a factor."""
     rng = np.random.default_rng(3)
-    wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=rng)
+    wind = factor * simulate_turbulence(speed, rate=60.0, duration=seconds, rng=rng)
     sim.reset()
     rest, tips = tips_of_poses(sim.tree, sim.place()), []
     for each in wind:
@@ -66,3 +66,17 @@ def test_all_coordinates_sway_alike_at_shorter_steps(sapling, speed, n_substeps,
     finer = sway(full, speed, seconds=6.0, n_substeps=n_substeps)
     assert full.counts.clamped == 0
     assert np.linalg.norm(finer - shown) < 0.03 * np.linalg.norm(finer)
+
+
+@pytest.mark.parametrize(('speed', 'n_substeps'), [(25.0, 12), (30.0, 12)])
+def test_rounding_does_not_decide_whether_all_coordinates_stay_in_bounds(
+    sapling, speed, n_substeps
+):
+    """A few steps in a storm whose load is not solved for throw the tree."""
+    full = simulator(sapling, 'full')
+    first = sway(full, speed, seconds=6.0, n_substeps=n_substeps)
+    for nudge in (1e-13, 2e-13, 3e-13, 4e-13):
+        other = sway(full, speed, seconds=6.0, n_substeps=n_substeps, factor=1.0 + nudge)
+        assert full.counts.clamped == full.counts.restarted == 0
+        error = np.linalg.norm(other - first) / np.linalg.norm(first)
+        assert error < 1e-3, error
