@@ -103,4 +103,6 @@ def nearest(name: str, known: Iterable[str], least: float = 0.6) -> str:
     """
     from difflib import get_close_matches
 
-    return ''.join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], 1, least))
+    return ''.join(
+        f"did you mean '{each}'?" for each in get_close_matches(name, [*known], 1, least)
+    )

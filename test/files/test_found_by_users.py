@@ -76,7 +76,9 @@ def test_a_motion_that_was_simulated_is_no_tree(tmp_path: Path) -> None:
     seedling = str(HERE / 'data' / 'seedling.yaml')
     assert main(['simulate', seedling, '--seconds', '1', '-o', str(table)]) == 0
     for opened in (open_tree, open_scene):
-        with pytest.raises(FormatError, match='motion that `tree-sway simulate` wrote, not a tree'):
+        with pytest.raises(
+            FormatError, match='motion that `tree-sway simulate` wrote, not a tree'
+        ):
             opened(table)
 
 

@@ -166,7 +166,6 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
         what, cure = foreign_file(Path('cloud.las'))
         return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
     if head:
-        of_inventory = 'an inventory has columns for the place, the species, and the height or dbh'
-        cures = (of_inventory, cure) if _names_trees(head) else (cure, of_inventory)
-        cure = '; '.join(cures)
+        need = 'an inventory has columns for the place, the species, and the height or dbh'
+        cure = f'{need}; {cure}' if _names_trees(head) else f'{cure}; {need}'
     return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

@@ -129,8 +129,8 @@ def species_named(name: str) -> Species:
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
 
 
-_LIKE = 0.7
-"""Least share of common letters of a guess: a name of another tree that ends with baum has less."""
+_LIKE = 0.65
+"""Least share of common letters of a guess: that of two names which end with baum is less."""
 
 
 def species_like(name: str) -> tuple[Species, str]:
