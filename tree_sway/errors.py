@@ -95,8 +95,14 @@ def shown(text: str, most: int = 400) -> str:
     return ''.join(c if c.isprintable() else ' ' if c.isspace() else ascii(c)[1:-1] for c in text)
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a question whether the nearest of some names is meant; empty if none is near."""
+def nearest(name: str, known: Iterable[str], least: float = 0.6) -> str:
+    """
+    Return a question whether the nearest of some names is meant; empty if none is near.
+
+    ``least`` is the share of common letters from which one is.
+    """
     from difflib import get_close_matches
 
-    return ''.join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))
+    return ''.join(
+        f"did you mean '{each}'?" for each in get_close_matches(name, [*known], 1, least)
+    )

@@ -109,9 +109,9 @@ CHANGES = {
         'True',
     ),
     'instrument': (
-        'tree_sway/live/readers/makers/young.py', "LineFormat('Young'", "LineFormat('R. M. Young'",
+        'tree_sway/live/readers/instruments.csv', 'Young 81000,', 'R. M. Young 81000,',
         'from tree_sway.live.readers.instrument_lines import EXPECTS;'
-        "print('R. M. Young' in EXPECTS)",
+        "print('R. M. Young 81000' in EXPECTS)",
         'True',
     ),
     'command': (

@@ -11,12 +11,16 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.text_file import read_head
 
 _POINTS = 8
 """Lines that are looked at for whether a file is a cloud of points."""
 _POINT = re.compile(r'\s*[-+]?\d+(\.\d+)?([\s,;]+[-+]?\d+(\.\d+)?){2,8}\s*')
+
+
+_OF_TREES = ('species', 'diameter', 'girth')
 
 
 class UnknownFormatError(FormatError):
@@ -108,6 +112,9 @@ def format_of(
                 return known
         raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
     head = read_head(path) if head is None else head
+    what, cure = foreign_file(path, head) if kind == 'tree' and head else ('', '')
+    if what:
+        raise FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
     with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)
     for known in formats:
         if known.recognise(head):
@@ -141,6 +148,12 @@ def _is_cloud(head: str) -> bool:
     return len(lines) == _POINTS and all(map(_POINT.fullmatch, lines))
 
 
+def _names_trees(head: str) -> bool:
+    """Whether the first line names a column of species or of diameters."""
+    cells = re.split('[,;\t]', head.partition('\n')[0])
+    return any(rank_of(cell, each) is not None for cell in cells for each in _OF_TREES)
+
+
 def _unknown(path: Path, kind: str, names: str) -> FormatError:
     """Return the error for a file of no format: what it is, if its suffix tells, or its kind."""
     what, cure = foreign_file(path)
@@ -148,9 +161,11 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
         cures = filter(None, (cure, f'formats that are read: {names}'))
         return FormatError(f'{what}, not a {kind}', where=str(path), cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
-    if kind == 'tree' and _is_cloud(read_head(path)):
+    head = read_head(path) if kind == 'tree' else ''
+    if _is_cloud(head):
         what, cure = foreign_file(Path('cloud.las'))
         return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
-    if kind == 'tree':
-        cure += '; an inventory has columns for the place, the species, and the height or dbh'
+    if head:
+        need = 'an inventory has columns for the place, the species, and the height or dbh'
+        cure = f'{need}; {cure}' if _names_trees(head) else f'{cure}; {need}'
     return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import math
-from typing import NamedTuple
 
 from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.wind import Velocity
@@ -75,24 +74,6 @@ Reading = WindReading | Refusal
 
 Read = Callable[[Message], Sequence[Reading]]
 """What a message says; empty if it is not about the wind. Never raises."""
-
-
-class LineFormat(NamedTuple):
-    """
-    Lines of an instrument.
-
-    Parameters
-    ----------
-    name
-        Name in the error for lines that no reader understands.
-    read
-        Function of a line, the bearing of the north mark [rad] and the metres per second in the
-        unit of a speed without one; returns None for a line of another instrument.
-
-    """
-
-    name: str
-    read: Callable[[str, float, float], Reading | None]
 
 
 def of_velocity(kind: str, velocity: Velocity) -> WindReading:

@@ -11,6 +11,8 @@ from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.sonic_ascii import parse_sonic, read_sonic_wind
 from tree_sway.files.wind.wind_file import read_wind
 
+NONE = 'neither components nor a direction, a speed and a unit'
+
 
 def gill(body: str) -> str:
     return f'\x02{body}\x03{checksum_of(body)}\r\n'
@@ -56,12 +58,12 @@ def test_what_is_said(line, velocity):
         (gill('Q,270,010.00,M,00,').replace('270', '271'), 'wrong checksum'),
         (gill('Q,270,010.00,M,04,'), "status is '04', not 00"),
         (gill('Q,270,010.00,M,'), "status is '', not 00"),
-        (gill('Q,270,010.00,X,00,'), 'no unit of M, N, P, K or F'),
+        (gill('Q,270,010.00,X,00,'), f'{NONE}: Q,270,010.00,X,00,'),
         (gill('Q,,010.00,M,00,'), "direction ''"),
         (gill('Q,400,010.00,M,00,'), "direction '400'"),
-        (gill('Q,270,-10.00,M,00,'), "speed '-10.00'"),
-        (gill('A,001.59,1,M,00,'), 'neither components nor a direction: 001.59,1'),
-        (gill('A,+001.59,,M,00,'), 'neither components nor a direction: +001.59,'),
+        (gill('Q,270,-10.00,M,00,'), f'{NONE}: Q,270,-10.00,M,00,'),
+        (gill('A,001.59,1,M,00,'), f'{NONE}: A,001.59,1,M,00,'),
+        (gill('A,+001.59,,M,00,'), f'{NONE}: A,+001.59,,M,00,'),
         ('Q,270,010.00,M,00,' + ' ' * 2000, 'a line of 2018 characters'),
     ],
 )

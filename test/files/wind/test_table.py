@@ -40,7 +40,7 @@ def test_components_with_dates():
     ('text', 'message'),
     [
         ('time,u\n0,1\n', ':1: no column for the speed and none for the direction among time, u'),
-        ('u,v\n0,1\n', ':1: no column for the time and none for the speed'),
+        ('u,v\n0,1\n', ':1: no column for the time among u, v; call it time in'),
         ('time,u [furlong],v\n0,1,1\n', ":1: unknown unit 'furlong'"),
         ('time,u,v\n', 'no header and rows'),
         ('time,u,v\n0,a,1\n1,2\n', "no good row of wind, 2 refused; first line 2: u is 'a', not"),

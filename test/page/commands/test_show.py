@@ -10,6 +10,7 @@ from dataclasses import replace
 import json
 from pathlib import Path
 import re
+import socket
 import subprocess
 import sys
 import threading
@@ -110,6 +111,20 @@ def test_what_cannot_be_served_is_refused_in_words(
 ) -> None:
     assert main(['show', str(SEEDLING), '--seconds', '0', *arguments]) == 2
     assert expected in capsys.readouterr().err
+
+
+def test_a_wrong_tree_is_told_before_a_sensor_is_connected(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wrong = tmp_path / 'wrong.yaml'
+    wrong.write_text('branches: 3\n')
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        server.settimeout(0.0)
+        source = f'tcp://127.0.0.1:{server.getsockname()[1]}'
+        assert main(['show', str(wrong), '--sensor', source, '--port', '0', '--seconds', '0']) == 2
+        with pytest.raises(BlockingIOError):  # nobody has called
+            server.accept()
+    assert 'wrong.yaml' in capsys.readouterr().err
 
 
 def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> None:

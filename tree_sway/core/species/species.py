@@ -129,6 +129,10 @@ def species_named(name: str) -> Species:
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
 
 
+_LIKE = 0.65
+"""Least share of common letters of a guess: that of two names which end with baum is less."""
+
+
 def species_like(name: str) -> tuple[Species, str]:
     """
     Look a species up, an unknown one by its last word, as a silver birch as a birch.
@@ -158,7 +162,7 @@ def species_like(name: str) -> tuple[Species, str]:
         return group, f"'{name[:40]}' is taken as {group.title}"
     group = SPECIES['conifer' if _CONIFEROUS.search(plain) else 'broadleaf']
     note = f"'{name[:40]}' is not in the table: taken as {group.title}"
-    return group, '; '.join(filter(None, (note, nearest(plain, _SUGGESTED))))
+    return group, '; '.join(filter(None, (note, nearest(plain, _SUGGESTED, _LIKE))))
 
 
 def species_keys() -> tuple[str, ...]:

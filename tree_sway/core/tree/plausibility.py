@@ -52,7 +52,7 @@ def refuse_implausible(tree: Tree, species: Species) -> None:
             f'a height of {height:.4g} m and a diameter of {diameter:.4g} m at the ground',
             where=tree.name,
             cure='give metres, or the units of its file: --option length_unit=0.01 if positions '
-            'are in cm, --option diameter_unit=0.001 if diameters are in mm',
+            'are in cm, --option diameter_unit=0.01 if diameters are in cm, 0.001 if in mm',
         )
 
 

@@ -35,12 +35,10 @@ def _read(lines: list[str], source: str) -> TextTable:
 
 def _names(above: str, below: str) -> list[str]:
     """Names of the columns: by tabs, else by where the words of the second line stand."""
-    names = []
     if '\t' in below:
-        for pair in zip_longest(above.split('\t'), below.split('\t'), fillvalue=''):
-            words = ' '.join(pair).split()
-            names.append(' '.join(words))
-        return names
+        pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
+        return [' '.join(' '.join(pair).split()) for pair in pairs]
+    names = []
     for word in _WORD.finditer(below):
         name = word[0]
         for over in _WORD.finditer(above):

@@ -19,7 +19,6 @@ from pathlib import Path
 import re
 
 from tree_sway.core.wind import velocity_of_bearing
-from tree_sway.files.text_file import finite
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine, STAMP
 from tree_sway.files.wind.units import degrees_to_bearing, Velocity
@@ -33,7 +32,14 @@ _GOOD = ('00', '60')
 _CALM = 0.05
 """Speed below which a direction may be missing [m/s]."""
 _GILL = re.compile(r'\x02?([A-Z],[^\x02\x03]*)(?:\x03(.*))?', re.ASCII | re.DOTALL)
-_STATUS = re.compile(r'[0-9A-F]{2}', re.ASCII)
+_NUMBER = r'\d{1,9}(?:\.\d{0,9})?'
+_FORM = re.compile(
+    rf'[A-Z],(?:(?=(?P<signed>[-+]{_NUMBER},[-+]))|(?={_NUMBER},\d+\.|,\d+\.))'
+    rf'(?P<first>[-+]?{_NUMBER}|),(?P<second>[-+]?{_NUMBER})(?:,(?P<up>[-+]{_NUMBER}))?,'
+    r'(?P<unit>[MNPKF])(?:,(?!(?:[\dA-F]{2})(?:,|$))[^,]*)*(?:,(?P<status>[\dA-F]{2})(?:,.*)?)?',
+    re.ASCII,
+)
+"""U and V with signs, or a direction and a speed with a point; maybe W; a unit; the status."""
 
 
 def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
@@ -53,8 +59,7 @@ def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
     checksum = (gill[2] or '').strip().upper()[:2] or None
     # The examples of one manual (WindSonic) leave ETX out, those of another (WindObserver) not.
     bodies = [body, f'{body}\x03']
-    read = partial(_gill, [field.strip() for field in body.split(',')], heading)
-    return line_of(KINDS[0], len(line), checksum, bodies, read)
+    return line_of(KINDS[0], len(line), checksum, bodies, partial(_gill, body, heading))
 
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:
@@ -73,32 +78,20 @@ def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> Win
     return read_sensor_log(path, partial(parse_sonic, heading=heading), KINDS, rate, [north])[1]
 
 
-def _gill(fields: list[str], heading: float) -> Velocity | str:
-    place = next((i for i, field in enumerate(fields[2:5], start=2) if field in _UNITS), None)
-    if place is None:
-        return 'no unit of M, N, P, K or F'
-    status = next((f for f in fields[place + 1 :] if _STATUS.fullmatch(f)), '')
-    if status not in _GOOD:
-        return f"status is '{status}', not 00"
-    texts = fields[1:place]
-    unit = _UNITS[fields[place]]
-    values = [finite(text) for text in texts]
-    signed = [text[:1] in ('+', '-') for text in texts]
-    if len(values) >= 2 and None not in values and all(signed):
-        u, v, w = (unit * (value or 0.0) for value in (*values, 0.0)[:3])
+def _gill(body: str, heading: float) -> Velocity | str:
+    found = _FORM.fullmatch(re.sub(r'\s*,\s*', ',', body))
+    if found is None:
+        return f'neither components nor a direction, a speed and a unit: {body[:30]}'
+    if found['status'] not in _GOOD:
+        return f"status is '{found['status'] or ''}', not 00"
+    unit = _UNITS[found['unit']]
+    u, v, w = (unit * float(found[each] or 0.0) for each in ('first', 'second', 'up'))
+    if found['signed']:
         x, y, _ = velocity_of_bearing(u, heading, 'to')
         left_x, left_y, _ = velocity_of_bearing(v, heading - 0.5 * pi, 'to')
         return x + left_x, y + left_y, w
-    if len(values) < 2 or '.' not in texts[1] or signed[0]:
-        return f'neither components nor a direction: {",".join(texts)[:30]}'
-    speed = values[1]
-    up = values[2] if len(values) > 2 else 0.0
-    bearing = degrees_to_bearing(values[0]) if values[0] is not None else None
-    if speed is None or up is None or speed < 0.0:
-        return f"speed '{texts[1][:8]}'"
-    if bearing is None:
-        if texts[0] or speed * unit >= _CALM:
-            return f"direction '{texts[0][:8]}'"
-        bearing = 0.0
-    x, y, _ = velocity_of_bearing(unit * speed, bearing + heading)
-    return x, y, unit * up
+    bearing = degrees_to_bearing(u / unit)
+    if bearing is None or (not found['first'] and v >= _CALM):
+        return f"direction '{found['first'][:8]}'"
+    x, y, _ = velocity_of_bearing(v, bearing + heading)
+    return x, y, w

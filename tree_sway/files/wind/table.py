@@ -109,7 +109,9 @@ def wind_of_table(
             points = _points(table, found['wind_speed'])
             found |= {} if points is None else {'wind_direction': points}
         from_where = found.get('wind_direction') or direction
-        _refuse_missing(table, time is not None, 'wind_speed' in found, from_where is not None)
+        has_speed = bool(components) or 'wind_speed' in found
+        has_direction = bool(components) or from_where is not None
+        _refuse_missing(table, time is not None, has_speed, has_direction)
         assert from_where is not None
         speed, note = _speed(table, found['wind_speed'], speed_unit)
         notes += [note] if note else []

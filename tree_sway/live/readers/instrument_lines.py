@@ -4,27 +4,27 @@
 Lines of instruments of any maker, read by the first reader that recognises them.
 
 Sentences with a mark or a checksum come first, then JSON, then the makers' own lines; numbers and
-``name=value``, which many lines resemble, come last. A maker is one module of `makers`.
+``name=value``, which many lines resemble, come last. Those of a maker are rows of
+`instruments`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
-import pkgutil
+from operator import itemgetter
 import re
 
 from tree_sway.core.wind import is_wind
 from tree_sway.files.wind import KINDS, parse_nmea, parse_sonic, SensorLine, SENTENCES
-from tree_sway.live.readers import makers
 from tree_sway.live.readers.documents import read_document
+from tree_sway.live.readers.instruments import INSTRUMENTS, read_instrument
 from tree_sway.live.readers.json_options import names_of, unit_factor
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.number_columns import columns_of, read_numbers
 from tree_sway.live.readers.signalk import SignalKWind
-from tree_sway.live.reading import LineFormat, of_velocity, Reading, Refusal, WindReading
+from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
 
@@ -32,16 +32,12 @@ LINE_KINDS = ('auto', *SENTENCES, *KINDS)
 """Sentences that may be chosen where an instrument sends several."""
 _MOST_LINES = 64
 """Number of lines of a datagram that are read."""
-_MAKERS = tuple(
-    each
-    for module in pkgutil.iter_modules(makers.__path__)
-    for each in vars(import_module(f'{makers.__name__}.{module.name}')).values()
-    if isinstance(each, LineFormat)
-)
-"""Formats of the modules of `makers`, by the names of their modules."""
-EXPECTS = (
-    'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill, '
-    f'{", ".join(each.name for each in _MAKERS)}, SDI-12, JSON, name=value, or numbers as 5.3,270'
+EXPECTS = ', '.join(
+    (
+        'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill',
+        *dict.fromkeys(map(itemgetter('name'), INSTRUMENTS)),
+        'SDI-12, JSON, name=value, or numbers as 5.3,270',
+    )
 )
 _PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z/]*)')
 
@@ -115,8 +111,7 @@ class InstrumentLines:
         if line.lstrip().startswith(('{', '[')):
             yield from self._read_json(line)
             return
-        of_makers = (each.read(line, heading, self.factor) for each in _MAKERS)
-        reading = next((each for each in of_makers if each is not None), None)
+        reading = read_instrument(line, heading, self.factor)
         if reading is None:
             reading = read_numbers(line, self.columns, heading, self.factor)
         if reading is not None:

@@ -77,13 +77,14 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_unused_wind(arguments)
     added = [each(arguments) for each in additions('show')]
     with Ending(is_last=True) as ending, ExitStack() as stack:
+        scene = opened_scene(arguments)  # a wrong file is told before a source is waited for
         for each in added:
             each.open(stack)
         if arguments.sensor is None:
             wind: WindSource = opened_wind(arguments)
         else:
             wind = stack.enter_context(listening(arguments))
-        return _serve(arguments, settings, wind, added, ending)
+        return _serve(arguments, settings, wind, added, ending, scene)
     return 0  # interrupted while it started
 
 
@@ -93,8 +94,9 @@ def _serve(
     wind: WindSource,
     added: Sequence[PageAddition],
     ending: Ending,
+    scene: Scene,
 ) -> int:
-    """Serve the page of a wind, with what is added to it."""
+    """Serve the page of a wind with the scene of the command, and with what is added to it."""
     choices = Choices(
         Path(arguments.tree).name,
         str(arguments.stand),
@@ -108,7 +110,7 @@ def _serve(
     told: dict[str, tuple[str, ...]] = {}
     with waiting(f'setting {arguments.tree} up'):
         session = Session(
-            lambda wanted: build_scene(wanted, arguments, added, told),
+            lambda wanted: build_scene(wanted, arguments, added, told, scene),
             choices,
             wind,
             motion=next((each.motion for each in added if each.motion is not None), None),
@@ -166,15 +168,17 @@ def build_scene(
     arguments: argparse.Namespace,
     added: Sequence[PageAddition] = (),
     told: dict[str, tuple[str, ...]] | None = None,
+    own: Scene | None = None,
 ) -> Simulator:
     """
     Make the simulator of some choices, with the warnings of its tree in ``told``.
 
-    What is added may make that of the tree that the command names.
+    What is added may make that of the tree that the command names, whose scene is ``own`` if it is
+    open.
     """
     is_first = choices.tree == Path(arguments.tree).name
     if is_first:
-        scene = opened_scene(arguments)
+        scene = own or opened_scene(arguments)
     else:
         scene = _grown(choices) if choices.is_grown else open_scene(choices.tree, warn=False)
     if told is not None:

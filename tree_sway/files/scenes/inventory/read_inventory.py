@@ -27,6 +27,9 @@ _DEAD = re.compile(
     re.IGNORECASE,
 )
 
+_FOREST_GEO = frozenset(('A', 'AB', 'AS', 'D', 'G', 'M', 'P', ''))
+"""Letters of ForestGEO's column ``status``, of which D is dead (forestgeo/fgeo.validate)."""
+
 
 @dataclass(frozen=True)
 class Inventory:
@@ -150,11 +153,11 @@ def inventory_of(
 
 def _leave_out_dead(columns: InventoryColumns) -> None:
     for index in columns.table.find_all('status'):
-        for row, text in enumerate(columns.texts(index)):
-            if _DEAD.search(text):
-                columns.leave_out(
-                    row, 'dead or gone', f"{columns.table.columns[index]} is '{text}'"
-                )
+        name, texts = columns.table.columns[index], columns.texts(index)
+        has_letters = name.lower() == 'status' and 'A' in texts and _FOREST_GEO.issuperset(texts)
+        for row, text in enumerate(texts):
+            if _DEAD.search(text) or (has_letters and text == 'D'):
+                columns.leave_out(row, 'dead or gone', f"{name} is '{text}'")
 
 
 def _exposures(columns: InventoryColumns) -> list[str | None]:
