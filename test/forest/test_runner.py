@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+from dataclasses import replace
 import math
 import os
 from pathlib import Path
@@ -354,8 +355,9 @@ def test_no_page_of_the_cluster_answers_other_users() -> None:
     assert answered in ({}, {'sitemap.json': b'{"paths": ["/sitemap.json"]}'})
 
 
-def test_only_the_rows_of_the_cases_are_an_outcome():
-    asked = cases(2)
+@pytest.mark.parametrize('settings', [{}, {'model': 12.0, 'crown_coherence': 0.5}])
+def test_only_the_rows_of_the_cases_are_an_outcome(settings):
+    asked = [replace(each, settings=each.settings | settings) for each in cases(2)]
     row = compute(asked[0])
     good = [(asked[0], row), (asked[1], TreeSwayError('no wind'))]
     assert is_outcome(good, asked, {})

@@ -71,6 +71,7 @@ def is_row_of(row: object, case: Case) -> bool:
     asked: Plain = {
         **_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings,
     }  # fmt: skip
+    asked.pop('model', None)  # a row has the one that was made
     if not (isinstance(row, dict) and asked.items() <= row.items() and row.keys() >= _RESULTS):
         return False
     values = [value for name, value in row.items() if name not in asked and value is not None]
