@@ -16,6 +16,7 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.growth.beyond_scan import grown_beyond as grown_beyond
     from tree_sway.growth.beyond_scan import is_cut as is_cut
+    from tree_sway.growth.beyond_scan import open_diameter as open_diameter
     from tree_sway.growth.builtin import builtin_tree as builtin_tree
     from tree_sway.growth.builtin import BUILTIN_TREES as BUILTIN_TREES
     from tree_sway.growth.growing import grow as grow

@@ -131,7 +131,7 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
 
     """
     last = tree.branch_first[1:] - 1
-    diameter = _open_diameter(tree, last)
+    diameter = open_diameter(tree)
     open_ends = np.flatnonzero(diameter > 2.0 * twig)
     if len(open_ends) == 0 or twig <= 0.0:
         return tree, None
@@ -149,15 +149,15 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
     return grown, Beyond(float(np.median(d)), share, drawn, cut)
 
 
-def _open_diameter(tree: Tree, last: Ints) -> Floats:
-    """Diameter at the end of each branch in [m], less the section of branches that begin there."""
+def open_diameter(tree: Tree) -> Floats:
+    """Return the diameter of the ends of branches [m], less the section of those that follow."""
     section = tree.tip_diameter**2
     first = tree.branch_first[1:-1]
     above = tree.segment_parent[first]
     gap = np.linalg.norm(tree.start[first] - tree.end[above], axis=1)
     continues = gap <= 0.1 * tree.length[above]
     np.subtract.at(section, above[continues], tree.base_diameter[first[continues]] ** 2)
-    return np.sqrt(np.maximum(section[last], 0.0))
+    return np.sqrt(np.maximum(section[tree.branch_first[1:] - 1], 0.0))
 
 
 def _crown_area(tree: Tree) -> float:

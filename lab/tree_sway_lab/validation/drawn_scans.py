@@ -16,6 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree import breast_height_diameter, crown_size, Tree, tree_from_segments
+from tree_sway.growth import open_diameter
 
 SCAN_WEIGHT = 0.2
 """Weight of a scan beside the allometry [-]."""
@@ -41,7 +42,7 @@ def by_one_ratio(tree: Tree) -> Tree:
 
 def by_one_length(tree: Tree) -> Tree:
     """Return the tree with branches thinner by one length, and twigs beyond: the first rule."""
-    open_end = _open_diameter(tree)
+    open_end = open_diameter(tree)
     ends = np.flatnonzero(open_end > 2.0 * TWIG)
     most = max(float(np.median(open_end[ends])) - 2.0 * TWIG, 0.0)
     _, volume, area = _beyond(tree, ends)
@@ -91,17 +92,6 @@ def _thinned(tree: Tree, excess: float) -> Tree:
     return _with_diameters(tree, base, tip)
 
 
-def _open_diameter(tree: Tree) -> Floats:
-    """Diameter at the end of each branch in [m], less the section of branches that begin there."""
-    section = tree.tip_diameter**2
-    first = tree.branch_first[1:-1]
-    above = tree.segment_parent[first]
-    gap = np.linalg.norm(tree.start[first] - tree.end[above], axis=1)
-    continues = gap <= 0.1 * tree.length[above]
-    np.subtract.at(section, above[continues], tree.base_diameter[first[continues]] ** 2)
-    return np.sqrt(np.maximum(section[tree.branch_first[1:] - 1], 0.0))
-
-
 def _crown_area(tree: Tree) -> float:
     wide = 0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length
     return float(wide[_is_branch(tree)].sum())
@@ -109,7 +99,7 @@ def _crown_area(tree: Tree) -> float:
 
 def _beyond(tree: Tree, ends: Ints) -> tuple[Floats, Floats, Floats]:
     """Length to go [m], volume [m^3] and area [m^2] of the pipes beyond the ends of branches."""
-    d = np.maximum(_open_diameter(tree)[ends], TWIG)
+    d = np.maximum(open_diameter(tree)[ends], TWIG)
     pipe = np.minimum(d, max(float(np.percentile(d, 25.0)), 2.0 * TWIG))
     length = _LENGTH * (pipe**_POWER - TWIG**_POWER)
     rest = 1.0 - _POWER
