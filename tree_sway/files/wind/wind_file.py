@@ -24,6 +24,7 @@ from tree_sway.files.wind.sonic_ascii import read_sonic_wind
 from tree_sway.files.wind.table import read_table_wind
 
 _TABLES = ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip')
+
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
     FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
@@ -43,9 +44,7 @@ WIND_FORMATS = (
         read_netcdf_wind,
     ),
     FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
-    FileFormat(
-        'csv', ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip'), looks_like_wind, read_table_wind
-    ),
+    FileFormat('csv', _TABLES, looks_like_wind, read_table_wind),
 )
 
 EXAMPLES = ('canopy',)

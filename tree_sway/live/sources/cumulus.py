@@ -24,7 +24,6 @@ from tree_sway.live.transports.transport import Message
 _EVERY = 60.0
 _INTERVAL = 600.0
 _KIND = 'Cumulus'
-_QUANTITIES = ('wind_speed', 'wind_direction', 'gust')
 _FORM = form_of('Cumulus realtime')
 
 
