@@ -1,61 +1,30 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** One cylinder per segment, placed by the poses of the stream. */
+/** The trees of a page as cylinders. */
 
 import * as THREE from "three";
-import { STRIDE } from "../../tree_sway/page/static/placing.js";
 import { Stage } from "./stage.js";
+import { SwayingTrees } from "./swaying_trees.js";
 
 const stage = new Stage();
-// A pose is z up; three.js is y up.
-const root = new THREE.Group();
-root.rotation.x = -Math.PI / 2;
-stage.scene.add(root);
+let trees = null;
 
-let segments = null;
-const at = new THREE.Vector3();
-const turn = new THREE.Quaternion();
-const size = new THREE.Vector3();
-const matrix = new THREE.Matrix4();
-
-function described(description) {
-  segments?.removeFromParent();
-  // From its root-side end along x, as a pose has it.
-  const shape = new THREE.CylinderGeometry(1, 1, 1, 6).rotateZ(-Math.PI / 2).translate(0.5, 0, 0);
-  const bark = new THREE.MeshLambertMaterial({ color: 0x7a6350 });
-  segments = new THREE.InstancedMesh(shape, bark, description.nSegments);
-  segments.frustumCulled = false;
-  root.add(segments);
-  stage.frame(Math.max(...description.trees.map((tree) => tree.height)));
-}
-
-function draw(stream) {
-  const poses = stream.poses();
-  if (!poses || !segments) return;
-  const { kinds, trees } = stream.description;
-  let row = 0;
-  for (const { kind } of trees) {
-    const { segment_length: length, segment_radius: radius } = kinds[kind].arrays;
-    for (let s = 0; s < length.length; s++, row++) {
-      const o = STRIDE * row;
-      at.fromArray(poses, o);
-      turn.fromArray(poses, o + 4);
-      // The fourth number of a pose is the scale of its tree.
-      size.set(length[s], radius[2 * s], radius[2 * s]).multiplyScalar(poses[o + 3]);
-      segments.setMatrixAt(row, matrix.compose(at, turn, size));
-    }
-  }
-  segments.instanceMatrix.needsUpdate = true;
-}
+const stream = stage.follow(
+  (description) => stage.frame(Math.max(...description.trees.map((tree) => tree.height))),
+  () => trees?.update(),
+);
+trees = new SwayingTrees(stream);
+stage.scene.add(trees);
 
 /** For tests and for the curious at the console. */
 window.example = {
   stage,
-  stream: stage.follow(described, draw),
+  stream,
   /** Where the last segment is drawn. */
   tip() {
-    if (!segments) return null;
-    segments.getMatrixAt(segments.count - 1, matrix);
-    return at.setFromMatrixPosition(matrix).toArray();
+    if (!trees.segments) return null;
+    const matrix = new THREE.Matrix4();
+    trees.segments.getMatrixAt(trees.segments.count - 1, matrix);
+    return new THREE.Vector3().setFromMatrixPosition(matrix).toArray();
   },
 };

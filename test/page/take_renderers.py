@@ -5,7 +5,7 @@ The same trees on the page and as files in other renderers, on one sheet.
 
     python test/page/take_renderers.py doc/pictures/gallery/renderers.jpg --blender bpy/bin/python
 
-Rows are trees; columns are the page, glTF in three.js (``npm install`` in ``examples/web``), glTF
+Rows are trees; columns are the page, glTF in three.js (``npm install`` in the root), glTF
 in Blender and USD in Blender.
 
 """
@@ -28,7 +28,7 @@ from tree_sway_lab.browser import Browser
 from tree_sway.commands import cli
 
 HERE = Path(__file__).parent
-MODULES = HERE.parents[1] / 'examples' / 'web' / 'node_modules'
+MODULES = HERE.parents[1] / 'node_modules'
 TREES = 'oak', 'birch'
 SIZE = 480
 _THREE = """<!doctype html><html><body style="margin:0"><script type="importmap">
@@ -105,7 +105,7 @@ async def _in_three(file: Path) -> Image.Image:
     """Draw a glTF with three.js."""
     if not (MODULES / 'three').exists():
         raise SystemExit(
-            f'no three.js: run {shutil.which("npm") or "npm"} install in examples/web'
+            f'no three.js: run {shutil.which("npm") or "npm"} install in the root of the sources'
         )
 
     async def page(_: web.Request) -> web.Response:

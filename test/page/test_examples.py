@@ -8,15 +8,20 @@ import asyncio
 from collections.abc import Iterator
 import functools
 import http.server
+import json
 from pathlib import Path
 import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import threading
 from typing import Any
 
+import numpy as np
 import pytest
+
+import tree_sway
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
@@ -80,9 +85,9 @@ def test_python_follows_a_tree(page: PageServer) -> None:
 
 @pytest.fixture(scope='module')
 def three() -> None:
-    """three.js in the folder of the examples, from npm."""
+    """three.js beside the examples, from npm."""
     npm = shutil.which('npm')
-    if (WEB / 'node_modules' / 'three').is_dir():
+    if (ROOT / 'node_modules' / 'three').is_dir():
         return
     if npm is None:
         pytest.skip('npm is not installed here')
@@ -93,7 +98,7 @@ def three() -> None:
         '--no-audit',
         '--no-fund',
         '--prefix',
-        str(WEB),
+        str(ROOT),
     ]
     if subprocess.run(command, capture_output=True, timeout=180).returncode:
         pytest.skip('npm cannot bring three.js here')
@@ -136,3 +141,59 @@ def test_three_draws_a_tree_that_sways(
             picture.write_bytes(await browser.screenshot())
 
     asyncio.run(look())
+
+
+@pytest.mark.usefixtures('three')
+def test_the_package_of_npm_places_the_segments_of_a_stream(tmp_path: Path) -> None:
+    """What `npm pack` packs is all that a program outside this repository needs."""
+    pack = [str(shutil.which('npm')), 'pack', '--json', '--pack-destination', str(tmp_path)]
+    packed = json.loads(subprocess.check_output(pack, cwd=ROOT, timeout=60))[0]
+    assert packed['version'] == tree_sway.__version__
+    modules = tmp_path / 'node_modules'
+    with tarfile.open(tmp_path / packed['filename']) as archive:
+        archive.extractall(modules, filter='data')
+    (modules / 'package').rename(modules / 'tree-sway')
+    (modules / 'three').symlink_to(ROOT / 'node_modules' / 'three')
+    program = tmp_path / 'program.mjs'
+    program.write_text(FOREIGN_PROGRAM, encoding='utf-8')
+    vectors = ROOT / 'test' / 'page' / 'vectors'
+    node = str(shutil.which('node'))
+    done = subprocess.run(
+        [node, program, vectors], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    frame = json.loads((vectors / 'expected.json').read_text(encoding='utf-8'))['frames'][1]
+    np.testing.assert_allclose(
+        np.reshape(json.loads(done.stdout), (-1, 3)), np.array(frame['poses'])[:, :3], atol=1e-5
+    )
+
+
+FOREIGN_PROGRAM = """
+import { readFileSync } from "node:fs";
+import { TreeStream } from "tree-sway";
+import { SwayingTrees } from "tree-sway/three";
+
+const bytes = (name) => new Uint8Array(readFileSync(`${process.argv[2]}/${name}.bin`)).buffer;
+
+globalThis.WebSocket = class {
+  static OPEN = 1;
+  readyState = 1;
+  send() {}
+  close() {}
+  constructor() {
+    setTimeout(() => {
+      this.onopen();
+      for (const name of ["description", "frame1"]) this.onmessage({ data: bytes(name) });
+      trees.update();
+      const { array } = trees.segments.instanceMatrix;
+      const at = (row) => [...array.subarray(16 * row + 12, 16 * row + 15)];
+      console.log(JSON.stringify(Array.from({ length: trees.segments.count }, (_, k) => at(k))));
+      stream.close();
+    });
+  }
+};
+const stream = new TreeStream("http://127.0.0.1:8765/");
+const trees = new SwayingTrees(stream);
+stream.open();
+"""
+"""Prints where the trees of a recorded stream stand after its second frame."""
