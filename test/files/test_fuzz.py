@@ -318,7 +318,8 @@ def resident() -> float:
 @pytest.mark.filterwarnings('ignore')
 def test_damaged_files_of_every_reader(samples, tmp_path):
     """For ``TREE_SWAY_FUZZ_SECONDS``; files that fail are left in the folder of the test."""
-    good, rng = files_of_every_reader(samples, tmp_path), random.Random(1)
+    rng = random.Random(int(os.environ.get('TREE_SWAY_FUZZ_SEED', '1')))
+    good = files_of_every_reader(samples, tmp_path)
     seconds = float(os.environ.get('TREE_SWAY_FUZZ_SECONDS', '180'))
     begin, number, refused, warm, faults = time.monotonic(), 0, 0, 0.0, []
     while (passed := time.monotonic() - begin) < seconds and len(faults) < 20:

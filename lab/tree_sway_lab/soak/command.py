@@ -4,7 +4,7 @@
 ``tree-sway lab soak``: the whole chain through every fault of a sensor, for hours; what it costs.
 
 Every node is a process of its own, or all are in one, as the demo has them. A page is followed, so
-that the viewer has something to do.
+that the viewer has something to do. ``--page`` runs a page without ROS instead, with instruments.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from tree_sway.commands import Ending, LONGEST
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.trees import open_scene
 from tree_sway.stream import StreamClient
+from tree_sway_lab.soak.page_soak import PageSoak
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.process import DIAGNOSTICS, message_class, qos_profile
@@ -54,6 +55,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--hours', type=float, default=1.0, help='how long (%(default)s)')
     add('--tree', default='goldcrest', help='what sways (%(default)s)')
     add('--demo', action='store_true', help='all in one process, as the demo; else one per node')
+    add(
+        '--page', action='store_true',
+        help='without ROS: a page with four clients, an anemometer and two motion sensors',
+    )
     add('--every', type=float, default=20.0, help='seconds from fault to fault (%(default)s)')
     add(
         '--rate',
@@ -84,6 +89,8 @@ def run(arguments: argparse.Namespace) -> int:
         60.0 * arguments.rate,
         arguments.every / arguments.rate,
     )
+    if arguments.page:
+        return _soak_page(arguments, seconds, rate)
     port, code = _free_port(), 0
     with Ending() as ending, StreamMonitor(None, None) as monitor:
         monitor.expect_silence()
@@ -129,6 +136,27 @@ def growth(seen: list[Health]) -> tuple[float, float]:
         return float('nan'), float('nan')
     line, covariance = np.polyfit(table[:, 0] / _HOUR, table[:, 1], 1, cov=True)
     return float(line[0]), float(np.sqrt(covariance[0, 0]))
+
+
+def _soak_page(arguments: argparse.Namespace, seconds: float, rate: float) -> int:
+    """Run a page with its instruments and clients, then report what it took."""
+    with Ending() as ending, PageSoak(arguments.tree, rate) as page:
+        page.wait(ending)
+        seen, slowest = list[Health](), list[float]()
+        begin, period = time.monotonic(), min(60.0, max(0.5, seconds / _LINES))
+        while (since := time.monotonic() - begin) < seconds and not ending.is_asked:
+            _check('page', page.process)
+            seen.append(health(since, page.process.pid))
+            time.sleep(min(period, seconds - since))
+            slowest.append(min(page.rates()))
+            print(_line({'page': seen}, slowest[-1]), flush=True)
+        _check('page', page.process)
+        told = ', '.join(f'{least:.1f}' for least in np.percentile(slowest, (0, 5, 50)))
+        print(f'slowest  client of four: {told} Hz (least, 5 %, median) of {rate:g} wanted')
+        print(f'sent     {page.sent} samples; {page.unreadable} unreadable messages')
+        print(f'status   {page.status}')
+        has_grown = _has_grown({'page': seen}, arguments.slope)
+    return int(has_grown or page.unreadable > 0)
 
 
 class _Reports:
@@ -256,6 +284,13 @@ def _told(
     """Print what it took; 1 if something is wrong."""
     print(summary(monitor.totals, rate))
     print(f"skipped  {100.0 * reports.skipped:.4f} % of the solver's frames")
+    has_grown = _has_grown(seen, limit)
+    print(f'failed   {reports.failed} callbacks; {reports.restarted} restarts of the motion')
+    return int(has_grown or reports.failed > 0 or reports.restarted > 0)
+
+
+def _has_grown(seen: Mapping[str, list[Health]], limit: float) -> bool:
+    """Print what processes took; whether the memory of one grew by more than a limit [MiB/h]."""
     has_grown = False
     for name, looks in seen.items():
         slope, error = growth(looks)
@@ -268,8 +303,7 @@ def _told(
             f'memory   {name} {rise} after warm-up, {last.memory:.2f} MiB at the end; '
             f'handles {looks[0].handles} to {last.handles}, threads {last.threads}'
         )
-    print(f'failed   {reports.failed} callbacks; {reports.restarted} restarts of the motion')
-    return int(has_grown or reports.failed > 0 or reports.restarted > 0)
+    return has_grown
 
 
 def _line(seen: Mapping[str, list[Health]], rate: float) -> str:
