@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Tried:
-    """A reader that is tried: its process, what it is offered, and what it takes of the machine."""
+    """A reader that is tried: its process, what it is offered, and what it takes."""
 
     def __init__(
         self, name: str, door: Door, seed: int, page: subprocess.Popen[str], folder: Path
@@ -117,7 +117,8 @@ class _Tried:
         if warm is not None and newest is not None:
             has_grown = newest.memory - warm.memory > _LARGEST_GROWTH
             memory = f'{warm.memory:.1f} to {newest.memory:.1f} MiB, handles {newest.handles}'
-        words = [f'{self._name:16s} {trials:8d} messages in {passed:.0f} s', f'taken {counts}', memory]
+        figures = f'{self._name:16s} {trials:8d} messages in {passed:.0f} s'
+        words = [figures, f'taken {counts}', memory]
         words += ['ended'] * has_ended + ['deaf afterwards'] * (not is_heard) + faults[:5]
         print('; '.join(words), flush=True)
         return has_ended or not is_heard or has_grown or bool(faults)

@@ -29,9 +29,10 @@ from tree_sway_lab.fuzz.mutation import drawn, mutated
 _ANSWER = 0.1
 _LOOK = 0.05
 LINES = (
-    b'$WIMWV,270.0,R,10.0,N,A*1C\r\n', b'5.3,270\n', b'wind_speed=19.08 km/h; wind_direction=270\n',
+    b'$WIMWV,270.0,R,10.0,N,A*1C\r\n', b'5.3,270\n',
+    b'wind_speed=19.08 km/h; wind_direction=270\n', b'  6.00 270.0   0.0 346.70  25.1\r\n',
     b'0R1,Dn=236D,Dm=270D,Dx=300D,Sn=0.0M,Sm=6.5M,Sx=9.2M\r\n', b'0+270+005.30+00\r\n',
-    b'{"wind": {"wind_speed": 5.3, "wind_direction": 270}}\n', b'  6.00 270.0   0.0 346.70  25.1\r\n',
+    b'{"wind": {"wind_speed": 5.3, "wind_direction": 270}}\n',
 )  # fmt: skip
 JSON = (b'{"wind": {"speed": 5.3, "deg": 270}}', b'{"wind_speed": 5.3, "wind_direction": 270}')
 UPLOAD = (
@@ -48,7 +49,7 @@ MOTION = (
     b'{"t": NOW, "ax": 0.1, "ay": -0.2, "az": 9.8, "gx": 0.01, "gy": 0, "gz": 0}',
     b'[{"t": NOW, "acceleration": {"x": 0.1, "y": -0.2, "z": 9.8}, "rate": [0.01, 0, 0]}]',
 )
-REPORT = (b'[{"icaoId": "EDDB", "wdir": 270, "wspd": 12, "wgst": 20, "rawOb": "EDDB 27012G20KT"}]',)
+REPORT = (b'[{"icaoId": "EDDB", "wdir": 270, "wspd": 12, "rawOb": "EDDB 121200Z 27012G20KT"}]',)
 _CONFIG = (
     b'{"inputs": [{"source": "accelerometer", "outputs": [{"x": "accX"}, {"y": "accY"}, '
     b'{"z": "accZ"}, {"t": "acc_time"}]}]}'
@@ -141,7 +142,9 @@ def rtu(number: int, offer: Offer) -> None:
                 os.write(number, frame)
 
 
-def serve(server: socket.socket, attend: Callable[[socket.socket, Offer], None], offer: Offer) -> None:
+def serve(
+    server: socket.socket, attend: Callable[[socket.socket, Offer], None], offer: Offer
+) -> None:
     """Attend who connects, one after the other."""
     server.settimeout(_LOOK)
     while not offer.is_over:

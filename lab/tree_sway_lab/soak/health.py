@@ -1,18 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a process takes: memory, handles, threads; and the slope of its memory."""
+"""What processes take, over a time: memory, handles, threads; and the slope of the memory."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import os
 from pathlib import Path
+import subprocess
 from typing import NamedTuple
 
 import numpy as np
 
+from tree_sway.errors import TransportError
+
 _WARM, _WARM_SHARE = 600.0, 0.2
 """Time at the beginning whose growth is start and not leak [s]; its largest share of a run."""
 _HOUR = 3600.0
+_LINES = 60
 
 
 class Health(NamedTuple):
@@ -43,3 +48,38 @@ def growth(seen: list[Health]) -> tuple[float, float]:
         return float('nan'), float('nan')
     line, covariance = np.polyfit(table[:, 0] / _HOUR, table[:, 1], 1, cov=True)
     return float(line[0]), float(np.sqrt(covariance[0, 0]))
+
+
+def period_of(seconds: float) -> float:
+    """Return the time between two looks [s] in a run of some seconds."""
+    return min(60.0, max(0.5, seconds / _LINES))
+
+
+def check(name: str, process: subprocess.Popen[bytes]) -> None:
+    """Raise a `TransportError` for a process that has ended."""
+    if process.poll() is not None:
+        raise TransportError(f'{name} has ended with {process.returncode}')
+
+
+def has_grown(seen: Mapping[str, list[Health]], limit: float) -> bool:
+    """Print what processes took; whether the memory of one grew by more than a limit [MiB/h]."""
+    is_larger = False
+    for name, looks in seen.items():
+        slope, error = growth(looks)
+        is_larger |= slope > limit
+        rise = 'too short for a figure'
+        if np.isfinite(slope):
+            rise = f'{slope:+.3f} +- {error:.3f} MiB/h'
+        last = looks[-1]
+        print(
+            f'memory   {name} {rise} after warm-up, {last.memory:.2f} MiB at the end; '
+            f'handles {looks[0].handles} to {last.handles}, threads {last.threads}'
+        )
+    return is_larger
+
+
+def line_of(seen: Mapping[str, list[Health]], rate: float) -> str:
+    """Return the newest figures as a line, with a rate of poses [Hz]."""
+    memories = ', '.join(f'{name} {looks[-1].memory:.2f}' for name, looks in seen.items())
+    now = next(iter(seen.values()))[-1].time
+    return f'{now:8.1f} s | memory [MiB] {memories} | poses {rate:5.1f} Hz'

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator
 from contextlib import ExitStack
 import json
@@ -14,16 +15,40 @@ import sys
 import threading
 import time
 
+import numpy as np
+
 from tree_sway.commands import Ending
 from tree_sway.errors import TransportError
 from tree_sway.files.trees import open_tree
 from tree_sway.stream import StreamClient
+from tree_sway_lab.soak.health import check, has_grown, Health, health, line_of, period_of
 
 CLIENTS = 4
 HEIGHTS = 0.3, 0.6
 """Places of the motion sensors on the stem, as shares of its height."""
 _WIND_RATE, _MOTION_RATE = 20.0, 50.0
 _START = 120.0
+
+
+def soak_page(arguments: argparse.Namespace, seconds: float, rate: float) -> int:
+    """Run a page with its instruments and clients, then report what it took."""
+    with Ending() as ending, PageSoak(arguments.tree, rate) as page:
+        page.wait(ending)
+        seen, slowest = list[Health](), list[float]()
+        begin, period = time.monotonic(), period_of(seconds)
+        while (since := time.monotonic() - begin) < seconds and not ending.is_asked:
+            check('page', page.process)
+            seen.append(health(since, page.process.pid))
+            time.sleep(min(period, seconds - since))
+            slowest.append(min(page.rates()))
+            print(line_of({'page': seen}, slowest[-1]), flush=True)
+        check('page', page.process)
+        told = ', '.join(f'{least:.1f}' for least in np.percentile(slowest, (0, 5, 50)))
+        print(f'slowest  of {CLIENTS} clients: {told} Hz (least, 5 %, median) of {rate:g} wanted')
+        print(f'sent     {page.sent} samples; {page.unreadable} unreadable messages')
+        print(f'status   {page.status}')
+        is_larger = has_grown({'page': seen}, arguments.slope)
+    return int(is_larger or page.unreadable > 0)
 
 
 class PageSoak:
