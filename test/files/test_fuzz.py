@@ -381,3 +381,20 @@ def test_ten_thousand_columns_are_enough(tmp_path):
     (tmp_path / 'a.csv').write_bytes(content)
     with pytest.raises(TreeSwayError, match='a header of 10003 columns'):
         read_wind(tmp_path / 'a.csv')
+
+
+@pytest.mark.parametrize('reader', ['scene', 'trees'])
+@pytest.mark.parametrize(
+    'content',
+    [b'', b'\xff\xfe', b',', b',,\n1,2,3',
+     b'height,crown_radius, x,y,z,radius,parent_id,\n2.3,1.2, 1,2,5,0.1,-1, 1,2,6,0.1,1,',
+     b'1 1 0 0 0 1 -1\n2 1 0 0 1 1 2\n'],
+    ids=['nothing', 'a mark', 'a comma', 'commas', 'its own parent', 'its own parent, swc'],
+)  # fmt: skip
+def test_files_of_almost_nothing_are_refused(
+    tmp_path: Path, content: bytes, reader: str
+) -> None:
+    suffix = '.swc' if content.startswith(b'1 1') else '.csv'
+    path = tmp_path / f'a{suffix}'
+    path.write_bytes(content)
+    assert fault_of(READERS[reader], path) == ('', True)
