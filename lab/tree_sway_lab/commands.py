@@ -37,6 +37,11 @@ COMMANDS: dict[str, Command] = {
         'film "spruce 8" --points --seconds 20',
         'tree_sway_lab.twin.film_command',
     ),
+    'fuzz': Command(
+        'damaged messages to every reader of a line, by their numbers',
+        'fuzz --minutes 0.1 --only "Modbus TCP"',
+        'tree_sway_lab.fuzz.command',
+    ),
     'paper': Command(
         'the experiment of Kanda & Ohya as it is written, and what ours does instead',
         'paper',

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.io import savemat
+from tree_sway_lab.fuzz.mutation import drawn, KINDS, mutated, TOKENS
 
 from tree_sway.core.setup import prepare
 from tree_sway.errors import TreeSwayError
@@ -48,46 +49,12 @@ TREES = [
 ]
 
 SEEDLING = open_tree(DATA / 'seedling.yaml')
-TOKENS = [b'nan', b'inf', b'-1', b'0', b'1e308', b'-1e999', b'99999999999999999999', b'', b'\n',
-          b'\t',
-          b',', b'[', b'{', b'&a [*a]', b'- ', b'\x00', b'\xff\xfe', b'"', b'1e-320', b'.5',
-          b'1_0', '\u0663'.encode(), b'$', b'*', b'<S1', b'+A1', b'segment: 3', b'parent: stem',
-          b'at: 0']  # fmt: skip
-MUTATION_KINDS = ('token', 'replace', 'delete', 'copy', 'flip', 'cut', 'number')
 MUTATION = st.tuples(
-    st.sampled_from(MUTATION_KINDS),
+    st.sampled_from(KINDS),
     st.floats(0.0, 1.0, exclude_max=True),
     st.floats(0.0, 1.0, exclude_max=True),
     st.sampled_from(TOKENS),
 )
-
-
-def mutated(content: bytes, mutations) -> bytes:
-    for kind, where, much, token in mutations:
-        at = int(where * len(content))
-        span = 1 + int(much**4 * len(content))
-        if kind == 'token':
-            content = content[:at] + token + content[at:]
-        elif kind == 'replace':
-            content = content[:at] + token + content[at + len(token) :]
-        elif kind == 'delete':
-            content = content[:at] + content[at + span :]
-        elif kind == 'copy':
-            content = content[:at] + content[at : at + span] + content[at:]
-        elif kind == 'flip' and content:
-            flipped = content[at] ^ (1 << int(8 * much))
-            content = content[:at] + bytes([flipped]) + content[at + 1 :]
-        elif kind == 'cut':
-            content = content[: max(at, 1)]
-        elif kind == 'number':  # a cell, as a whole
-            begin = (
-                max((content.rfind(c, 0, at) for c in (b',', b'\t', b' ', b'\n')), default=0) + 1
-            )
-            ends = [
-                e for c in (b',', b'\t', b' ', b'\n', b']') if (e := content.find(c, begin)) > 0
-            ]
-            content = content[:begin] + token + content[min(ends, default=begin) :]
-    return content
 
 
 @pytest.fixture(scope='module')
@@ -318,17 +285,16 @@ def resident() -> float:
 @pytest.mark.filterwarnings('ignore')
 def test_damaged_files_of_every_reader(samples, tmp_path):
     """For ``TREE_SWAY_FUZZ_SECONDS``; files that fail are left in the folder of the test."""
-    good, rng = files_of_every_reader(samples, tmp_path), random.Random(1)
+    rng = random.Random(int(os.environ.get('TREE_SWAY_FUZZ_SEED', '1')))
+    good = files_of_every_reader(samples, tmp_path)
     seconds = float(os.environ.get('TREE_SWAY_FUZZ_SECONDS', '180'))
     begin, number, refused, warm, faults = time.monotonic(), 0, 0, 0.0, []
     while (passed := time.monotonic() - begin) < seconds and len(faults) < 20:
         warm = resident() if passed < seconds / 4 else warm
         name, content, own = rng.choice(good)
         reader = rng.choice(own if rng.random() < 0.9 else [*READERS])
-        mutations = [(rng.choice(MUTATION_KINDS), rng.random(), rng.random(), rng.choice(TOKENS))
-                     for _ in range(rng.randint(1, 6))]  # fmt: skip
         path = tmp_path / f'{number}.{name}'
-        path.write_bytes(mutated(content, mutations))
+        path.write_bytes(mutated(content, drawn(rng)))
         fault, is_refused = fault_of(READERS[reader], path)
         if fault:
             faults.append(f'{reader} of {path}: {fault}')
@@ -415,3 +381,20 @@ def test_ten_thousand_columns_are_enough(tmp_path):
     (tmp_path / 'a.csv').write_bytes(content)
     with pytest.raises(TreeSwayError, match='a header of 10003 columns'):
         read_wind(tmp_path / 'a.csv')
+
+
+@pytest.mark.parametrize('reader', ['scene', 'trees'])
+@pytest.mark.parametrize(
+    'content',
+    [b'', b'\xff\xfe', b',', b',,\n1,2,3',
+     b'height,crown_radius, x,y,z,radius,parent_id,\n2.3,1.2, 1,2,5,0.1,-1, 1,2,6,0.1,1,',
+     b'1 1 0 0 0 1 -1\n2 1 0 0 1 1 2\n'],
+    ids=['nothing', 'a mark', 'a comma', 'commas', 'its own parent', 'its own parent, swc'],
+)  # fmt: skip
+def test_files_of_almost_nothing_are_refused(
+    tmp_path: Path, content: bytes, reader: str
+) -> None:
+    suffix = '.swc' if content.startswith(b'1 1') else '.csv'
+    path = tmp_path / f'a{suffix}'
+    path.write_bytes(content)
+    assert fault_of(READERS[reader], path) == ('', True)

@@ -12,6 +12,7 @@ import asyncio
 from collections.abc import Callable
 import json
 import math
+import struct
 import time
 from typing import Any
 from urllib.parse import urlencode
@@ -27,6 +28,9 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.files.trees.source import open_scene
 from tree_sway.files.wind.sensor_line import checksum_of
+from tree_sway.live.reading import Refusal, WindReading
+from tree_sway.live.registry import open_source
+from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind_source import blow
 
 KNOT, MPH = 1852.0 / 3600.0, 0.44704
@@ -373,6 +377,18 @@ def test_a_signal_k_server_sways_a_tree(hear, port, sways):
     assert newest.kind == 'Signal K speedApparent'
     assert newest.bearing == pytest.approx(1.5 * math.pi)
     assert subscriptions[0]['subscribe'][0]['path'] == 'environment.wind.*'
+
+
+@pytest.mark.parametrize('words', [(0x7FFF, 270), (0x8000, 270), (0xFFFF, 270), (53, 0x7FFF)])
+def test_a_register_without_a_value_is_no_wind(words: tuple[int, int]) -> None:
+    """Scales may bring the word of no value to a wind, and to degrees."""
+    options = 'speed=0&direction=1&scale=0.001&direction_scale=0.01'
+    source = open_source(f'modbus:127.0.0.1?{options}').source
+    (found,) = source.read(Message(struct.pack('>HH', *words)))
+    assert isinstance(found, Refusal)
+    (good,) = source.read(Message(struct.pack('>HH', 5300, 27000)))
+    assert isinstance(good, WindReading)
+    assert good.speed == pytest.approx(5.3)
 
 
 def test_registers_of_modbus_sway_a_tree(hear, modbus, sways):

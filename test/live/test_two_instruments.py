@@ -174,3 +174,15 @@ def test_two_programs_on_one_port_of_this_machine(hear, port, sockets) -> None:
     assert heard.wind.newest.speed == 5.0
     name = f'another sender, 127.0.0.1:{second.getsockname()[1]}'
     assert list(heard.wind.refused) == [name]
+
+
+def test_one_message_without_a_name_does_not_deafen_a_hub(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hub passes on several instruments from one address: their names are in the messages."""
+    two = Two(monkeypatch, 'tempest')
+    unnamed = {'type': 'rapid_wind', 'ob': [1493322445, 5.3, 270]}
+    named = Message(json.dumps({**unnamed, 'serial_number': 'ST-1'}).encode(), '10.0.0.5:50222')
+    two.alternate(named, named, 2)
+    two.wind._link.deliver(Message(json.dumps(unnamed).encode(), '10.0.0.5:50222'))
+    two.alternate(named, named, 10)
+    assert two.wind.accepted == 24
+    assert two.n_refused == 1

@@ -17,6 +17,7 @@ pytestmark = pytest.mark.ros
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 import tree_sway.page.server as server_module  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
+from tree_sway.stream.client import StreamClient  # noqa: E402
 from tree_sway.stream.placing import Placer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
@@ -199,6 +200,34 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, tree_file):
 
     asyncio.run(drag())
     nodes.check()
+
+
+def test_a_second_system_in_the_domain_is_told_and_not_mixed_in(
+    compose, observer, statuses, tree_file
+):
+    """Both have the same names and topics, and other trees: the page stays with the first."""
+    first = compose(solver={'tree': tree_file, 'model': '5'}, viewer=QUIET)
+    viewer = first['viewer']
+    with StreamClient(viewer.server.url) as page:
+        page.wait(DEADLINE)
+        shown = page.description.short_identity
+        second = compose(solver={'tree': tree_file, 'model': '3'})
+
+        def is_told():
+            status = statuses('viewer: page')
+            return status is not None and '2 solvers in this domain: /solver' in status.message
+
+        observer.until(is_told, 'a warning')
+        assert 'ROS_DOMAIN_ID' in statuses('viewer: page').message
+        observer.until(lambda: viewer._followed.refused > 20, 'refusals')
+        page.wait(DEADLINE, frames=page.received + 20)
+        assert page.unreadable == 0
+        assert page.description.short_identity == shown
+        observer.until(lambda: '2 publishers mix' in statuses('solver: output').message, 'both')
+        first['solver'].close()
+        observer.until(lambda: page.description.short_identity != shown, 'the other tree')
+        page.wait(DEADLINE, frames=page.received + 5)
+        second.check()
 
 
 def test_who_may_set_nothing_may_not_pull(compose):

@@ -54,6 +54,29 @@ def test_without_matplotlib_a_notebook_shows_the_line(monkeypatch: pytest.Monkey
     assert WIND._repr_html_() is None
 
 
+def test_what_is_missing_is_named_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    record = sway.simulate('benjamina', WIND, rate=20.0, seconds=1.0, model=3)
+    for module in ('matplotlib', 'matplotlib.figure', 'pandas'):
+        monkeypatch.setitem(sys.modules, module, None)
+    for each in (record, WIND, sway.open_tree('benjamina').tree):
+        with pytest.raises(sway.TreeSwayError, match=r'matplotlib.*\[plot\]|matplotlib.*in_venv'):
+            each.plot()
+    with pytest.raises(sway.TreeSwayError, match=r"No module named 'pandas'; .*pip install pandas"):
+        record.to_dataframe()
+
+
+@pytest.mark.parametrize('wind', [8.0, (8.0, 0.0, 0.0), [8, 0]])
+def test_a_number_is_told_what_a_wind_is(wind: object) -> None:
+    with pytest.raises(sway.TreeSwayError, match=r'simulate_turbulence.*a minute of 8 m/s to the'):
+        sway.simulate('benjamina', wind)
+
+
+def test_the_wind_that_is_meant_is_asked_for() -> None:
+    for call in (sway.read_wind, lambda name: sway.simulate('benjamina', name)):
+        with pytest.raises(sway.TreeSwayError, match=r"canopi: no such.*did you mean 'canopy'"):
+            call('canopi')
+
+
 def test_a_tree_and_a_wind_are_taken_by_their_names() -> None:
     named = sway.simulate('benjamina', 'canopy', seconds=1.0, model=3)
     given = sway.simulate(

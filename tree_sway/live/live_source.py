@@ -137,7 +137,10 @@ class LiveSource(ABC):
         """Whether to read a message: not that of one who was refused, which may be a flood."""
         senders = self._senders
         is_live = time.monotonic() - self._followed <= senders.patience
-        is_other = message.origin in senders.refused and message.origin != senders.current
+        # One address may pass on several instruments, whose messages alone tell which.
+        origin = message.origin
+        is_shared = not origin or f'{senders.current} '.startswith(f'{origin} ')
+        is_other = origin in senders.refused and not is_shared
         return not (is_live and is_other) or self._follows(message.origin)
 
     def _refuse(self, cause: str, count: int = 1) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from tree_sway.core.tree import Tree
 from tree_sway.drawn import Drawn
+from tree_sway.errors import MissingDependencyError
 from tree_sway.files.motion import MotionRecord
 from tree_sway.files.trees import TreeFile
 from tree_sway.files.wind import WindRecord
@@ -79,7 +80,7 @@ def as_html(drawn: Drawn) -> str | None:
     """Return the line of text of an object above its picture; None without matplotlib."""
     try:
         figure = drawn.plot()
-    except ModuleNotFoundError:
+    except MissingDependencyError:
         return None
     picture = io.BytesIO()
     figure.savefig(picture, format='png', dpi=80)

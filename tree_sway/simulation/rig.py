@@ -412,7 +412,11 @@ def _steps(
         run = Run(simulator, rate, stepped=measure)
         steps = map(run.step, means)
     if not count:
-        cure = 'give a record of one step at least, or the mean of each step, (t, 3)'
+        cure = (
+            'give a record of one step at least, as by read_wind or simulate_turbulence, or the '
+            'mean of each step, (t, 3): np.full((3600, 3), (8, 0, 0)) is a minute of 8 m/s to the '
+            'east at 60 Hz'
+        )
         raise ParameterError(what, where='wind', cure=cure)
     return count, steps
 

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.drawn import Drawn
+from tree_sway.errors import MissingDependencyError
 from tree_sway.simulation.strength_use import StrengthUse
 from tree_sway.twin import LearnedTree
 
@@ -95,7 +97,10 @@ class SwayRecord(Drawn):
         return found | {f'{name} largest strain [-]': self.strain[:, k] for k, name in names}
 
     def to_dataframe(self) -> Any:
-        """Return the columns as a data frame of pandas; a `ModuleNotFoundError` without it."""
+        """Return the columns as a data frame of pandas; a `MissingDependencyError` without it."""
+        if find_spec('pandas') is None:
+            what = "No module named 'pandas'"
+            raise MissingDependencyError(what, cure='install it: pip install pandas')
         return import_module('pandas').DataFrame(self.columns())
 
     def to_csv(self) -> str:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import replace
 import json
 import time
@@ -36,7 +37,8 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.reports.one_publisher import OnePublisher
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 
 USUAL_OR_FREE = -1
@@ -73,6 +75,8 @@ class ViewerNode(TreeSwayNode):
         self._frame_ids: list[str] = []
         self._description: Description | None = None
         self._described = ''
+        self._followed = OnePublisher()
+        self._held: Any = None
         self._sequence = 0
         self._subscription: Any = None
         self._wind_subscription: Any = None
@@ -118,6 +122,7 @@ class ViewerNode(TreeSwayNode):
             self.destroy_subscription(self._subscription)
             self.destroy_subscription(self._wind_subscription)
             self._subscription = self._wind_subscription = None
+        self._take_held()
         self._counted.append((time.monotonic(), self._n_samples))
         self._wind = self._source()
 
@@ -142,6 +147,11 @@ class ViewerNode(TreeSwayNode):
         server = self.server
         if message.data == self._described or server is None:
             return
+        # Another solver in this domain describes its own tree, maybe: the first one is shown.
+        is_held = self._description is not None and len(self._solvers) > 1
+        self._held = message if is_held else None
+        if is_held:
+            return
         self._described = message.data
         try:
             content = json.loads(message.data)
@@ -155,14 +165,32 @@ class ViewerNode(TreeSwayNode):
         self._frame_ids = [f'{content["tree_frame"]}/{each}' for each in names]
         server.describe(data)
 
-    def _receive(self, message: Any) -> None:
+    def _take_held(self) -> None:
+        """Take the description of another solver once that is the only one."""
+        if self._held is not None and len(self._solvers) < 2:
+            self._describe(self._held)
+
+    @property
+    def _solvers(self) -> list[str]:
+        """Names of the nodes that publish states."""
+        topic = self.resolve_topic_name(TREE_STATE.name)
+        return sorted(self.publishers_of(topic, 'std_msgs/Float64MultiArray'))
+
+    def _receive(self, message: Any, info: Mapping[str, object]) -> None:
+        self._take_held()
         description = self._description
         server = self.server
         if description is None or server is None:
             return
         stamp, wind, flags, coordinates = read_state(message)
         count = len(description.scale)
-        if len(coordinates) < count or (len(coordinates) - count) % 2:
+        is_other = len(coordinates) < count or (len(coordinates) - count) % 2 > 0
+        if is_other and len(self._solvers) > 1:
+            self._followed.refused += 1
+            return
+        if not self._followed.admits(info, lambda: len(self._solvers), time.monotonic()):
+            return
+        if is_other:
             what = f'{len(coordinates)} coordinates of a tree with {count}'
             raise FormatError(what, where='tree_state')
         frame = encode_state(description, self._sequence, stamp, wind, coordinates, flags)
@@ -171,8 +199,15 @@ class ViewerNode(TreeSwayNode):
 
     def _statuses(self) -> list[Status]:
         n_pages = 0 if self.server is None else self.server.n_clients
-        values = {'pages': n_pages, 'frames': self._sequence}
-        return [Status('page', OK, f'{n_pages} pages', values)]
+        refused = self._followed.refused
+        values = {'pages': n_pages, 'frames': self._sequence, 'refused': refused}
+        text = f'{n_pages} pages'
+        solvers = self._solvers
+        if len(solvers) < 2:
+            return [Status('page', OK, text, values)]
+        mixed = f'{len(solvers)} solvers in this domain: {", ".join(solvers)}'
+        cure = 'one is shown; give each system a ROS_DOMAIN_ID or a namespace'
+        return [Status('page', WARN, f'{text}; {mixed}: {cure}', values)]
 
     def _apply(self, name: str, value: Any) -> None:
         """Forward a viewer's change to its node; a refusal arrives later."""

@@ -160,7 +160,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
                 return change(request, response)
             self.get_logger().warning(
                 f'transition {wanted.label or wanted.id} is not possible in the state '
-                f'{machine.current_state[1]!r}; possible are '
+                f'{machine.current_state[1]}; possible are '
                 + ', '.join(f'{label} ({number})' for number, label in possible.items())
             )
             response.success = False

@@ -11,10 +11,7 @@ import subprocess
 import sys
 
 import pytest
-
-pytest.importorskip('geometry_msgs', reason='ROS 2 is not installed')
-
-from tree_sway_lab.soak.command import growth, Health, health  # noqa: E402
+from tree_sway_lab.soak.health import growth, Health, health
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -37,6 +34,23 @@ def test_a_process_looks_at_itself() -> None:
     assert now.memory > 10.0
     assert now.handles > 2
     assert now.threads >= 1
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not sys.platform.startswith('linux'), reason='reads /proc')
+@pytest.mark.parametrize(
+    ('command', 'told'),
+    [
+        (['soak', '--page', '--hours', '0.001', '--slope', '1e9'], r'^slowest  of 4 clients: '),
+        (['fuzz', '--minutes', '0.03', '--only', 'Modbus TCP'], r'^Modbus TCP +\d+ messages'),
+    ],
+    ids=['soak', 'fuzz'],
+)
+def test_a_page_and_a_reader_are_tried_without_ros(command: list[str], told: str) -> None:
+    whole = [sys.executable, '-m', 'tree_sway.commands.cli', 'lab', *command]
+    ended = subprocess.run(whole, capture_output=True, text=True, cwd=ROOT, timeout=240.0)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert re.search(told, ended.stdout, re.MULTILINE)
 
 
 @pytest.mark.long

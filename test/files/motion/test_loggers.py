@@ -334,3 +334,32 @@ def test_a_unit_that_gravity_tells_is_said(name: str, tmp_path: Path) -> None:
     path = tmp_path / 'motion.csv'
     path.write_text(READ[name][2].replace('gFx,gFy,gFz', 'ax,ay,az'), encoding='utf-8')
     assert any('taken in g, as gravity is in it' in note for note in read_motion(path).notes)
+
+
+@pytest.mark.parametrize('largest', [41.5, 300.25])
+def test_a_rate_beyond_any_in_radians_is_in_degrees_however_small_it_mostly_is(
+    tmp_path: Path, largest: float
+) -> None:
+    """A stem turns by a few degrees per second, and in one gust faster."""
+    path = tmp_path / 'motion.csv'
+    rows = [largest if 40 <= k < 44 else 2.25 for k in range(200)]
+    text = ''.join(f'{20 * k},0,{rate},0\n' for k, rate in enumerate(rows))
+    path.write_text(f'millis,gx,gy,gz\n{text}', encoding='utf-8')
+    record = read_motion(path)
+    assert record.rate is not None
+    np.testing.assert_allclose(record.rate[:, 1], np.radians(rows))
+    assert any('taken in deg/s, as it is up to' in note for note in record.notes)
+    path.write_text(f'millis,gx,gy,gz\n{text.replace(".25", "").replace(".5", "")}')
+    with pytest.raises(FormatError, match=r'at most, which is no rad/s'):
+        read_motion(path)  # whole numbers may be counts of a converter
+
+
+def test_one_fault_among_small_rates_tells_no_unit(tmp_path: Path) -> None:
+    path = tmp_path / 'motion.csv'
+    rows = [99.5 if k == 40 else 0.25 for k in range(200)]
+    text = ''.join(f'{20 * k},0,{rate},0\n' for k, rate in enumerate(rows))
+    path.write_text(f'millis,gx,gy,gz\n{text}', encoding='utf-8')
+    record = read_motion(path)
+    assert record.rate is not None
+    assert record.rate[0, 1] == 0.25
+    assert any('taken in rad/s; call it gx [deg/s] if it is' in note for note in record.notes)

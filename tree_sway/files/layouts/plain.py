@@ -93,6 +93,7 @@ def _is_table(lines: Sequence[str]) -> bool:
 
 
 def _read(lines: list[str], source: str) -> TextTable:
+    lines = lines or ['']
     first = header_line(lines) or 0
     above = tuple(lines[:first])
     lines[:first] = [''] * first

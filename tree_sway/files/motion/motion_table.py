@@ -54,7 +54,9 @@ _GRAVITY = (8.5, 11.2)
 _UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665}
 """Units that gravity tells, of which none is that of SI."""
 _FASTEST = 35.0
-"""Largest angular rate that a sensor measures [rad/s]."""
+"""Largest angular rate that a sensor measures [rad/s]: 2,000 degrees per second."""
+_LARGEST = 0.999
+"""Share of the rates that the largest exceeds: a few more may be faults."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
 _SHORTEST = 5e-4
@@ -234,6 +236,13 @@ def _size(values: Floats) -> float:
     return float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0
 
 
+def _largest(values: Floats) -> float:
+    """Return the length of the largest vectors; 0 without one."""
+    size = np.linalg.norm(values, axis=1)
+    size = size[np.isfinite(size)]
+    return float(np.quantile(size, _LARGEST, method='lower')) if len(size) else 0.0
+
+
 def _without_unit(
     table: TextTable, maker: dict[str, Any], column: int, quantity: str, values: Floats
 ) -> tuple[float, str]:
@@ -245,8 +254,15 @@ def _without_unit(
     for told in _gravity(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
         return _UNITS[told], said if told else ''
-    if (size := _size(values)) > most:
-        what = f'{name} without a unit is {size:.4g} as a median, which is no {unit}'
+    of, size = 'as a median', _size(values)
+    if quantity == 'rate':
+        of, size = 'at most', _largest(values)
+        is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
+        if most < size <= np.degrees(most) and not is_count:
+            said = f'no unit of {name} in the header: taken in deg/s, as it is up to {size:.4g}'
+            return table.known_factor(quantity, 'deg/s'), said
+    if size > most:
+        what = f'{name} without a unit is {size:.4g} {of}, which is no {unit}'
         raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
     other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'

@@ -12,6 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from tree_sway.errors import FormatError, nearest
 from tree_sway.files.file_format import contains, FileFormat, format_of
 from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.paths import path_of
@@ -75,6 +76,8 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
     path = path_of(path)
     if str(path) in EXAMPLES and not path.exists():
         path = Path(str(files('tree_sway.files.wind').joinpath(f'{path}.csv')))
+    elif not path.exists() and (guess := nearest(str(path), EXAMPLES)):
+        raise FormatError('no such file', where=str(path), cure=guess)
     chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
     chosen.refuse_others(options, chosen.own_options)
     record: WindRecord = chosen.read(path, **options)

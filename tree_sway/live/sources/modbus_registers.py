@@ -27,6 +27,8 @@ _LARGEST = 65_535
 _MOST = 60
 _BAUD = 9600
 _NO_DIRECTION = -1
+_NO_VALUE = (0x7FFF, -0x8000, -1)
+"""Words of a register without a value: the largest and least, and all bits."""
 
 
 def open_modbus(address: SourceAddress) -> Source:
@@ -57,13 +59,15 @@ def open_modbus(address: SourceAddress) -> Source:
         words = struct.unpack(f'>{size}h', message.data[: 2 * size])
         if len(words) < count:
             return [Refusal(_KIND, f'{len(words)} registers of {count}')]
+        if words[speed - first] in _NO_VALUE:
+            return [Refusal(_KIND, f'no speed: the register is {words[speed - first]}')]
         value = scale * words[speed - first]
         if value < 0.0:
             return [Refusal(_KIND, f'speed is {value:g}')]
         bearing = None
         if direction != _NO_DIRECTION:
             degrees = turn * words[direction - first]
-            bearing = bearing_of(degrees)
+            bearing = None if words[direction - first] in _NO_VALUE else bearing_of(degrees)
             if bearing is None and not is_calm(value):
                 return [Refusal(_KIND, f'direction is {degrees:g} degrees')]
             bearing = heading + (bearing or 0.0)

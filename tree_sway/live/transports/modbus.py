@@ -112,11 +112,12 @@ class Modbus:
                 link.sendall(head + request)
                 end = time.monotonic() + _TIMEOUT
                 while True:
-                    theirs, zero, size, _device = struct.unpack('>HHHB', read(7, end))
+                    theirs, zero, size, device = struct.unpack('>HHHB', read(7, end))
                     if zero or not 3 <= size <= 3 + 2 * self.count:
                         raise ConnectionError('its answer is not that of Modbus')
                     answer = read(size - 1, end)
                     if theirs == number:  # others are late answers
+                        self._refuse_other(device)
                         return answer
 
             yield exchange
@@ -125,7 +126,9 @@ class Modbus:
     def _line(self) -> Iterator[Exchange]:
         """RTU: the device comes first, a checksum last."""
         serial: Any = importlib.import_module('serial')
-        with serial.Serial(self.place, self.baud, timeout=_TIMEOUT) as port:
+        with serial.Serial(
+            self.place, self.baud, timeout=_TIMEOUT, write_timeout=_TIMEOUT
+        ) as port:
 
             def exchange(request: bytes) -> bytes:
                 port.reset_input_buffer()
@@ -137,11 +140,17 @@ class Modbus:
                     answer += bytes(port.read(2 if is_failure else min(answer[2], 250) + 2))
                 if len(answer) < 5:
                     raise ConnectionError(f'no answer of device {self.device}')
-                if answer[0] != self.device or checksum(answer[:-2]) != answer[-2:]:
+                if checksum(answer[:-2]) != answer[-2:]:
                     raise ConnectionError('its answer has a wrong checksum')
+                self._refuse_other(answer[0])
                 return answer[1:-2]
 
             yield exchange
+
+    def _refuse_other(self, device: int) -> None:
+        """Raise a `ConnectionError` for an answer of another device, such as of a gateway."""
+        if device != self.device:
+            raise ConnectionError(f'device {device} answers in place of {self.device}')
 
 
 def checksum(frame: bytes) -> bytes:

@@ -38,15 +38,15 @@ def cylinders_of_nodes(
 
     """
     outer = np.flatnonzero(parent >= 0)
-    if len(outer) == 0:
-        what = 'a root without other nodes'
-        raise FormatError(what, where=source, cure='give at least two nodes')
     inner = parent[outer]
     number = np.full(len(parent), -1, dtype=np.int64)
     number[outer] = np.arange(len(outer))
     base = diameter[inner] if cones else diameter[outer]
     above = number[inner]
     roots = np.flatnonzero(above < 0)
+    if len(roots) == 0:
+        what = 'a root without other nodes'
+        raise FormatError(what, where=source, cure='let at least one node hang on the root')
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(

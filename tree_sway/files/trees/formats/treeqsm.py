@@ -65,7 +65,7 @@ def _is_text(head: str) -> bool:
         return True
     names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
     places = {re.sub(r'[^a-z]', '', name): place for place, name in enumerate(_COLUMNS)}
-    is_named = bool(lines) and all(finite(cell) is None for cell in _cells(lines[0]))
+    is_named = bool(names) and all(finite(cell) is None for cell in _cells(lines[0]))
     if is_named and max(map(len, names)) > _CRYPTIC and not places.keys() & set(names):
         return False  # a header of other columns
     if any(places.get(name, place) != place for place, name in enumerate(names)):
