@@ -212,6 +212,8 @@ def megabytes(folder: Path) -> float:
 def first_picture(line: list[str], folder: Path, environment: dict[str, str]) -> float:
     """Show a tree, open its page, and return the time until its first frame is there [s]."""
     show = [*line, 'show', 'goldcrest', '--seconds', '300', '--port', '0']
+    # Where this runs in the background of a shell, Ctrl-C is ignored, and would be by the command.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     began = time.monotonic()
     with subprocess.Popen(
         show, cwd=folder, env=environment, text=True, start_new_session=True,
@@ -227,6 +229,7 @@ def first_picture(line: list[str], folder: Path, environment: dict[str, str]) ->
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGINT)  # Ctrl-C in a terminal
+            signal.signal(signal.SIGINT, before)
         said = process.communicate(timeout=280)[1]
     assert process.returncode == 0, said
     assert address is not None, said
