@@ -6,14 +6,15 @@ Run a command in this checkout's own virtual environment, made first if it is no
 
     python3 .ci/in_venv.py tree-sway demo
     python3 .ci/in_venv.py pytest
+    python3 .ci/in_venv.py --with lint,wasm pytest
 
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
 form, with what the commands of the library need, and the further parts of the one that is named:
 `tree-sway demo` brings the real rclpy and Fast DDS of hashes-ros-jazzy.txt and no other (x86_64
-Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters; a later command adds
-what it lacks. The environment is made again when the Python differs and brought up to date when a
-file that describes the installation has changed. TREE_SWAY_VENV names another place for it than
-.venv.
+Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters. A later command adds
+what it lacks, unless `--with` has named it before. The environment is made again when the Python
+differs and brought up to date when a file that describes the installation has changed.
+TREE_SWAY_VENV names another place for it than .venv.
 
 """
 
@@ -88,9 +89,12 @@ ROS_NAMES = (
 
 def main(command):
     """Make the environment ready and become the command in it."""
+    further = set()
+    if command[:1] == ['--with']:
+        further, command = {*''.join(command[1:2]).split(',')}, command[2:]
     if not command:
         stop('no command given', 'for example: python3 .ci/in_venv.py tree-sway demo')
-    extras = extras_for(command)
+    extras = extras_for(command) | further
     environment = without_ros(dict(os.environ))
     # Set by the ROS wheels of another checkout, the second keeps those here from being found.
     for name in ('PYTHONHOME', '_ROS_WHEELS_BOOTSTRAP_COMPLETE'):

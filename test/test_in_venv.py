@@ -122,6 +122,20 @@ def test_a_command_brings_what_it_needs_and_no_more(
     assert not left & extras
 
 
+def test_what_later_commands_need_is_brought_with_the_first(
+    script: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[set[str]] = []
+    ran: list[list[str]] = []
+    monkeypatch.setattr(script, 'make_ready', lambda environment, extras: asked.append(extras))
+    monkeypatch.setattr(script.os, 'execve', lambda program, words, environment: ran.append(words))
+    for words in (['--with', 'lint,wasm', sys.executable, '-V'], [sys.executable, '-V']):
+        script.main(words)
+    assert asked[0] - asked[1] == {'lint', 'wasm'}
+    assert ran[0] == ran[1]
+    assert ran[0][1:] == ['-V']
+
+
 def test_every_extra_that_is_asked_for_is_one_of_setup_py(script: ModuleType) -> None:
     asked = {*script.ALWAYS, *script.NEEDS_OF_FILES.values(), *sum(script.NEEDS.values(), ())}
     assert len(asked) > 3

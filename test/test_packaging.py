@@ -13,6 +13,7 @@ from pathlib import Path
 import re
 import runpy
 import shutil
+import signal
 import stat
 import subprocess
 import sys
@@ -184,16 +185,18 @@ def copy_of_source(folder: Path) -> Path:
     return Path(shutil.copytree(ROOT, folder / 'source', ignore=ignored))
 
 
-def wheel_of(folder: Path) -> Path:
-    """Build the wheel of the checkout."""
+@pytest.fixture(scope='module')
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the wheel of the checkout, once for all tests of what is in it."""
+    folder = tmp_path_factory.mktemp('wheel')
     pip = [sys.executable, '-m', 'pip', '--disable-pip-version-check', 'wheel', '--no-deps']
     pip += ['--quiet', '--no-build-isolation', '-w', str(folder), str(copy_of_source(folder))]
     built = subprocess.run(pip, capture_output=True, text=True, check=False)
     if any(sign in built.stderr for sign in NO_BUILDER):
         pytest.skip('setuptools 70.1 or newer is not installed here, so no wheel can be built')
     assert built.returncode == 0, built.stderr
-    (wheel,) = folder.glob('*.whl')
-    return wheel
+    (found,) = folder.glob('*.whl')
+    return found
 
 
 def megabytes(folder: Path) -> float:
@@ -208,18 +211,25 @@ def megabytes(folder: Path) -> float:
 
 def first_picture(line: list[str], folder: Path, environment: dict[str, str]) -> float:
     """Show a tree, open its page, and return the time until its first frame is there [s]."""
-    show = [*line, 'show', 'goldcrest', '--seconds', '20', '--port', '0']
+    show = [*line, 'show', 'goldcrest', '--seconds', '300', '--port', '0']
+    # Where this runs in the background of a shell, Ctrl-C is ignored, and would be by the command.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     began = time.monotonic()
     with subprocess.Popen(
-        show, cwd=folder, env=environment, text=True,
+        show, cwd=folder, env=environment, text=True, start_new_session=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     ) as process:  # fmt: skip
         assert process.stdout is not None
         found = (re.search(r'open (http://\S+)', text) for text in process.stdout)
         address = next((match[1] for match in found if match), None)
-        if address is not None:
-            asyncio.run(first_frame(address))
-        spent = time.monotonic() - began
+        try:
+            if address is not None:
+                asyncio.run(first_frame(address))
+            spent = time.monotonic() - began
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGINT)  # Ctrl-C in a terminal
+            signal.signal(signal.SIGINT, before)
         said = process.communicate(timeout=280)[1]
     assert process.returncode == 0, said
     assert address is not None, said
@@ -242,9 +252,10 @@ async def first_frame(address: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize('installer', ['pip', 'uvx'])
-def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer: str) -> None:
+def test_the_wheel_shows_a_tree_in_a_fresh_environment(
+    wheel: Path, tmp_path: Path, installer: str
+) -> None:
     """In one line: bars and the page come along, and nothing of the checkout is there."""
-    wheel = wheel_of(tmp_path)
     venv.create(tmp_path / 'fresh', with_pip=True)
     programs = tmp_path / 'fresh' / ('Scripts' if os.name == 'nt' else 'bin')
     environment = {**os.environ, 'TREE_SWAY_CACHE': str(tmp_path / 'models')}
@@ -299,10 +310,11 @@ print(build_meta.get_requires_for_build_wheel())
 
 def test_without_a_compiler_one_is_brought_or_named(tmp_path: Path) -> None:
     """Where pip builds apart from what is installed it brings one; elsewhere one line names it."""
-    if importlib.util.find_spec('ziglang'):
-        pytest.skip('ziglang is installed here')
     source = copy_of_source(tmp_path)
-    environment = {**os.environ, 'PATH': str(tmp_path / 'nothing')}
+    hidden = tmp_path / 'hidden'  # Python runs it at its start: ziglang is not found
+    hidden.mkdir()
+    (hidden / 'sitecustomize.py').write_text("import sys; sys.modules['ziglang'] = None\n")
+    environment = {**os.environ, 'PATH': str(tmp_path / 'nothing'), 'PYTHONPATH': str(hidden)}
     environment.pop('CXX', None)
     for path, needed in ((environment['PATH'], True), (os.environ['PATH'], False)):
         done = subprocess.run(
@@ -339,13 +351,16 @@ print(FILE)
 def test_wheels_that_ziglang_compiles_step_as_here(tmp_path: Path) -> None:
     """One without a system's compiler for this machine, and one for another."""
     source = copy_of_source(tmp_path)
-    venv.create(tmp_path / 'venv', with_pip=True)
     environment = {**os.environ, 'PATH': str(tmp_path / 'nothing')}
     environment.pop('CXX', None)
-    pip = [str(tmp_path / 'venv/bin/pip'), 'wheel', '-q', '--no-deps', str(source)]
+    pip = [sys.executable, '-m', 'pip', 'wheel', '-q', '--no-deps', str(source)]
     for wheel in ('', 'manylinux_2_17_aarch64'):
+        # The first brings ziglang; the other takes that of this environment, where it is there.
+        has_zig = importlib.util.find_spec('ziglang') and importlib.util.find_spec('setuptools')
+        own = ['--no-build-isolation'] if wheel and has_zig else []
         got = subprocess.run(
-            [*pip, '-w', str(tmp_path / 'wheels')], env={**environment, 'TREE_SWAY_WHEEL': wheel},
+            [*pip, *own, '-w', str(tmp_path / 'wheels')],
+            env={**environment, 'TREE_SWAY_WHEEL': wheel},
             capture_output=True, text=True, check=False,
         )  # fmt: skip
         assert got.returncode == 0, got.stderr
@@ -387,8 +402,7 @@ def test_pixi_has_what_setup_asks_for(setup_words: dict[str, Any]) -> None:
 
 
 @pytest.mark.long
-def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> None:
-    wheel = wheel_of(tmp_path)
+def test_a_wheel_brings_executables_to_where_ros2_run_looks(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         infos = {re.sub(r'.*\.data/data/', '', info.filename): info for info in archive.infolist()}
     for node in NODES:
@@ -413,7 +427,14 @@ def test_colcon_gets_no_second_executables(tmp_path: Path) -> None:
     installed = tmp_path / 'install'
     command = [sys.executable, 'setup.py', '-q', 'install', '--prefix', str(installed)]
     command += ['--single-version-externally-managed', '--record', str(tmp_path / 'record')]
-    result = subprocess.run(command, cwd=source, capture_output=True, text=True, check=False)
+    # Where scripts go is asked here, not what a compiler makes: `-o FILE` is the end of its words.
+    compiler = tmp_path / 'compiler'
+    compiler.write_text('#!/bin/sh\nfor file; do :; done\n: >"$file"\n')
+    compiler.chmod(0o755)
+    result = subprocess.run(
+        command, cwd=source, env={**os.environ, 'CXX': str(compiler)},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
     if NO_BUILDER[0] in result.stderr:
         pytest.skip('setuptools is not installed here')
     assert result.returncode == 0, result.stderr

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 
 from geometry_msgs.msg import PoseArray, WrenchStamped
 import numpy as np
@@ -33,7 +32,8 @@ class Gripper:
         self._segment, self._force, self._seconds = segment, np.array(force), seconds
         self._row: int | None = None
         self._frame_id = ''
-        self._began = 0.0
+        self._is_there = False
+        self._share = 0.0
         self.is_open = False
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node.create_subscription(String, 'tree_description', self._describe, latched)
@@ -54,18 +54,18 @@ class Gripper:
         if self._row is not None:
             turn = message.poses[self._row].orientation
             self._axes = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
-            self._began = self._began or time.monotonic()
+            self._is_there = True
 
     def _pull(self) -> None:
         """Send the force in the segment's axes, as the frame of a wrench asks."""
-        if not self._began:
+        if not self._is_there:
             return
-        share = (time.monotonic() - self._began) / self._seconds
-        self.is_open = share > 1.0
+        self._share += 1.0 / (_RATE * self._seconds)
+        self.is_open = self._share > 1.0
         wrench = WrenchStamped()
         wrench.header.frame_id = self._frame_id
         force = wrench.wrench.force
-        now = self._axes.inv().apply(self._force * (0.0 if self.is_open else share))
+        now = self._axes.inv().apply(self._force * (0.0 if self.is_open else self._share))
         force.x, force.y, force.z = now.tolist()
         self._push.publish(wrench)
 

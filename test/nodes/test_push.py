@@ -166,7 +166,7 @@ def test_branches_by_themselves_refuse_it(compose, observer, statuses, pushes, t
 def test_the_example_pulls_and_lets_go(compose, domain, tree_file):
     solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
     example = Path(__file__).parents[2] / 'examples' / 'python' / 'pull_branch.py'
-    command = [sys.executable, example, 'stem/2', '--force', '3', '0', '0', '--seconds', '1']
+    command = [sys.executable, example, 'stem/2', '--force', '3', '0', '0', '--seconds', '2']
     environment = os.environ | {'ROS_DOMAIN_ID': str(domain)}
     strongest = 0.0
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:

@@ -170,7 +170,7 @@ def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     rate = 500
     per_cycle = rate / sim.frequencies(1)[0]
     tip = []
-    for _ in range(round(12.2 * per_cycle)):
+    for _ in range(round(6.2 * per_cycle)):
         sim.step((0.0, 0.0, 0.0), 1.0 / rate)
         sim.place()
         tip.append(np.hypot(*sim.tip_displacement[:2]))
