@@ -5,7 +5,7 @@
 
 import { STRIDE } from "../placing.js";
 import { multiply, turned } from "../quaternions.js";
-import { lookOf, seeded } from "./looks.js";
+import { lookOf, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
@@ -28,9 +28,9 @@ const VARIETY = 200;
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
 /** Length below which a limb under the crown is dead, over that of the longest. */
 const DEAD = 0.1;
-/** Thin branches of a conifer between its limbs: length over that of these, how far apart they are over the size of a
- * cluster, and how much they fall over their length. */
-const [INNER, INNER_APART, INNER_DROOP] = [0.75, 0.4, 0.15];
+/** Thin branches of a conifer between its limbs: length over half the width of the crown, and how far apart they are over
+ * the size of a cluster. */
+const [INNER, INNER_APART] = [0.75, 0.4];
 /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
  * clothed all along. */
 const [STUB, LONG] = [4, 1.6];
@@ -46,9 +46,6 @@ const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
 const PER_VERTEX = 19;
 const ORIGIN = [0, 0, 0];
-/** Corners of a picture, along and across from its middle; and of a triangle of the same area that shows most of it. */
-const SQUARE = [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]];
-const TRIANGLE = [[-0.3, 0], [1, -0.77], [1, 0.77]];
 /** How far a card bends down at its end, over its length. */
 const BOW = 0.1;
 
@@ -93,7 +90,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const own = axes.map((axis) => turned(back, axis));
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
     for (let card = 0; card < shoot.share * each; card++) {
-      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? TRIANGLE : SQUARE);
+      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
@@ -182,7 +179,7 @@ function innerShoots({ arrays }, rest, [wide, , top], { stem, limbs: [{ base }] 
         const frame = [0, 0, Math.sin(phase / 2), Math.cos(phase / 2)];
         for (const far of [0.5 * reach, reach]) {
           shoots.push({
-            segment, at: [x + far * Math.cos(phase), y + far * Math.sin(phase), up - INNER_DROOP * far],
+            segment, at: [x + far * Math.cos(phase), y + far * Math.sin(phase), up - 0.15 * far],
             frame, size: Math.min(size, reach), phase, frequency, share: 1,
           });
         }
@@ -319,7 +316,7 @@ function candleCorners(long) {
 }
 
 /** Corners of a picture. @template T @param {(u: number, v: number) => T} at @param {number[][]} [outline] of them */
-function cornersOf(at, outline = SQUARE) {
+function cornersOf(at, outline = shapes.square) {
   return outline.map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
 }
 

@@ -270,7 +270,7 @@ class Brush {
       const far = random() ** 0.7;
       const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
       const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
-      this.at(x, y, 2 * Math.PI * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
+      this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
     }
   }
 
