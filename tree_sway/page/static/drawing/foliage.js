@@ -172,10 +172,10 @@ function innerShoots({ arrays }, rest, [wide, , top], { stem, limbs: [{ base }] 
   for (const part of stem) {
     for (let segment = first[part]; segment < first[part + 1]; segment++) {
       const [x, y, low] = rest.subarray(STRIDE * segment);
-      for (let up = low; up < low + length[segment]; up += INNER_APART * size) {
+      for (let up = Math.max(low, base + size); up < low + length[segment]; up += INNER_APART * size) {
         const phase = 2.4 * shoots.length + up;
         const share = (up - base) / (top - base);
-        const reach = (INNER + 0.2 * Math.sin(3 * phase)) * wide * Math.min(1, 4 * share, 1.5 * (1 - share));
+        const reach = (INNER + 0.2 * Math.sin(3 * phase)) * wide * Math.min(1, 4 * share, 1.5 - 1.5 * share);
         const frame = [0, 0, Math.sin(phase / 2), Math.cos(phase / 2)];
         for (const far of [0.5 * reach, reach]) {
           shoots.push({

@@ -18,7 +18,7 @@ const PER_VERTEX = 8;
 /** Sides of what is drawn as a flat ribbon: twigs. */
 const RIBBON = 2;
 /** Heights of the rings at the foot of a stem, over its radius. */
-const FOOT_RINGS = [0, 0.5, 1.2, 2.4];
+const FOOT_RINGS = [0, 0.6, 1.8];
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
 /** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */

@@ -266,10 +266,10 @@ class Brush {
     const unit = this.unit * leaf;
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
-      const turn = 2 * Math.PI * random();
+      const turn = 7 * random();
       const far = random() ** 0.7;
       const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
-      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
+      const light = 0.55 + (0.5 * Math.floor(LAYERS * i / count)) / (LAYERS - 1);
       this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
     }
   }
