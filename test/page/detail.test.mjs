@@ -6,7 +6,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
-import { deadWood, leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
+import { deadWood, leafMesh, limbsOf } from "../../tree_sway/page/static/drawing/foliage.js";
 import { barkMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { cornersAbout } from "../../tree_sway/page/static/drawing/impostors.js";
@@ -154,7 +154,7 @@ test("stubs below the crown of a conifer bear no needles, short limbs at its top
   };
   const rest = new Float32Array(8 * 7);
   [0, 5, 15, 5, 5, 7, 12].forEach((high, segment) => (rest[8 * segment + 2] = high));
-  assert.deepEqual([...deadWood({ arrays, nBranches: 6 }, rest, 2)], [3, 4]);
+  assert.deepEqual([...deadWood({ arrays, nBranches: 6 }, limbsOf({ arrays }, rest, 2))], [3, 4]);
 });
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {

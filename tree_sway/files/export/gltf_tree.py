@@ -44,10 +44,10 @@ _CUTOFF = 0.2
 Least alpha of a picture of leaves that is drawn: less than a small picture has on the average, so
 that far crowns are no balder than near ones.
 """
-_MOVED = 0.1
+_MOVED = 0.09
 """
-Largest motion by a weight of 1 over half the size of the tree: viewers that bound a tree by its
-targets see one little larger than it is.
+Largest motion by a weight of 1 over the least width of the tree: viewers that bound a tree by its
+targets see one little larger than it is, on every side.
 """
 _SHOOTS, _FEW_SHOOTS = 4, 1
 """Shoots per cluster of leaves with a skin, and with morph targets, which each vertex has."""
@@ -107,7 +107,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
     the basis and the amplitude of the coordinate in a ``storm``. Targets are integers which the
-    node scales (KHR_mesh_quantization): a weight of 1 moves some vertex by a twentieth of the size
+    node scales (KHR_mesh_quantization): a weight of 1 moves some vertex by a tenth of the width
     of the tree. So that small integers suffice, the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
@@ -121,7 +121,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     changes = [[_change(material, mesh, step) for step in steps] for material, mesh in meshes]
     places = [mesh.placed(rest) for _, mesh in meshes]
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
-    size = _MOVED * 0.5 * float((high - low).max())
+    size = _MOVED * float((high - low)[:2].min())
     middle = 0.5 * (low + high)
     greatest = np.array([[np.abs(change).max() for change in each] for each in changes]).max(
         axis=0

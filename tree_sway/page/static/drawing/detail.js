@@ -3,6 +3,15 @@
 /** Chooses the level of detail of each tree within a budget: a small tree is a picture of its kind, a larger one has its
  * thickest branches, one out of sight is not drawn. */
 
+import { textOf } from "../files.js";
+
+/** For a few trees and for a crowd, whose many kinds take memory, first with a graphics unit, then without: largest number of
+ * segments and of cards of leaves per tree, and of both in all trees; height on the screen from which on a tree has all of
+ * its cards, and below which it is a picture [px]. @type {Budget[][]} */
+export const BUDGETS = JSON.parse(await textOf("drawing/budgets.json"));
+
+/** @typedef {{segments: number, cards: number, all: number, near: number, far: number}} Budget */
+
 /** Area on the screen per segment [px^2]. */
 const AREA = 80;
 /** Height for which the finest level is made, at least [px]. */

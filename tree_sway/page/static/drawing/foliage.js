@@ -5,7 +5,7 @@
 
 import { STRIDE } from "../placing.js";
 import { multiply, turned } from "../quaternions.js";
-import { lookOf, seeded } from "./looks.js";
+import { lookOf, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
@@ -28,6 +28,9 @@ const VARIETY = 200;
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
 /** Length below which a limb under the crown is dead, over that of the longest. */
 const DEAD = 0.1;
+/** Thin branches of a conifer between its limbs: length over half the width of the crown, and how far apart they are over
+ * the size of a cluster. */
+const [INNER, INNER_APART] = [0.75, 0.4];
 /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
  * clothed all along. */
 const [STUB, LONG] = [4, 1.6];
@@ -37,15 +40,12 @@ const [WEEPS, CURTAIN] = [0.8, 7];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.5, 17];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.6, 27];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
 const PER_VERTEX = 19;
 const ORIGIN = [0, 0, 0];
-/** Corners of a picture, along and across from its middle; and of a triangle of the same area that shows most of it. */
-const SQUARE = [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]];
-const TRIANGLE = [[-0.3, 0], [1, -0.77], [1, 0.77]];
 /** How far a card bends down at its end, over its length. */
 const BOW = 0.1;
 
@@ -68,7 +68,9 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const { each, along, spray, isSpread } = cardsOf(look, meanSize, carrier.length, cards, most);
   const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, meanSize));
-  const dead = look.has_needles ? deadWood(kind, rest, highest) : new Set();
+  const limbs = limbsOf(kind, rest, highest);
+  if (isSpread && look.form === "needles") shoots.push(...innerShoots(kind, rest, high, limbs, meanSize));
+  const dead = look.has_needles ? deadWood(kind, limbs) : new Set();
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
@@ -88,7 +90,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const own = axes.map((axis) => turned(back, axis));
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
     for (let card = 0; card < shoot.share * each; card++) {
-      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? TRIANGLE : SQUARE);
+      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
@@ -146,17 +148,51 @@ function leafyShoot(kind, rest, i) {
   return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
-/** Segments of a conifer's dead stubs, which bear no needles: limbs below the longest one and much shorter, with
- * their branches. @param {Kind} kind @param {Float32Array} rest
- * @param {number} highest segment, up to which the stem goes */
-export function deadWood({ arrays, nBranches }, rest, highest) {
+/** Branches that are the stem, the limbs on it, and the longest of these. @param {Kind} kind
+ * @param {Float32Array} rest @param {number} highest segment, up to which the stem goes */
+export function limbsOf({ arrays }, rest, highest) {
   const { branch_first: first, branch_parent: parents } = arrays;
-  const stem = new Set();
+  const stem = /** @type {Set<number>} */ (new Set());
   for (let part = first.findIndex((from) => from > highest) - 1; part >= 0; part = parents[part]) stem.add(part);
   const isLimb = (/** @type {number} */ branch) => !stem.has(branch) && stem.has(parents[branch]);
   const limbs = Array.from(parents, (_, branch) => branch).filter(isLimb)
     .map((branch) => ({ branch, reach: reachOf(arrays, branch), base: rest[STRIDE * first[branch] + 2] }));
   const longest = limbs.reduce((most, each) => (each.reach > most.reach ? each : most), { reach: 0, base: 0 });
+  return { stem, limbs, longest };
+}
+
+/** Shoots of the thin branches that a spruce or a fir has on its stem between its limbs, so that its layers are no
+ * shelves apart from each other; they have no wood of their own. @param {Kind} kind @param {Float32Array} rest
+ * @param {number[]} high corner of the box of the tree @param {ReturnType<typeof limbsOf>} limbs
+ * @param {number} size of a cluster [m] @returns {Shoot[]} */
+function innerShoots({ arrays }, rest, [wide, , top], { stem, limbs: [{ base }] }, size) {
+  const { branch_first: first, segment_length: length, leaf_frequency: [frequency] } = arrays;
+  /** @type {Shoot[]} */
+  const shoots = [];
+  for (const part of stem) {
+    for (let segment = first[part]; segment < first[part + 1]; segment++) {
+      const [x, y, low] = rest.subarray(STRIDE * segment);
+      for (let up = Math.max(low, base + size); up < low + length[segment]; up += INNER_APART * size) {
+        const phase = 2.4 * shoots.length + up;
+        const share = (up - base) / (top - base);
+        const reach = (INNER + 0.2 * Math.sin(3 * phase)) * wide * Math.min(1, 4 * share, 1.5 - 1.5 * share);
+        const frame = [0, 0, Math.sin(phase / 2), Math.cos(phase / 2)];
+        for (const far of [0.5 * reach, reach]) {
+          shoots.push({
+            segment, at: [x + far * Math.cos(phase), y + far * Math.sin(phase), up - 0.15 * far],
+            frame, size: Math.min(size, reach), phase, frequency, share: 1,
+          });
+        }
+      }
+    }
+  }
+  return shoots;
+}
+
+/** Segments of a conifer's dead stubs, which bear no needles: limbs below the longest one and much shorter, with
+ * their branches. @param {Kind} kind @param {ReturnType<typeof limbsOf>} limbs */
+export function deadWood({ arrays, nBranches }, { limbs, longest }) {
+  const { branch_first: first, branch_parent: parents } = arrays;
   const dead = new Set(limbs.filter(({ reach, base }) => reach < DEAD * longest.reach && base < longest.base).map(({ branch }) => branch));
   const segments = new Set();
   for (let branch = 0; branch < nBranches; branch++) {
@@ -280,7 +316,7 @@ function candleCorners(long) {
 }
 
 /** Corners of a picture. @template T @param {(u: number, v: number) => T} at @param {number[][]} [outline] of them */
-function cornersOf(at, outline = SQUARE) {
+function cornersOf(at, outline = shapes.square) {
   return outline.map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
 }
 

@@ -5,9 +5,12 @@
 import { LOOKS } from "../checks.js";
 
 /** Look of an average broadleaf; outlines of leaves; and, by pattern of the bark, the colour and height (over that of the
- * tree) of a different bark at the foot.
- * @type {{average: Look, outlines: Record<string, number[][]>, feet: Record<string, {color: number[], height: number}>}} */
-export const { average, outlines, feet } = LOOKS;
+ * tree) of a different bark at the foot; brightness of the ground of each pattern; angle and size of leaflets like fingers, and ends of tufts on a picture; corners of a
+ * picture, along and across from its middle, and of a triangle of the same area that shows most of it.
+ * @type {{average: Look, outlines: Record<string, number[][]>, feet: Record<string, {color: number[], height: number}>,
+ * grounds: Record<string, number>, places: Record<string, number[][]>,
+ * shapes: Record<"square" | "triangle", number[][]>}} */
+export const { average, outlines, shapes, feet, grounds, places } = LOOKS;
 
 /** Outline of a leaf from stalk to tip, an oval one for unknown forms. @param {Look} look */
 export const outlineOf = ({ form }) => outlines[form] ?? outlines.ovate;

@@ -17,6 +17,8 @@ const BARK_TILE = 0.6;
 const PER_VERTEX = 8;
 /** Sides of what is drawn as a flat ribbon: twigs. */
 const RIBBON = 2;
+/** Heights of the rings at the foot of a stem, over its radius. */
+const FOOT_RINGS = [0, 0.6, 1.8];
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
 /** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
@@ -108,16 +110,19 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
     ringAt = climbed;
     // At a joint both segments agree on the radius: no steps in the bark.
     const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
-    const flare = isStem ? Math.exp(-climbed / (1.3 * baseRadius)) : 0;
-    const ringRadius = Math.max(isTip ? radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.7 * flare);
     const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
-    const tilesUp = (climbed * tilesAround) / (2 * Math.PI * baseRadius);
-    for (let k = 0; k < corners; k++) {
-      const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
-        : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];
-      values.push(placer.slots[segment], isTip ? length[segment] : 0, ...corner, (tilesAround * k) / sides, tilesUp, open);
+    for (const up of isStem && s === from ? FOOT_RINGS : [0]) {
+      const above = climbed / baseRadius + up;
+      const flare = isStem ? Math.exp(-above) : 0;
+      const ringRadius = Math.max(isTip ? radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
+      for (let k = 0; k < corners; k++) {
+        const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
+          : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];
+        values.push(placer.slots[segment], isTip ? length[segment] : up * baseRadius, ...corner);
+        values.push((tilesAround * k) / sides, (above * tilesAround) / (2 * Math.PI), open);
+      }
+      if (s > from || up) joinRings(indices, values.length / PER_VERTEX - corners, corners);
     }
-    if (s > from) joinRings(indices, values.length / PER_VERTEX - corners, corners);
   }
 }
 
@@ -127,7 +132,7 @@ const sidesOf = (points) => (points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
 /** Place of a corner across the branch; at the foot of a stem rings bulge into roots.
  * @param {number} radius [m] @param {number} flare 1 at the foot, 0 above it @param {number} angle */
 function tubeCorner(radius, flare, angle) {
-  const bulged = radius * (1 + 0.2 * flare * Math.cos(ROOTS * angle));
+  const bulged = radius * (1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle)));
   return [bulged * Math.cos(angle), bulged * Math.sin(angle)];
 }
 

@@ -7,7 +7,7 @@ import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
 import { between, distance } from "../quaternions.js";
 import { Backdrop, DAYLIGHT } from "./backdrop.js";
 import { Camera } from "./camera.js";
-import { Detail, levelsOf } from "./detail.js";
+import { BUDGETS, Detail, levelsOf } from "./detail.js";
 import {
   canvasTexture, chosenTexture, contextOf, depthTexture, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
   uploadPoses, use,
@@ -25,16 +25,8 @@ import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
-/** Largest number of segments and of cards of leaves per tree, and of both in all trees; height on the screen from
- * which on a tree has all of its cards, and below which it is a picture [px]. */
-const MOST = { segments: 40000, cards: 96000, all: 200000, near: 450, far: 90 };
 /** Cost of a card over that of a segment, which the processor places for each frame. */
 const CARD = 0.35;
-/** The same for a crowd, whose many kinds take memory. */
-const MOST_MANY = { ...MOST, cards: 16000 };
-/** The same without a graphics unit, for a few trees and for a crowd. */
-const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
-const MOST_CROWD = { ...MOST_SLOW, segments: 5000, cards: 1800, all: 8000, far: 220 };
 /** Frames from one choice of levels to the next while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** Largest angle between a branch and the pointer that picks it [rad]. */
@@ -150,8 +142,7 @@ export class Scene {
   describe(description) {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
-    const [many, few] = this.isSlow ? [MOST_CROWD, MOST_SLOW] : [MOST_MANY, MOST];
-    const most = trees.length > CROWD ? many : few;
+    const most = BUDGETS[+this.isSlow][+(trees.length > CROWD)];
     for (const { impostor, bark, leaf } of this._levels) {
       impostor?.free();
       for (const part of [bark, leaf]) discard(this.gl, part);

@@ -33,14 +33,12 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-// Share of sunlight that reaches a point, filtered over four places around it, which are turned by an angle.
+// Share of sunlight that reaches a point, filtered over two places beside it, which are turned by an angle.
 float sunlight(vec3 p, float soft, float turn) {
   vec3 at = 0.5 + 0.5 * fallen(p);
   float low = at.z - 0.35 * shadowTop * sqrt(1.0 / shadowTop);
   vec2 a = soft * vec2(cos(turn), sin(turn));
-  vec2 b = vec2(-a.y, a.x);
-  return 0.25 * (texture(sunMap, vec3(at.xy + a, low)) + texture(sunMap, vec3(at.xy + b, low))
-    + texture(sunMap, vec3(at.xy - a, low)) + texture(sunMap, vec3(at.xy - b, low)));
+  return 0.5 * (texture(sunMap, vec3(at.xy + a, low)) + texture(sunMap, vec3(at.xy - a, low)));
 }
 float sunlight(vec3 p) { return sunlight(p, 0.0038, 0.38); }
 
@@ -107,8 +105,8 @@ void main() {
   } else {
     vec3 across = turned(q, vec3(0.0, ring.yz));
     // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
-    float foot = max(0.0, 1.0 - 40.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
-    p += root.w * (1.0 + (0.25 + 1.35 * step(0.5, shadowArea.w)) * foot) * across;
+    float foot = max(0.0, 1.0 - 60.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
+    p += root.w * (1.0 + (0.15 + 1.45 * step(0.5, shadowArea.w)) * foot) * across;
     normal = across;
   }
   at = skin.xy;
@@ -148,8 +146,9 @@ void main() {
   }
   vec3 own = barkColor;
   if (footHeight > 0.0) {
-    float up = high / footHeight + 0.7 * (noise(at * vec2(5.0, 1.5)) - 0.5);
-    own = mix(footColor, barkColor, smoothstep(0.75, 1.1, up));
+    // Rifts of it reach up between the bark above.
+    float up = high / footHeight + 1.6 * (noise(at * vec2(9.0, 1.4)) - 0.5);
+    own = mix(footColor, barkColor, smoothstep(0.66, 0.78, up));
   }
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
@@ -205,13 +204,15 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.22, 1.0, sunlight(p, 0.013, 3.0 * flutter.y)) * (0.25 + 0.75 * near);
-  vec3 up = sky * (0.12 + 0.83 * near) * (0.8 + 0.2 * n.z * side);
+  float sunny = mix(0.16, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
+  vec3 up = sky * (0.16 + 0.94 * near) * (0.8 + 0.2 * n.z * side);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.2, 1.25, 0.4) * (0.9 * max(-across, 0.0));
-  vec3 direct = sun * sunny * (0.12 + 0.9 * max(0.75 * across + 0.25, 0.0) + through);
-  // Greens vary. In autumn shaded leaves, and some others, turn last.
+  vec3 through = vec3(1.15, 1.2, 0.55) * (1.05 * max(-across, 0.0));
+  vec3 direct = sun * sunny * (0.16 + 1.15 * max(0.7 * across + 0.3, 0.0) + through);
+  // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
+  // autumn shaded leaves, and some others, turn last.
   vec3 hue = vec3(1.0, 0.99, 1.06) + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
+  hue += (0.6 * (flutter.w - 1.0) + 0.25 * max(0.0, near - 0.7)) * vec3(0.7, 0.3, -0.6);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
@@ -239,7 +240,8 @@ void main() {
   float mixed = max(0.0, log2(180.0 * small));
   float least = mix(0.5, 0.06 + 0.88 * chance, min(1.0, 0.3 * mixed));
   if (edge * leaf.a < least) discard;
-  color = vec4(leaf.rgb / max(leaf.a, 0.01) * lit + veil, 1.0);
+  float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * min(1.0, 0.3 * mixed);
+  color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, 1.0);
 }
 
 #part plainleaf.vertex leaf.vertex
@@ -295,7 +297,7 @@ void main() {
   vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   float clear = clearness(p);
-  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
+  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.15 + 0.6 * dot(n, light)));
   bool isShadow = shadowArea.w > 0.5;
   lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
   veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
@@ -367,7 +369,7 @@ void main() {
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
   vec3 tint = mix(vec3(0.33, 0.45, 0.18), vec3(0.46, 0.53, 0.26), blade.w);
   // A bent blade shows its pale side.
-  tint *= (corner == 0.0 ? 1.15 : 0.9) + 0.8 * max(0.0, lean - 0.66);
+  tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
   base = vec4(tint * (0.5 + 0.5 * sunlight(vec3(foot, ground))), clearness(p));
   gl_Position = seen(p);
@@ -444,7 +446,12 @@ vec3 heaven(vec3 way) {
     float near = 0.008 + 0.024 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.008 * noise(vec2(turn * 22.0, 5.0));
     vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.36) * dimmed, 0.5);
     if (way.z < far) c = mix(horizon, blue, 0.28);
-    if (way.z < near) c = mix(horizon, blue, 0.5 * smoothstep(-0.004, near, way.z) + 0.06);
+    if (way.z < near) c = mix(horizon, blue, 0.5);
+    // The edge of a wood: crowns of several sizes, darker at their feet.
+    float wood = 0.007 + 0.007 * noise(vec2(turn * 5.0, 2.0)) + 0.004 * noise(vec2(turn * 60.0, 4.0))
+      + 0.0016 * noise(vec2(turn * 190.0, 6.0));
+    vec3 leafy = dimmed * mix(vec3(0.3, 0.38, 0.3), vec3(0.42, 0.5, 0.36), noise(vec2(turn * 60.0, 90.0 * way.z)));
+    if (way.z < wood) c = mix(horizon, leafy, 0.62 + 0.2 * smoothstep(wood, 0.0, way.z));
   }
   return c;
 }
@@ -473,7 +480,8 @@ void main() {
         + 0.24 * grain(p, 60.0, pixel);
     }
     soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-    c = mix(horizon, soil, exp(-haze * far));
+    // Far meadows stay green up to the edge of the wood.
+    c = mix(horizon, soil, max(0.55 * kind, exp(-haze * far)));
   }
   color = vec4(c, 1.0);
 }

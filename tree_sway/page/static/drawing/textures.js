@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: leaves, alone or in sprays, cut out by their alpha; and bark. */
 
-import { outlineOf, seeded } from "./looks.js";
+import { grounds, outlineOf, places, seeded } from "./looks.js";
 
 /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
  * the picture. */
-export const [CLUMP, CLUMP_FILLED] = [12, 1.3];
+export const [CLUMP, CLUMP_FILLED] = [12, 1.1];
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -56,7 +56,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else if (isClump && along > (hasLeaflets ? 8 : 5)) brush.clump(1 / along);
+  else if (isClump && along > (hasLeaflets ? 8 : 2)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
@@ -64,23 +64,17 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
 /** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
 const BARK_WIDE = 128;
 
-/** Brightness of the ground of each pattern of bark, and the function that paints marks on it.
- * @type {Record<string, {ground: number, paint: (brush: BarkBrush) => void}>} */
-const BARKS = {
-  furrows: { ground: 0.5, paint: paintRidges },
-  plates: { ground: 0.4, paint: paintPlates },
-  scales: { ground: 0.4, paint: paintPlates },
-  dashes: { ground: 0.98, paint: paintDashes },
-  smooth: { ground: 0.94, paint: (brush) => paintSpots(brush, true) },
-  flakes: { ground: 0.85, paint: (brush) => paintSpots(brush, false) },
+/** Functions that paint the marks of each pattern of bark. @type {Record<string, (brush: BarkBrush) => void>} */
+const MARKS = {
+  furrows: paintRidges, plates: paintPlates, scales: paintPlates, dashes: paintDashes,
+  smooth: (brush) => paintSpots(brush, true), flakes: (brush) => paintSpots(brush, false),
 };
-const OTHER_BARK = { ground: 0.8, paint: BARKS.flakes.paint };
 
 /** Paint bark as shares of its colour. @param {string} pattern @returns {HTMLCanvasElement} */
 export function barkPicture(pattern) {
-  const { ground, paint } = BARKS[pattern] ?? OTHER_BARK;
-  const brush = new BarkBrush(ground);
-  paint(brush);
+  const known = pattern in MARKS ? pattern : "flakes";
+  const brush = new BarkBrush(grounds[known]);
+  MARKS[known](brush);
   return brush.context.canvas;
 }
 
@@ -188,7 +182,6 @@ class Brush {
     this.look = look;
     this.random = random;
     this.half = 0.5 * width;
-    this.isAutumn = isAutumn;
     this.unit = IN_LEAFLETS[look.form] ?? 1;
     const half = outlineOf(look).map(([x, y]) => [x, 0.5 * look.slenderness * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
@@ -258,9 +251,6 @@ class Brush {
           const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
           const size = Math.min(unit * (0.7 + 0.35 * random()), 0.99 - cx, Math.sin(lean) * cy < 0 ? 1 : room);
           if (size > 0.3 * unit) this.at(cx, cy, lean, 1, () => this.leaf(size, light));
-          if (look.form === "heart" && layer && !this.isAutumn && random() < 0.3) {
-            this.at(cx, cy, lean + 0.8, 1, () => this.blossom(0.8 * unit));
-          }
         }
         const [ex, ey] = [x + long * Math.cos(turn), y + long * Math.sin(turn)];
         const size = Math.min(0.9 * unit, 0.99 - ex, (this.half - Math.abs(ey)) / Math.max(0.1, Math.abs(Math.sin(turn))));
@@ -269,20 +259,18 @@ class Brush {
     }
   }
 
-  /** A clump of shoots seen from afar: small leaves in layers with gaps between them, without an outline that would
-   * look like one large leaf. @param {number} leaf length of one */
+  /** A clump of shoots seen from afar: small leaves in layers, fewer and fewer from its middle on, as any outline would
+   * look like that of one large leaf. @param {number} leaf length of one */
   clump(leaf) {
     const { half, random } = this;
     const unit = this.unit * leaf;
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
-      const turn = 2 * Math.PI * random();
-      // Boughs stand out on all sides, so that it is no disc.
-      const far = Math.sqrt(random()) * (0.8 + 0.2 * Math.sin(5 * turn + 1));
-      const [along, across] = [far * Math.cos(turn), far * Math.sin(turn)];
-      const [x, y] = [0.5 + (0.5 - unit) * along, (half - unit) * across];
-      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
-      this.at(x, y, 2 * Math.PI * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
+      const turn = 7 * random();
+      const far = random() ** 0.7;
+      const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
+      const light = 0.55 + (0.5 * Math.floor(LAYERS * i / count)) / (LAYERS - 1);
+      this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
     }
   }
 
@@ -347,7 +335,7 @@ class Brush {
 
   /** Tufts at the end of a shoot and of its side shoots. */
   tufts() {
-    for (const [x, y] of [[0.27, -0.3], [0.3, 0.34], [0.47, -0.48], [0.5, 0.5], [0.62, 0]]) {
+    for (const [x, y] of places.tufts) {
       const [far, beside] = [x + 0.08 * this.random(), this.half * y];
       this.tuft(far, beside, Math.atan2(0.6 * beside, 0.4), y ? 0.27 : 0.36, 20);
     }
@@ -389,21 +377,6 @@ class Brush {
     }
   }
 
-  /** Small pale flowers that hang under a leaf-like bract. @param {number} long [picture lengths] */
-  blossom(long) {
-    const { context, random } = this;
-    context.fillStyle = css([0.78, 0.82, 0.5], 1);
-    context.beginPath();
-    context.ellipse(0.3 * long, 0, 0.3 * long, 0.09 * long, 0, 0, 7);
-    context.fill();
-    for (let i = 0; i < 9; i++) {
-      context.fillStyle = css([0.97, 0.93, 0.62], 0.85 + 0.15 * random());
-      context.beginPath();
-      context.arc(long * (0.45 + 0.4 * random()), 0.4 * long * (random() - 0.5), 0.075 * long, 0, 7);
-      context.fill();
-    }
-  }
-
   /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
    * @param {string} color of the stalk */
   leaflets(blade, color) {
@@ -411,7 +384,7 @@ class Brush {
     const size = 1 / IN_LEAFLETS[form];
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
-      for (const [lean, share] of [[2, 0.55], [-2, 0.55], [1.3, 0.8], [-1.3, 0.8], [0.6, 0.95], [-0.6, 0.95], [0, 1]]) {
+      for (const [lean, share] of places.digitate) {
         this.at(0.36, 0, lean + 0.1 * (random() - 0.5), share * size, blade);
       }
       return;
