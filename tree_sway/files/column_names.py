@@ -47,7 +47,9 @@ _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SCALED = re.compile(r'(\d+(?:\.\d+)?) (\D.*)')
-_AXIS_FIRST = re.compile(r'^([XYZxyz])[ _-]([A-Za-z]{3,}.*)')
+_AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
+_GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
+"""Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
 _SHAPEFILE_NAME = 10
@@ -119,7 +121,7 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
     is the text in the first brackets, or empty without them. A number in brackets, as in ``u(1)``,
     tells the element of a logger's array.
     """
-    text = column.strip().strip('"').strip()
+    text = _GROUP.sub('', column.strip().strip('"').strip())
     in_brackets = [found for found in _BRACKETS.findall(text) if not found.isdigit()]
     behind = [found.strip() for found in _BEHIND.findall(text)]
     name = _NAME_ENDS.sub('', text, count=1).strip() or text

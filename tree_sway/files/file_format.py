@@ -166,6 +166,9 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
         what, cure = foreign_file(Path('cloud.las'))
         return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
     if head:
-        need = 'an inventory has columns for the place, the species, and the height or dbh'
+        need = (
+            'an inventory has columns for the place, the species, and the height or dbh; a tree '
+            'as a table has segment, parent, x0, y0, z0, x1, y1, z1, d0, d1 [m]'
+        )
         cure = f'{need}; {cure}' if _names_trees(head) else f'{cure}; {need}'
     return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

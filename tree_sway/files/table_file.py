@@ -22,9 +22,11 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.column_names import (
     COLUMNS,
+    folded,
     is_name,
     name_and_unit,
     rank_of,
+    SENDERS,
     unit_factor,
     unit_in_name,
     unit_known,
@@ -42,6 +44,8 @@ _MEND = 'correct the cell or remove the row'
 _NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
 _WORDS = re.compile(r'\w+(?:\s+[\w/]+){2,}')
+_THOUSANDS = re.compile(r'(?<=\d)\.(?=\d{3}(?:\.\d{3})*,\d)')
+"""Point between the thousands of a number with a decimal comma."""
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 
 
@@ -174,6 +178,15 @@ class TextTable:
         split = (self.split(self.texts[row]) for row in rows)
         return [row[index] if index < len(row) else '' for row in split]
 
+    def refuse_several(self) -> None:
+        """Refuse rows of several instruments, told by a column that names them."""
+        for index, name in enumerate(self.columns):
+            if folded(name_and_unit(name, '')[0]) in SENDERS[:-1]:
+                found = sorted({*self.cells(index, range(len(self.texts)))} - {'', name})
+                if len(found) > 1:
+                    what = f'rows of {len(found)} instruments: {", ".join(found[:4])}'
+                    raise self.error(what, cure='write a table for each')
+
     def family(
         self, number: str, parent: str, none: Sequence[int], what: str
     ) -> tuple[list[str], Ints]:
@@ -299,7 +312,7 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     # A line of one cell is a remark, with numbers of its own.
     first = '\n'.join(text for text in texts[1:50] if separator in text.rstrip(separator))
     if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):
-        texts[1:] = [text.replace(',', '.') for text in texts[1:]]  # decimal commas
+        texts[1:] = [_THOUSANDS.sub('', text).replace(',', '.') for text in texts[1:]]
     split = partial(split_row, separator=separator)
     columns = tuple(split(texts[0]))
     if len(columns) > _MAX_COLUMNS:

@@ -88,9 +88,11 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     """
     Return the times of texts: numbers of a unit ``factor`` in [s], or dates.
 
-    Whether they are numbers is decided by the first that is not empty.
+    Whether they are numbers is decided by the first that is neither empty nor not a number.
     """
-    first = next((stamp.strip() for stamp in stamps if stamp.strip()), '')
+    first = next(
+        (text for stamp in stamps if (text := stamp.strip()).lower() not in ('', 'nan')), ''
+    )
     if finite(first) is None or _DIGITS.fullmatch(first):
         return dates(stamps)
     numbers = [finite(stamp) for stamp in stamps]

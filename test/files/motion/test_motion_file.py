@@ -155,7 +155,7 @@ def test_rows_that_are_written_twice_are_read(tmp_path: Path) -> None:
 
 def test_rows_of_two_sensors_are_refused(tmp_path: Path) -> None:
     text = 'time,DeviceName,ax,ay,az\n0,WT1,0,0,1\n0,WT2,1,0,0\ntime,DeviceName,ax,ay,az\n'
-    with pytest.raises(FormatError, match='rows of 2 sensors: WT1, WT2'):
+    with pytest.raises(FormatError, match='rows of 2 instruments: WT1, WT2'):
         read_motion(written(tmp_path, text))
 
 

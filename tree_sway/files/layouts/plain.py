@@ -29,7 +29,7 @@ _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/\s]+|;)\s*(?:[Hh]eaders\s*,)?\s*')
-_PARTS = ('yyyymmdd', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
+_PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
@@ -100,14 +100,15 @@ def _read(lines: list[str], source: str) -> TextTable:
     header = _uncommented(lines[first])
     # Of NDBC's two columns mm and MM one is the minute.
     lines[first] = header.replace(' mm ', ' minute ') if ' MM ' in header else header
-    return replace(_without_rows_below(parse_table(lines, source)), above=above)
+    return _without_rows_of_units(replace(parse_table(lines, source), above=above))
 
 
-def _without_rows_below(table: TextTable) -> TextTable:
+def _without_rows_of_units(table: TextTable) -> TextTable:
     """
     Return a table without the rows of units and of other words below its header.
 
-    It is itself without a row of units. This may have names too, as in ``風速(m/s)`` below ``WS``.
+    It is itself without a row of units; one above the header has as many cells as that. This
+    may have names too, as in ``風速(m/s)`` below ``WS``.
     """
     words = []
     for text in table.texts[:_MOST_BELOW]:
@@ -115,19 +116,23 @@ def _without_rows_below(table: TextTable) -> TextTable:
         if any(map(_DIGIT.match, cells)):
             break
         words.append([_unit_below(cell) for cell in cells])
-    rows = [row for row, cells in enumerate(words) if _are_units(table, cells)]
+    above = [
+        cells for line in table.above if len(cells := table.split(line)) == len(table.columns)
+    ]
+    rows = [cells for cells in (*words, *above) if _are_units(table, cells)]
     if not rows:
         return table
+    below = len(words) if rows[0] in words else 0
     units = [
         '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
-        for name, cell in zip(table.columns, words[rows[0]], strict=False)
+        for name, cell in zip(table.columns, rows[0], strict=False)
     ]
     return replace(
         table,
-        numbers=table.numbers[len(words) :],
-        texts=table.texts[len(words) :],
+        numbers=table.numbers[below:],
+        texts=table.texts[below:],
         units=tuple(units),
-        unit_line=table.numbers[rows[0]],
+        unit_line=table.numbers[words.index(rows[0])] if below else table.header_line,
     )
 
 

@@ -30,7 +30,6 @@ from tree_sway.files.column_names import (
     folded,
     motion_of,
     name_and_unit,
-    SENDERS,
     unit_known,
 )
 from tree_sway.files.layouts.known import table_of
@@ -44,7 +43,7 @@ from tree_sway.files.zipped import tables_in
 
 _AXES = {'acceleration': 'xyz', 'rate': 'xyz', 'orientation': 'xyzw'}
 _VECTORS = ('rate', 'acceleration')
-_BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis)?')
+_BARE_AXIS = re.compile(r'(?:axis)?([xyz])(?:axis|value)?')
 _ABOUT = 'Metadata.csv'
 """File of Sensor Logger about the phone."""
 _EARTH = re.compile('freeacc')
@@ -109,7 +108,7 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
     if times is None or not picked:
         what = f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}'
         raise table.error(what, cure=_NAMES)
-    _refuse_several(table)
+    table.refuse_several()
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
     _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
@@ -267,17 +266,6 @@ def _without_unit(
     other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return 1.0, note
-
-
-def _refuse_several(table: TextTable) -> None:
-    """Refuse a table with rows of several sensors."""
-    for column, name in enumerate(table.columns):
-        if folded(name) in SENDERS[:-1]:
-            cells = table.cells(column, range(len(table.texts)))
-            found = sorted({*cells} - {'', table.columns[column]})
-            if len(found) > 1:
-                what = f'rows of {len(found)} sensors: {", ".join(found[:4])}'
-                raise table.error(what, cure='write a table for each, and give each its place')
 
 
 def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: str) -> None:

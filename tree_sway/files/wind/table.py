@@ -42,6 +42,7 @@ _HEAD = 200
 _HEIGHT = re.compile(r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))')
 """Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``."""
 _WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
+_CIRCLE = 2.0 * np.pi
 _USUAL = 10.0
 """Height of the wind of stations and services [m]."""
 
@@ -95,6 +96,7 @@ def wind_of_table(
     seed: float = 0,
 ) -> WindRecord:
     """Return the wind of a table, as `read_table_wind`."""
+    table.refuse_several()
     table, note = _at_one_height(with_units_in_head(table))
     rows = WindRows(table.source)
     notes = [note] if note else []
@@ -116,6 +118,7 @@ def wind_of_table(
         speed, note = _speed(table, found['wind_speed'], speed_unit)
         notes += [note] if note else []
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention or 'from')
+        notes += _doubt(table, from_where)
         yaw = 0.0
         convention = 'to'
     assert time is not None
@@ -207,6 +210,17 @@ def _speed(table: TextTable, column: Column, unit: str | None) -> tuple[Column, 
     """Column of the speed with its factor, and what was assumed for it."""
     units = speed_units(table, {'wind_speed': column.index}, unit)
     return Column(column.index, units.speed), units.note
+
+
+def _doubt(table: TextTable, direction: Column | float) -> list[str]:
+    """Return a note on directions without a unit that may be radians."""
+    if isinstance(direction, float) or table.unit_of(direction.index, 'wind_direction'):
+        return []
+    values = np.abs(table.values([direction.index]))
+    if not np.isfinite(values).any() or np.nanmax(values) > _CIRCLE or not np.nanmax(values % 1.0):
+        return []
+    name = table.columns[direction.index]
+    return [f'no {name} is above 6.3: taken in degrees; call it {name} [rad] if it is']
 
 
 def _fill(

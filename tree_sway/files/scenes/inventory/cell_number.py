@@ -12,14 +12,15 @@ from tree_sway.files.text_file import finite
 
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)?')
 _GROUPED = re.compile(
-    r'(?<![\d.,])(?:(\d{1,3}(?:\.\d{3})+),(\d+)|(\d{1,3}(?:[,’\']\d{3})+)\.(\d+))(?![\d.,])'
+    r'(?<![\d.,])(?:(\d{1,3}(?:\.\d{3})+),(\d+)|(\d{1,3}(?:[,’\']\d{3})+)\.(\d+)|'
+    r'(\d{1,3}(?:[.,]\d{3}){2,}))(?![\d.,])'
 )
-"""A number of thousands with a fraction, ``1.234,5`` or ``1,234.5``."""
+"""A number of thousands, ``1.234,5``, ``1,234.5`` or ``1.234.567``."""
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
 _AND = r'[+;&|]|,\s|\s(?:and|und|et|y|en|e|och|og)\s'
 _SEVERAL = re.compile(rf'\d(?:\D{{0,4}}?(?:{_AND})|\s)\s*\d')
-_TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*]\s*(\d+(?:[.,]\d+)?)')
-"""A number of stems of one size, as in ``2 x 35``."""
+_TIMES = re.compile(r'(?<![\d.,])([2-9])\s*[x×*@]\s*(\d+(?:[.,]\d+)?)')
+"""A number of stems of one size, as in ``2 x 35`` or ``3 @ 150``."""
 _BETWEEN = re.compile(r'[^\W\d_]+|[-–—~/]|\.\.')
 """What stands between the two numbers of a range."""
 _CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
@@ -61,8 +62,8 @@ def cell_number(text: str) -> tuple[float, str] | None:
 
 
 def _without_groups(found: re.Match[str]) -> str:
-    whole = re.sub(r'\D', '', found[1] or found[3])
-    return f'{whole}.{found[2] or found[4]}'
+    whole = re.sub(r'\D', '', found[1] or found[3] or found[5])
+    return f'{whole}.{found[2] or found[4] or 0}'
 
 
 def stems_number(text: str) -> tuple[float, str] | None:

@@ -18,6 +18,9 @@ from tree_sway.files.table_file import Column, TextTable
 
 _NUMBERED = re.compile(r'(?<=[^\W\d])[ _]?[1-9](?=$|[ _(\[])')
 """Number of a stem in the name of a column."""
+_NINES = re.compile(r'99+(?:[.,][09]+)?')
+_MUCH = 4.0
+"""Times the largest other number that a code of a missing value is."""
 
 
 class InventoryColumns:
@@ -106,6 +109,7 @@ class InventoryColumns:
             values[row], units[row] = found
             is_range = re.search(r'\S\s*[-/]', text) is not None
             n_ranges += is_range and found == cell_number(text)
+        self._drop_nines(values, index)
         if unread:
             text = self.table.cells(index, unread[:1])[0]
             self.note(
@@ -115,6 +119,17 @@ class InventoryColumns:
         if n_ranges:
             self.note(f'{n_ranges} cells of {self.table.columns[index]} are ranges: their middles')
         return values, self._in_one_unit(values, units, index, unit)
+
+    def _drop_nines(self, values: Floats, index: int) -> None:
+        """Take ``99``, ``999`` and so on for a missing value where no other is nearly as large."""
+        cells = self.table.cells(index, range(self.n_rows))
+        is_code = np.array([_NINES.fullmatch(cell) is not None for cell in cells], dtype=np.bool_)
+        others = values[~is_code & np.isfinite(values)]
+        is_code &= values > _MUCH * np.max(others, initial=0.0)
+        if len(others) and is_code.any():
+            name, cell = self.table.columns[index], cells[int(np.argmax(is_code))]
+            self.note(f"{is_code.sum()} cells of {name} such as '{cell}' are taken as missing")
+            values[is_code] = np.nan
 
     def _in_one_unit(self, values: Floats, units: Sequence[str], index: int, header: str) -> str:
         """Convert numbers of cells with a unit of their own to that of all, and return it."""

@@ -151,6 +151,7 @@ def _of_geometries(columns: InventoryColumns, index: int) -> Places:
 def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) -> Places:
     """Turn degrees into metres east and north of the first tree, on a sphere."""
     is_known = (np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0)
+    is_known &= (latitude != 0.0) | (longitude != 0.0)  # what phones write without a fix
     if not is_known.any():
         nowhere = np.full(len(latitude), np.nan)
         return Places(nowhere, nowhere)
@@ -168,6 +169,8 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
 def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
     """Move places on a map by whole metres to near the origin, for single precision."""
     is_known = np.isfinite(x) & np.isfinite(y)
+    if is_known.any() and np.median(np.abs(x[is_known]) + np.abs(y[is_known])) > _FAR:
+        is_known &= (x != 0.0) | (y != 0.0)
     x = np.where(is_known, x, np.nan)
     y = np.where(is_known, y, np.nan)
     farthest = np.nanmax(np.abs([x, y]), initial=0.0)

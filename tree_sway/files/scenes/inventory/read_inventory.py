@@ -183,13 +183,10 @@ def _optional(columns: InventoryColumns, quantity: str) -> Floats:
 
 
 def _why_no_place(table: TextTable, row: int) -> str:
-    for quantity in ('x', 'y', 'latitude', 'longitude', 'place'):
-        column = table.find(quantity)
-        if column is not None:
-            text = table.cells(column.index, [row])[0]
-            if not text or not any(letter.isdigit() for letter in text):
-                return f"{table.columns[column.index]} is '{text[:40]}', no place"
-    return 'no place'
+    names = ('x', 'y', 'latitude', 'longitude', 'place')
+    places = [column.index for name in names if (column := table.find(name))]
+    cells = [f"{table.columns[each]} is '{table.cells(each, [row])[0][:40]}'" for each in places]
+    return f'{" and ".join(cells)}, no place'
 
 
 def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:

@@ -25,6 +25,7 @@ TITLES = {FIA: 'FIA', ICP: 'ICP Forests'}
 _FIA_COLUMN = re.compile(r'spcd|fia')
 _ICP_COLUMNS = ('codetreespecies', 'treespec', 'treespecies', 'icp')
 _CODE = re.compile(r'-?0*(\d{1,4})(?:\.0*)?')
+LETTERS = re.compile('[A-Za-z]{4}')
 _LEAST_KNOWN = 0.9
 """Share of the codes of a column that its list has to know."""
 
@@ -34,6 +35,20 @@ def names_of(list_name: str) -> dict[int, str]:
     """Latin names of a list, by code; ``conifer`` and ``broadleaf`` for groups."""
     rows = table_beside(__file__, 'species_codes.csv')
     return {row['code']: row['name'] for row in rows if row['list'] == list_name}
+
+
+@cache
+def latin_name(code: str) -> str:
+    """
+    Return the name of a code of two letters of the genus and two of the epithet, as ``PIAB``.
+
+    It is the genus where several species of one have the code; empty if several genera have it.
+    """
+    names = {name for each in TITLES for name in names_of(each).values()}
+    form = re.compile(rf'{code[:2]}\w+ {code[2:]}\w+', re.IGNORECASE)
+    found = sorted(name for name in names if form.match(name))
+    genera = {name.split()[0] for name in found}
+    return '' if len(genera) != 1 else found[0] if len(found) == 1 else genera.pop()
 
 
 def has_codes(cells: Sequence[str]) -> bool:

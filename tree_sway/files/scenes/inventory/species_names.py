@@ -10,7 +10,14 @@ from collections.abc import Mapping
 from tree_sway.core.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
-from tree_sway.files.scenes.inventory.species_codes import has_codes, list_of, name_of, TITLES
+from tree_sway.files.scenes.inventory.species_codes import (
+    has_codes,
+    latin_name,
+    LETTERS,
+    list_of,
+    name_of,
+    TITLES,
+)
 
 UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
@@ -91,6 +98,10 @@ def _decoded(
 ) -> list[str]:
     """Cells of a column, with the names of species in place of codes of a known list."""
     cells = columns.texts(index)
+    filled = {cell for cell in cells if cell}
+    if filled and all(LETTERS.fullmatch(cell) and not _specificity(cell) for cell in filled):
+        columns.note(f'{columns.table.columns[index]} is taken as letters of genus and epithet')
+        return [latin_name(cell) or cell if cell else '' for cell in cells]
     if not has_codes(cells) or any(cell in given for cell in cells):
         return cells
     column = columns.table.columns[index]

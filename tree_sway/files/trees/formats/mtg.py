@@ -87,6 +87,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     if not segments:
         what = f'no two vertices with {", ".join(_POSITION)}'
         raise FormatError(what, where=str(path), cure='digitise the tree')
+    known = list(dict.fromkeys(name for each in vertices for name in each.features))
+    if _DIAMETER not in known:
+        what = f'no feature {_DIAMETER} among {", ".join(known)}'
+        raise FormatError(what, where=str(path), cure=f'call the diameter [mm] {_DIAMETER}')
     at_tip = np.array([each.tip.diameter for each in segments])
     at_base = np.array([each.base.diameter for each in segments])
     at_base = np.where(at_base > 0.0, at_base, at_tip)

@@ -60,7 +60,7 @@ were averaged have axes of any length in an eighth of them (Jackson et al. 2019)
 
 def _is_text(head: str) -> bool:
     """Whether a file is a TreeQSM text, by its header, or by the width of its first rows."""
-    lines = [line for line in head.splitlines() if line.strip()][:2]
+    lines = [line for line in head.splitlines() if line.strip() and line[0] != '#'][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
     names = [re.sub(r'[^a-z]', '', cell.lower()) for cell in _cells(lines[0])] if lines else []
@@ -118,7 +118,9 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
 def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     """Read the cylinders of a TreeQSM text."""
     lines = read_lines(path)
-    filled = [number for number, line in enumerate(lines) if line.strip()]
+    titles = [row for row, line in enumerate(lines) if line.startswith('#')][1:]
+    lines = lines[: titles[0]] if titles else lines  # tables of branches and of the tree follow
+    filled = [row for row, line in enumerate(lines) if line.strip() and line[0] != '#']
     if filled and all(finite(cell) is None for cell in _cells(lines[filled[0]])):
         header = filled.pop(0)
         lines[header] = ''

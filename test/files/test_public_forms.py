@@ -1,0 +1,248 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Forms of public loggers, services, inventories and scans, with what a person reads there."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway.errors import FormatError
+from tree_sway.files.motion import read_motion
+from tree_sway.files.trees import open_scene, open_tree
+from tree_sway.files.wind import read_wind
+
+ROWS = 12
+SPEEDS = [4.0 + 0.5 * row for row in range(ROWS)]
+SECONDS = [10.0 * row for row in range(ROWS)]
+FROM = 225.0
+GRAVITY = 9.80665
+
+
+def written(folder: Path, text: str, name: str = 'table.csv') -> Path:
+    (folder / name).write_text(text, encoding='utf-8')
+    return folder / name
+
+
+def wind_rows(form: str, factor: float = 1.0, comma: bool = False) -> str:
+    """Rows of a form with the number, the clock, the speed and its triple."""
+    lines = []
+    for row, speed in enumerate(SPEEDS):
+        cells = {
+            'n': row,
+            'clock': f'14:{row:02d}',
+            'speed': f'{speed * factor:.4f}',
+            'more': f'{3.0 * speed * factor:.4f}',
+        }
+        line = form.format(**cells)
+        lines.append(line.replace('.', ',') if comma else line)
+    return '\n'.join(lines) + '\n'
+
+
+DWD = (
+    'surface observations;Parameter description;maximum_wind;mean_wind;mean_direction\n'
+    '10384;Unit;km/h;km/h;Grad\n'
+    'Datum;Uhrzeit (UTC);Windboen;Windgeschwindigkeit;Windrichtung\n'
+)
+HOBO = (
+    'Line#,Date,"Wind Speed (S-WSB 1053:1-1), m/s, Mast",'
+    '"Wind Direction (S-WDA 1054:2-1), *, Mast"\n'
+)
+STATION = '10-Minute Mean Wind Direction(Compass points),10-Minute Mean Speed(km/hour)'
+TOA5 = (
+    '"TOA5","38961","CR1000","38961","CR1000.Std.26","CPU:a.CR1","50269","OutCard"\n'
+    '"TIMESTAMP","RECORD","wspd_avg","wdir_res","maxws"\n"TS","RN","ms-1","degrees","ms-1"\n'
+    '"","","WVc","WVc","Max"\n'
+)
+
+
+@pytest.mark.parametrize(
+    ('head', 'form', 'factor', 'comma'),
+    [
+        (DWD, '05/03/24;{clock};{more};{speed};225', 3.6, True),
+        ('# Wind\n\nTIME, BEARING, SPEEDKNOTS\n', '{clock}, 225, {speed},', 1 / 0.514444, False),
+        (TOA5, '"2024-03-05 {clock}:00",{n},{speed},225,{more}', 1.0, False),
+        ('YYYY MM DD hh mm  WD WSPD  GST\n', '2024 03 05 14 {n:02d} 225 {speed} 99.0', 1.0, False),
+        (HOBO, '{n},03/05/24 {clock}:00,{speed},225', 1.0, False),
+        (
+            f'Date time,Station,{STATION}\n',
+            '2024-03-05 {clock},Pier,Southwest,{speed}',
+            3.6,
+            False,
+        ),
+    ],
+    ids=['units above', 'bearing', 'mean behind', 'old buoys', 'star is degrees', 'mean before'],
+)
+def test_winds_are_read_as_they_say(
+    tmp_path: Path, head: str, form: str, factor: float, comma: bool
+) -> None:
+    path = written(tmp_path, head + wind_rows(form, factor, comma), 'wind.txt')
+    record = read_wind(path, turbulence=False)
+    speed = np.linalg.norm(record.velocity[:, :2], axis=1)
+    np.testing.assert_allclose(speed, SPEEDS, rtol=1e-3)
+    blows_from = np.degrees(np.arctan2(*-record.velocity[:, :2].T)) % 360.0
+    np.testing.assert_allclose(blows_from, FROM, atol=0.1)
+    assert not any('taken in m/s' in note for note in record.notes)
+
+
+@pytest.mark.parametrize('name', ['station', 'Station Name', 'NUM_POSTE'])
+def test_stations_are_not_mixed(tmp_path: Path, name: str) -> None:
+    rows = [f'{"AB"[row % 2]},2024-03-05 14:{row:02d},{row + 1},90' for row in range(ROWS)]
+    path = written(tmp_path, f'{name},time,speed [m/s],direction\n' + '\n'.join(rows))
+    with pytest.raises(FormatError, match='rows of 2 instruments: A, B'):
+        read_wind(path)
+
+
+def test_knots_of_a_boat_are_asked(tmp_path: Path) -> None:
+    text = 'TIMESTAMP,TWS,TWD\n' + wind_rows('2024-03-05T{clock}:00Z,{speed},225')
+    with pytest.raises(FormatError, match='does not say the unit of the speed'):
+        read_wind(written(tmp_path, text))
+    record = read_wind(tmp_path / 'table.csv', speed_unit='kn', turbulence=False)
+    assert np.linalg.norm(record.velocity[0]) == pytest.approx(4.0 * 0.514444, rel=1e-4)
+
+
+@pytest.mark.parametrize(('degrees', 'is_said'), [('3.93', True), ('225.5', False), ('3', False)])
+def test_directions_that_may_be_radians_are_said(
+    tmp_path: Path, degrees: str, is_said: bool
+) -> None:
+    text = 'time,wind_speed,wind_direction\n' + wind_rows('{n},{speed},' + degrees)
+    notes = ' '.join(read_wind(written(tmp_path, text)).notes)
+    assert ('call it wind_direction [rad]' in notes) == is_said
+
+
+def motion_rows(form: str) -> str:
+    lines = []
+    for row in range(200):
+        x = 0.3 * math.sin(0.1 * row)
+        lines.append(form.format(s=0.02 * row, ms=20 * row, ns=20_000_000 * row, x=x, z=GRAVITY))
+    return '\n'.join(lines) + '\n'
+
+
+GROUP = 'Data Set 1:'
+AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
+
+
+@pytest.mark.parametrize(
+    ('head', 'form'),
+    [
+        (f'{GROUP}Time(s),{AXES}\n', '{s:.3f},{x:.5f},0,{z}'),
+        ('relative_time,AccX,AccY,AccZ\n', '{ms},{x:.5f},0,{z}'),
+        ('a log\n\ntime,X_value,Y_value,Z_value\n', '{s:.3f},{x:.5f},0,{z}'),
+        (
+            'Arrival_Time,Creation_Time,x,y,z\n',
+            '14246966{ms:05d},1424696631{ns:09d},{x:.5f},0,{z}',
+        ),
+        ('Time (s),ax (m/s^2),ay (m/s^2),az (m/s^2)\nNaN,NaN,NaN,NaN\n', '{s},{x:.5f},0,{z}'),
+    ],
+    ids=['groups', 'milliseconds', 'values', 'two clocks', 'first row'],
+)
+def test_motions_are_read_as_they_are(tmp_path: Path, head: str, form: str) -> None:
+    rows = motion_rows(form)
+    if 'Creation' in head:
+        rows = '\n'.join(rows.splitlines()[:50])
+    record = read_motion(written(tmp_path, head + rows, 'motion.csv'))
+    assert np.nanmedian(np.diff(record.time)) == pytest.approx(0.02)
+    assert record.acceleration is not None
+    assert np.nanmedian(record.acceleration, axis=0)[2] == pytest.approx(GRAVITY, abs=1e-4)
+
+
+def scene_of(folder: Path, text: str) -> tuple[list[tuple[str, float]], float, str]:
+    """Species and height of each tree, the widest distance, and the notes."""
+    scene = open_scene(written(folder, text), warn=False)
+    place = np.array([(each.x, each.y) for each in scene.trees])
+    trees = [(each.species.key, round(each.tree.height * each.scale, 2)) for each in scene.trees]
+    return trees, float(np.hypot(*np.ptp(place, axis=0))), ' '.join(scene.notes)
+
+
+@pytest.mark.parametrize(
+    ('head', 'rows', 'wide'),
+    [
+        (
+            'lat,lon,species,dbh,height',
+            ['48.137,11.575,Tilia,30,12', '0,0,Tilia,28,11', '48.137,11.576,Tilia,30,12'],
+            74.0,
+        ),
+        (
+            'x,y,species,dbh,height',
+            ['612512.3,5345678,Tilia,30,12', '0,0,Tilia,28,11', '612522.3,5345678,Tilia,30,12'],
+            10.0,
+        ),
+    ],
+)
+def test_a_tree_without_a_fix_does_not_stand_at_zero(
+    tmp_path: Path, head: str, rows: list[str], wide: float
+) -> None:
+    trees, width, notes = scene_of(tmp_path, '\n'.join([head, *rows, '']))
+    assert trees == [('lime', 12.0)] * 2
+    assert width == pytest.approx(wide, abs=0.5)
+    assert '1 no place; line 3:' in notes
+    assert "is '0'" in notes
+
+
+def test_exchanged_degrees_are_told_with_their_cells(tmp_path: Path) -> None:
+    text = 'latitude,longitude,species,dbh\n-118.25,34.05,Tilia,30\n'
+    with pytest.raises(FormatError, match=r"latitude is '-118.25' and longitude is '34.05'"):
+        open_scene(written(tmp_path, text), warn=False)
+
+
+@pytest.mark.parametrize('numbers', [('3.456.789,12', '3.456.799,12'), ('3.456.789', '3.456.799')])
+def test_points_between_thousands(tmp_path: Path, numbers: tuple[str, str]) -> None:
+    rows = ''.join(f'Linde;30,5;12,5;{each};5.345.678,90\n' for each in numbers)
+    trees, width, _ = scene_of(tmp_path, f'Baumart;BHD (cm);Höhe (m);Rechtswert;Hochwert\n{rows}')
+    assert trees == [('lime', 12.5)] * 2
+    assert width == pytest.approx(10.0)
+
+
+def test_nines_are_missing_values(tmp_path: Path) -> None:
+    rows = ['0,0,Tilia,30,12', '9,0,Tilia,999,99', '0,9,Tilia,31,13', '9,9,Tilia,99,14', '']
+    trees, _, notes = scene_of(tmp_path, '\n'.join(['x,y,species,dbh_cm,height_m', *rows]))
+    assert [height for _, height in trees] == [12.0, 13.0, 14.0]  # a stem of 99 cm is one
+    assert "1 cells of dbh_cm such as '999' are taken as missing" in notes
+    assert "1 cells of height_m such as '99' are taken as missing" in notes
+
+
+def test_codes_of_two_letters_each(tmp_path: Path) -> None:
+    rows = 'x,y,species,dbh_cm,height_m\n0,0,PIAB,30,12\n9,0,FASY,30,12\n0,9,ACSA,30,12\n'
+    trees, _, notes = scene_of(tmp_path, rows)
+    assert [key for key, _ in trees] == ['spruce', 'beech', 'maple']
+    assert 'species is taken as letters of genus and epithet' in notes
+
+
+def test_stems_at_a_size_and_abbreviations(tmp_path: Path) -> None:
+    text = 'x,y,Species,Stem Dia. (mm),Height (m)\n0,0,Tilia,3 @ 150,12\n'
+    _, _, notes = scene_of(tmp_path, text)
+    assert 'cannot be read' not in notes
+    assert scene_of(tmp_path, 'x;y;Art;StU (cm);Höhe ca.\n0;0;Linde;125;14\n')[0] == [
+        ('lime', 14.0)
+    ]
+    cyrillic = 'Порода;Диаметр (см);Высота (м);Широта;Долгота\nЛипа;32;14;55,75;37,61\n'
+    assert scene_of(tmp_path, cyrillic)[0] == [('broadleaf', 14.0)]
+
+
+def test_cylinders_above_other_tables(tmp_path: Path) -> None:
+    rows = [
+        f'0.0{9 - row} 0.5 0 0 {0.5 * row} 0 0 1 {row} {row + 2} 1 0 {row + 1} 0'
+        for row in range(5)
+    ]
+    text = '\n'.join(
+        ['# Cylinder data', *rows, '# Branch data', '0 0 491.8 3.4 0 1.3', '# Tree', '']
+    )
+    tree = open_tree(written(tmp_path, text, 'qsm.txt'), warn=False).tree
+    assert tree.height == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    ('name', 'text', 'match'),
+    [
+        ('a.lpy', 'Axiom: A(0.1)\n', 'rules that grow a tree'),
+        ('a.rds', 'X\n', 'a file of R, not a tree'),
+        ('a.geom', 'Shape { Id 1 }\n', 'a mesh for drawing'),
+        ('a.csv', 'node,x [cm],diameter [cm]\n1,0,20\n', 'segment, parent, x0, y0, z0, x1'),
+    ],
+)
+def test_other_files_are_named(tmp_path: Path, name: str, text: str, match: str) -> None:
+    with pytest.raises(FormatError, match=match):
+        open_tree(written(tmp_path, text, name))
