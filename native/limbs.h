@@ -18,7 +18,7 @@ static void fill_pressures(const sway_model &model, const double wind[3], double
                            double out[HARMONICS]) {
   const double square = wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2];
   const double speed = most(__builtin_sqrt(square), 1e-12);
-  const double pressure = least(per_speed_squared * speed * speed, model.table.most_pressure);
+  const double pressure = least(per_speed_squared * speed * speed, *model.table.most_pressure);
   fill_harmonics(wind[0] / speed, wind[1] / speed, wind[2] / speed, out);
   for (int number = 0; number < HARMONICS; number++) out[number] *= pressure;
 }
@@ -37,7 +37,7 @@ static void add_gusts(const sway_model &model, const double *stiffness, const St
     const double *more = apart + 3 * delay;
     const double limb_wind[] = {wind[0] + more[0], wind[1] + more[1], wind[2] + more[2]};
     fill_pressures(model, limb_wind, per_speed_squared, own);
-    const double *moments = model.limb_harmonics + delay * HARMONICS * M;
+    const double *moments = model.table.limb_harmonics + delay * HARMONICS * M;
     for (int number = 0; number < HARMONICS; number++) {
       const double change = own[number] - in_mean[number];
       for (int64_t i = 0; i < M; i += LANES)
@@ -70,14 +70,14 @@ static void add_gusts(const sway_model &model, const double *stiffness, const St
 static bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
                              State &state, Room &room, const double wind[3]) {
   const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
-  const double per_speed_squared = drag_density(model.drag_law, speed);
+  const double per_speed_squared = drag_density(model.table.drag_law, speed);
   if (!state.crown) return step_table(model, stiffness, step, state, room, wind, per_speed_squared);
-  const Crown crown = crown_of(state.crown);
-  push_crown(crown, model.limb_spread, model.crown_coherence, wind, step.dt);
+  Crown &crown = crown_of(state.crown);
+  push_crown(crown, *model.table.limb_spread, *model.table.crown_coherence, wind, step.dt);
   double mean[3] = {};
   for (int64_t delay = 0; delay < model.sizes.delays; delay++)
     for (int axis = 0; axis < 3; axis++)
-      mean[axis] += model.limb_share[delay] * crown.apart[3 * delay + axis];
+      mean[axis] += model.table.limb_share[delay] * crown.apart[3 * delay + axis];
   const double in_mean[] = {wind[0] + mean[0], wind[1] + mean[1], wind[2] + mean[2]};
   const bool is_clamped =
       step_table(model, stiffness, step, state, room, in_mean, per_speed_squared);

@@ -82,7 +82,7 @@ struct Corners {
 };
 
 static Corners find_corners(const sway_model &model, const Wind &wind, const double *eta) {
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   const int64_t M = model.padded;
   const double position = __builtin_atan2(wind.y, wind.x) * (AZIMUTHS / (360.0 * DEGREE));
   const double whole = __builtin_floor(position);
@@ -159,7 +159,7 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
 static void add_slopes(const sway_model &model, const Corners &corners, double slant,
                        double level_winds, Room &room, int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   const float *turning[4], *damping[4];
   float weight[4];
   for (int corner = 0; corner < 4; corner++) {
@@ -220,7 +220,7 @@ static void add_steep_slopes(const sway_model &model, bool is_upwards, double st
 static void find_wind_force(const sway_model &model, const Wind &wind, State &state, Room &room,
                             int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   double harmonics[HARMONICS];
   fill_harmonics(wind.x, wind.y, wind.z, harmonics);
   Corners corners = find_corners(model, wind, room.middle);
@@ -331,13 +331,13 @@ INLINE void keep_at_rest(const sway_model &model, State &state) {
 static bool step_table(const sway_model &model, const double *stiffness, const Step &step,
                        State &state, Room &room, const double velocity[3],
                        double per_speed_squared) {
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   const double x = velocity[0], y = velocity[1], z = velocity[2];
   const double speed = __builtin_sqrt(x * x + y * y + z * z);
   const double pressure = per_speed_squared * speed * speed;
-  bool is_clamped = pressure > table.most_pressure;
+  bool is_clamped = pressure > *table.most_pressure;
   const Wind wind = {speed > 0.0 ? x / speed : 1.0, speed > 0.0 ? y / speed : 0.0,
-                     speed > 0.0 ? z / speed : 0.0, least(pressure, table.most_pressure),
+                     speed > 0.0 ? z / speed : 0.0, least(pressure, *table.most_pressure),
                      per_speed_squared};
   const int64_t n_coupled =
       model.sizes.coordinates - count_of(*state.left_out, model.sizes.coordinates);
@@ -357,7 +357,7 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
   keep_at_rest(model, state);
   // A pull may bend a tree more than any wind; no wind adds to that.
   const double energy = twice_energy(model, stiffness, state);
-  const double most_energy = most(energy_before, table.most_energy);
+  const double most_energy = most(energy_before, *table.most_energy);
   if (!(energy <= most_energy)) {
     const double scale = __builtin_sqrt(most_energy / energy);
     for (int64_t i = 0; i < model.padded; i++) {
