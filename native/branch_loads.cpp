@@ -19,12 +19,12 @@ namespace {
 
 typedef Vector<double> V3;
 
-// Sum rows of a mode (k, width) of a branch by the amounts of its key rotations, three numbers each.
-V3 moved(const sway_branches &tree, int64_t branch, const double *amounts, const double *mode,
-         int64_t width = 3) {
+// Sum a mode (b, k, 3) of a branch by the amounts of its key rotations.
+INLINE V3 moved(const sway_branches &tree, int64_t b, const double *amounts, const double *mode) {
   V3 sum = {0.0, 0.0, 0.0};
-  for (int64_t c = 0; c < tree.n_coordinates[branch]; c++)
-    sum = sum + amounts[tree.coordinate[branch] + c] * read(mode + c * width);
+  const int64_t count = tree.n_coordinates[b];
+  const double *own = amounts + tree.coordinate[b], *row = mode + 3 * tree.keys * b;
+  for (int64_t c = 0; c < count; c++) sum = sum + own[c] * read(row + 3 * c);
   return sum;
 }
 
@@ -33,11 +33,16 @@ struct Joint {
   V3 shift, rotation;
 };
 
-Joint joint_of(const sway_branches &tree, int64_t b, const double *amounts) {
-  const double *twist = tree.twist + 6 * tree.keys * b;
-  const V3 shift = moved(tree, tree.parent[b], amounts, twist, 6);
-  const V3 rotation = moved(tree, tree.parent[b], amounts, twist + 3, 6);
-  return {shift + cross(rotation, read(tree.base + 3 * b)), rotation};
+INLINE Joint joint_of(const sway_branches &tree, int64_t b, const double *amounts) {
+  Joint joint = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  const int64_t parent = tree.parent[b], count = tree.n_coordinates[parent];
+  const double *own = amounts + tree.coordinate[parent], *twist = tree.twist + 6 * tree.keys * b;
+  for (int64_t c = 0; c < count; c++) {
+    joint.shift = joint.shift + own[c] * read(twist + 6 * c);
+    joint.rotation = joint.rotation + own[c] * read(twist + 6 * c + 3);
+  }
+  joint.shift = joint.shift + cross(joint.rotation, read(tree.base + 3 * b));
+  return joint;
 }
 
 // The motion of all bases. A base keeps its distance from the parent's base, as the end of a rod:
@@ -80,16 +85,15 @@ void go_outward(const sway_branches &tree, const double *x, const double *v,
 // that of the base, of the branch itself and of its spin, and U_n the part across its pieces.
 void find_force(const sway_branches &tree, int64_t b, const double *x, const double *v,
                 const V3 &wind, sway_branch_load &own) {
-  const int64_t mode = 3 * tree.keys * b;
   const V3 air = tree.speed[b] * rotated(inverse(read_quaternion(own.orientation)), wind);
-  const V3 turn = moved(tree, b, x, tree.load_rotation + mode);
+  const V3 turn = moved(tree, b, x, tree.load_rotation);
   const V3 back = -1.0 * turn;
   V3 u = turned_by(back, air - read(own.velocity));
   double spread = 0.0;
   if (v) {
     const V3 spin = turned_by(back, read(own.velocity + 3));
     const V3 by_spin = transposed_times(read_matrix(tree.coupling + 9 * b), spin);
-    u = u - moved(tree, b, v, tree.damping_mode + mode) - by_spin;
+    u = u - moved(tree, b, v, tree.damping_mode) - by_spin;
     const double *rate = v + tree.coordinate[b];
     for (int64_t c = 0; c < 2 && c < tree.n_coordinates[b]; c++)
       spread += tree.spread[b] * rate[c] * rate[c];
