@@ -19,21 +19,14 @@ namespace {
 
 typedef Vector<double> V3;
 
-// One of the branches: its rows of the arrays.
-struct Branch {
-  Branch(const sway_branches &tree, int64_t b)
-      : first(tree.coordinate[b]), count(tree.n_coordinates[b]), row(tree.keys * b) {}
-
-  // Sum a mode (b, k, width) by the amounts of its key rotations, three numbers from `at` on.
-  V3 moved(const double *mode, const double *amounts, int width = 3, int at = 0) const {
-    V3 sum = {0.0, 0.0, 0.0};
-    for (int64_t c = 0; c < count; c++)
-      sum = sum + amounts[first + c] * read(mode + (row + c) * width + at);
-    return sum;
-  }
-
-  int64_t first, count, row;
-};
+// Sum a mode (b, k, 3) of a branch by the amounts of its key rotations.
+INLINE V3 moved(const sway_branches &tree, int64_t b, const double *amounts, const double *mode) {
+  V3 sum = {0.0, 0.0, 0.0};
+  const int64_t count = tree.n_coordinates[b];
+  const double *own = amounts + tree.coordinate[b], *row = mode + 3 * tree.keys * b;
+  for (int64_t c = 0; c < count; c++) sum = sum + own[c] * read(row + 3 * c);
+  return sum;
+}
 
 // Displacement and rotation vector of a base, or their rates, by its parent's key rotations.
 struct Joint {
@@ -42,12 +35,11 @@ struct Joint {
 
 INLINE Joint joint_of(const sway_branches &tree, int64_t b, const double *amounts) {
   Joint joint = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  const int64_t parent = tree.parent[b];
-  const int64_t first = tree.coordinate[parent], count = tree.n_coordinates[parent];
-  const double *twist = tree.twist + 6 * tree.keys * b;
+  const int64_t parent = tree.parent[b], count = tree.n_coordinates[parent];
+  const double *own = amounts + tree.coordinate[parent], *twist = tree.twist + 6 * tree.keys * b;
   for (int64_t c = 0; c < count; c++) {
-    joint.shift = joint.shift + amounts[first + c] * read(twist + 6 * c);
-    joint.rotation = joint.rotation + amounts[first + c] * read(twist + 6 * c + 3);
+    joint.shift = joint.shift + own[c] * read(twist + 6 * c);
+    joint.rotation = joint.rotation + own[c] * read(twist + 6 * c + 3);
   }
   joint.shift = joint.shift + cross(joint.rotation, read(tree.base + 3 * b));
   return joint;
@@ -70,8 +62,7 @@ void go_outward(const sway_branches &tree, const double *x, const double *v,
     write(own.rotation, joint.rotation);
     write(own.arm, arm);
     const Quaternion<double> turned =
-        product({on.orientation[0], on.orientation[1], on.orientation[2], on.orientation[3]},
-                quaternion_of(joint.rotation));
+        product(read_quaternion(on.orientation), quaternion_of(joint.rotation));
     own.orientation[0] = turned.w;
     write(own.orientation + 1, {turned.x, turned.y, turned.z});
     if (!v) {
@@ -94,19 +85,18 @@ void go_outward(const sway_branches &tree, const double *x, const double *v,
 // that of the base, of the branch itself and of its spin, and U_n the part across its pieces.
 void find_force(const sway_branches &tree, int64_t b, const double *x, const double *v,
                 const V3 &wind, sway_branch_load &own) {
-  const Branch branch(tree, b);
-  const double *q = own.orientation;
-  const V3 air = tree.speed[b] * rotated(Quaternion<double>{q[0], -q[1], -q[2], -q[3]}, wind);
-  const V3 turn = branch.moved(tree.load_rotation, x);
+  const V3 air = tree.speed[b] * rotated(inverse(read_quaternion(own.orientation)), wind);
+  const V3 turn = moved(tree, b, x, tree.load_rotation);
   const V3 back = -1.0 * turn;
   V3 u = turned_by(back, air - read(own.velocity));
   double spread = 0.0;
   if (v) {
     const V3 spin = turned_by(back, read(own.velocity + 3));
     const V3 by_spin = transposed_times(read_matrix(tree.coupling + 9 * b), spin);
-    u = u - branch.moved(tree.damping_mode, v) - by_spin;
-    for (int64_t c = 0; c < 2 && c < branch.count; c++)
-      spread += tree.spread[b] * v[branch.first + c] * v[branch.first + c];
+    u = u - moved(tree, b, v, tree.damping_mode) - by_spin;
+    const double *rate = v + tree.coordinate[b];
+    for (int64_t c = 0; c < 2 && c < tree.n_coordinates[b]; c++)
+      spread += tree.spread[b] * rate[c] * rate[c];
   }
   const V3 across = times_symmetric(tree.projector + 6 * b, u);
   const double speed = __builtin_sqrt(most(dot(u, across), 0.0) + spread);
@@ -117,16 +107,15 @@ void find_force(const sway_branches &tree, int64_t b, const double *x, const dou
 
 // Begin moments, wrench and force of a branch with the wind's own.
 void begin(const sway_branches &tree, int64_t b, sway_branch_load &own, double *moments) {
-  const Branch branch(tree, b);
   const V3 force = read(own.own_force), turn = read(own.turn);
-  for (int64_t c = 0; c < branch.count; c++)
-    moments[branch.first + c] = dot(read(tree.load_mode + 3 * (branch.row + c)), force);
+  const double *mode = tree.load_mode + 3 * tree.keys * b;
+  for (int64_t c = 0; c < tree.n_coordinates[b]; c++)
+    moments[tree.coordinate[b] + c] = dot(read(mode + 3 * c), force);
   const V3 couple = read_matrix(tree.coupling + 9 * b) * force;
   const V3 at_base = turned_by(turn, force);
-  const double *q = own.orientation;
   write(own.wrench, at_base);
   write(own.wrench + 3, turned_by(turn, couple));
-  write(own.force, rotated(Quaternion<double>{q[0], q[1], q[2], q[3]}, at_base));
+  write(own.force, rotated(read_quaternion(own.orientation), at_base));
 }
 
 // Turn forces into moments on the key rotations of a tree as it is bent and turned. The load of a

@@ -10,34 +10,31 @@
 
 #include "gusts.h"
 #include "table.h"
+#include "turn.h"
 
 namespace {
 
 // Write the harmonics of a wind [m/s] times its dynamic pressure.
-static void fill_pressures(const sway_model &model, const double wind[3], double per_speed_squared,
-                           double out[HARMONICS]) {
-  const double square = wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2];
-  const double speed = most(__builtin_sqrt(square), 1e-12);
-  const double pressure = least(per_speed_squared * speed * speed, model.table.most_pressure);
-  fill_harmonics(wind[0] / speed, wind[1] / speed, wind[2] / speed, out);
+static void fill_pressures(const sway_model &model, const Vector<double> &wind,
+                           double per_speed_squared, double out[HARMONICS]) {
+  const double speed = most(__builtin_sqrt(dot(wind, wind)), 1e-12);
+  const double pressure = least(per_speed_squared * speed * speed, *model.table.most_pressure);
+  fill_harmonics({wind.x / speed, wind.y / speed, wind.z / speed}, out);
   for (int number = 0; number < HARMONICS; number++) out[number] *= pressure;
 }
 
-// Add to a step what the winds of the limbs of each delay do beside their mean.
+// Add to a step in a mean wind what the winds of the limbs of each delay do beside it.
 static void add_gusts(const sway_model &model, const double *stiffness, const Step &step,
-                      State &state, Room &room, const double *apart, const double wind[3],
-                      const double mean[3], double per_speed_squared) {
+                      State &state, Room &room, const Crown &crown, const Vector<double> &wind,
+                      const Vector<double> &mean, double per_speed_squared) {
   const int64_t M = model.padded;
   double in_mean[HARMONICS], own[HARMONICS];
-  const double mean_wind[] = {wind[0] + mean[0], wind[1] + mean[1], wind[2] + mean[2]};
-  fill_pressures(model, mean_wind, per_speed_squared, in_mean);
+  fill_pressures(model, mean, per_speed_squared, in_mean);
   double *force = room.change;
   for (int64_t i = 0; i < M; i++) force[i] = 0.0;
   for (int64_t delay = 0; delay < model.sizes.delays; delay++) {
-    const double *more = apart + 3 * delay;
-    const double limb_wind[] = {wind[0] + more[0], wind[1] + more[1], wind[2] + more[2]};
-    fill_pressures(model, limb_wind, per_speed_squared, own);
-    const double *moments = model.limb_harmonics + delay * HARMONICS * M;
+    fill_pressures(model, wind + read(crown.apart + 3 * delay), per_speed_squared, own);
+    const double *moments = model.table.limb_harmonics + delay * HARMONICS * M;
     for (int number = 0; number < HARMONICS; number++) {
       const double change = own[number] - in_mean[number];
       for (int64_t i = 0; i < M; i += LANES)
@@ -68,20 +65,19 @@ static void add_gusts(const sway_model &model, const double *stiffness, const St
 // Step a tree on its table in a wind [m/s] in its own frame, limb by limb where gusts reach them
 // one after another. Returns whether wind or energy were clamped.
 static bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
-                             State &state, Room &room, const double wind[3]) {
-  const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
-  const double per_speed_squared = drag_density(model.drag_law, speed);
+                             State &state, Room &room, const double velocity[3]) {
+  const Vector<double> wind = read(velocity);
+  const double per_speed_squared =
+      drag_density(model.table.drag_law, __builtin_sqrt(dot(wind, wind)));
   if (!state.crown) return step_table(model, stiffness, step, state, room, wind, per_speed_squared);
-  const Crown crown = crown_of(state.crown);
-  push_crown(crown, model.limb_spread, model.crown_coherence, wind, step.dt);
-  double mean[3] = {};
+  Crown &crown = crown_of(state.crown);
+  push_crown(crown, *model.table.limb_spread, *model.table.crown_coherence, velocity, step.dt);
+  Vector<double> apart = {};
   for (int64_t delay = 0; delay < model.sizes.delays; delay++)
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] += model.limb_share[delay] * crown.apart[3 * delay + axis];
-  const double in_mean[] = {wind[0] + mean[0], wind[1] + mean[1], wind[2] + mean[2]};
-  const bool is_clamped =
-      step_table(model, stiffness, step, state, room, in_mean, per_speed_squared);
-  add_gusts(model, stiffness, step, state, room, crown.apart, wind, mean, per_speed_squared);
+    apart = apart + model.table.limb_share[delay] * read(crown.apart + 3 * delay);
+  const Vector<double> mean = wind + apart;
+  const bool is_clamped = step_table(model, stiffness, step, state, room, mean, per_speed_squared);
+  add_gusts(model, stiffness, step, state, room, crown, wind, mean, per_speed_squared);
   return is_clamped;
 }
 

@@ -68,8 +68,8 @@ static void find_gusts(const sway_model &model, const State &state, const Step &
   const Limp &limp = model.limp;
   memset(gust, 0, limp.places * sizeof(double));
   if (!state.crown || !limp.delay) return;
-  const Crown crown = crown_of(state.crown);
-  push_crown(crown, model.limb_spread, model.crown_coherence, wind, step.dt);
+  Crown &crown = crown_of(state.crown);
+  push_crown(crown, *model.table.limb_spread, *model.table.crown_coherence, wind, step.dt);
   for (int axis = 0; axis < 3; axis++)
     for (int64_t i = 0; i < model.sizes.segments; i++)
       gust[axis * limp.each + i] = crown.apart[3 * limp.delay[i] + axis];
@@ -223,7 +223,7 @@ static bool step_at_pose(const sway_model &model, const Tuning &tuning, const St
   follow(model, tuning, state, tree);
   find_gusts(model, state, step, wind, room.limp.gust);
   const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
-  const double per_speed_squared = drag_density(model.drag_law, speed);
+  const double per_speed_squared = drag_density(model.table.drag_law, speed);
   const int64_t n_parts = parts_of(step.dt, speed);
   CoupledStep &law = tree.laws[n_parts % 4];
   if (law.n_parts != n_parts) fill_coupled(model, tuning, step.dt, n_parts, law);

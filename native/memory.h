@@ -33,6 +33,12 @@ public:
     return reinterpret_cast<T *>(first / LINE * LINE);
   }
 
+  // The same number of values for each of some arrays.
+  template <class... T>
+  __attribute__((always_inline)) void take_each(uint64_t count, T *&...arrays) {
+    ((arrays = take<T>(count)), ...);
+  }
+
   __attribute__((always_inline)) void release() {
     while (blocks) {
       Block *next = blocks->next;

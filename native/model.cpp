@@ -30,28 +30,19 @@ struct Header {
   uint32_t version, count;
 };
 
+enum Type { TYPE_double, TYPE_float, TYPE_int64_t };
+
 struct Meaning {
   const char *name;
-  uint32_t type;
+  Type type;
   Group group;
   int64_t shape[4];
-};
-
-template <class T> struct TypeNumber;
-template <> struct TypeNumber<double> {
-  static constexpr uint32_t value = 0;
-};
-template <> struct TypeNumber<float> {
-  static constexpr uint32_t value = 1;
-};
-template <> struct TypeNumber<int64_t> {
-  static constexpr uint32_t value = 2;
 };
 
 constexpr size_t BYTES[] = {8, 4, 8};
 
 const Meaning MEANINGS[] = {
-#define SWAY_ARRAY(type, name, group, ...) {#name, TypeNumber<type>::value, group, {__VA_ARGS__}},
+#define SWAY_ARRAY(type, name, group, ...) {#name, TYPE_##type, group, {__VA_ARGS__}},
 #include "arrays.inc"
 #undef SWAY_ARRAY
 };
@@ -76,18 +67,32 @@ int number_of(const char *name) {
   return -1;
 }
 
-bool has_table(const Arrays &a) {
+int64_t size_of(const Arrays &arrays, int64_t size) { return size < 0 ? arrays.size[-size] : size; }
+
+// The first array of a group that is there or that is missing; -1 without.
+int first_of(Arrays &arrays, Group group, bool is_there) {
+  for (int number = 0; number < N_MEANINGS; number++)
+    if (MEANINGS[number].group == group && (arrays[number] != nullptr) == is_there) return number;
+  return -1;
+}
+
+bool has_table(Arrays &a) {
   return a.drag_law && a.most_pressure && a.most_energy && a.stiffness && a.own_damping &&
-         a.levels && a.limit && a.motion && a.harmonics && a.amount && a.equilibrium && a.load &&
-         a.cross_damping && a.turning && a.damping && a.lean && a.steep_turning && a.steep_damping;
+         first_of(a, TABLE, false) < 0;
+}
+
+// Whether there is nothing to be placed: the model of a receiver that solves a tree by its table.
+bool is_table_alone(Arrays &a) {
+  return first_of(a, TREE, true) < 0 && first_of(a, PLACING, true) < 0;
 }
 
 class Reader {
 public:
-  Reader(const char *bytes, size_t size, Text &error) : bytes_(bytes), size_(size), error_(error) {}
+  Reader(const char *bytes, size_t size, Arrays &arrays, Text &error)
+      : bytes_(bytes), size_(size), arrays_(arrays), error_(error) {}
 
   // Find and check all arrays.
-  bool read(Arrays &arrays) {
+  bool read() {
     Header header;
     if (size_ < sizeof(Header)) return refuse("model", "no bytes of a model");
     memcpy(&header, bytes_, sizeof header);
@@ -98,18 +103,10 @@ public:
       return refuse("model", "cut off in its list of arrays");
     for (uint32_t i = 0; i < header.count; i++)
       if (!read_entry(i)) return false;
-    if (!find_sizes(arrays)) return false;
-    return check_all(arrays) && check_indices(arrays);
+    return find_sizes() && check_all() && check_indices();
   }
 
 private:
-  struct Found {
-    const char *data;
-    uint32_t dimensions;
-    uint64_t shape[4];
-    uint64_t count;
-  };
-
   bool refuse(const char *name, const char *what) {
     error_.add("array '").add(name).add("': ").add(what);
     return false;
@@ -121,36 +118,34 @@ private:
     entry.name[sizeof entry.name - 1] = '\0';
     const int number = number_of(entry.name);
     if (number < 0) return refuse(entry.name, "unknown");
-    const Meaning &meaning = MEANINGS[number];
-    Found &found = found_[number];
-    if (found.data) return refuse(meaning.name, "twice");
-    if (entry.type != meaning.type) return refuse(meaning.name, "of another type");
-    if (entry.dimensions < 1 || entry.dimensions > 4) return refuse(meaning.name, "no array");
-    found.count = 1;
-    found.dimensions = entry.dimensions;
+    if (arrays_[number]) return refuse(entry.name, "twice");
+    if (entry.type != MEANINGS[number].type) return refuse(entry.name, "of another type");
+    if (entry.dimensions < 1 || entry.dimensions > 4) return refuse(entry.name, "no array");
+    uint64_t count = 1;
     for (uint32_t axis = 0; axis < 4; axis++) {
-      const uint64_t own = axis < entry.dimensions ? entry.shape[axis] : 0;
-      found.shape[axis] = own;
-      if (axis >= entry.dimensions) continue;
-      if (own > size_) return refuse(meaning.name, "cut off");
-      if (own != 0 && found.count > size_ / own) return refuse(meaning.name, "cut off");
-      found.count *= own;
+      uint64_t &own = entry.shape[axis];
+      if (axis >= entry.dimensions)
+        own = 0;
+      else if (own > size_ || (own != 0 && count > size_ / own))
+        return refuse(entry.name, "cut off");
+      else
+        count *= own;
     }
     if (entry.offset % 8 != 0 || entry.offset > size_ ||
-        found.count > (size_ - entry.offset) / BYTES[entry.type])
-      return refuse(meaning.name, "cut off");
-    found.data = bytes_ + entry.offset;
+        count > (size_ - entry.offset) / BYTES[entry.type])
+      return refuse(entry.name, "cut off");
+    arrays_[number] = bytes_ + entry.offset;
+    entries_[number] = entry;
+    counts_[number] = count;
     return true;
   }
 
   int64_t length(const char *name, int axis = 0) const {
-    const Found &found = found_[number_of(name)];
-    return found.data ? static_cast<int64_t>(found.shape[axis]) : 0;
+    return static_cast<int64_t>(entries_[number_of(name)].shape[axis]);
   }
 
-  bool find_sizes(Arrays &arrays) {
-    int64_t *size = arrays.size;
-    memset(size, 0, sizeof arrays.size);
+  bool find_sizes() {
+    int64_t *size = arrays_.size;
     size[-SIZE_n] = length("tree_start");
     size[-SIZE_b] = length("branch_parent");
     size[-SIZE_b_plus_1] = size[-SIZE_b] + 1;
@@ -160,69 +155,55 @@ private:
     size[-SIZE_s] = length("stream_scale");
     if (size[-SIZE_m] > MOST_COORDINATES) return refuse("stiffness", "too many coordinates");
     size[-SIZE_delays] = length("limb_share");
-    if (is_table_alone()) return true;
-    const Found &keys = found_[number_of("branch_keys")];
-    if (!keys.data) return refuse("branch_keys", "missing");
-    const int64_t *each = reinterpret_cast<const int64_t *>(keys.data);
-    for (uint64_t i = 0; i < keys.count; i++) {
-      if (each[i] < 2 || each[i] > size[-SIZE_k])
+    if (is_table_alone(arrays_)) return true;
+    if (!arrays_.branch_keys) return refuse("branch_keys", "missing");
+    for (int64_t i = 0; i < length("branch_keys"); i++) {
+      const int64_t own = arrays_.branch_keys[i];
+      if (own < 2 || own > size[-SIZE_k])
         return refuse("branch_keys", "a number that no branch has");
-      size[-SIZE_N] += each[i];
+      size[-SIZE_N] += own;
     }
     if (size[-SIZE_n] < 1 || size[-SIZE_n] > MOST_SEGMENTS) return refuse("tree_start", "no tree");
     if (size[-SIZE_k] < 2 || size[-SIZE_k] > 64) return refuse("branch_twist", "no tree");
     return true;
   }
 
-  // Whether there is nothing to be placed: the model of a receiver that solves a tree by its table.
-  bool is_table_alone() const {
-    for (int number = 0; number < N_MEANINGS; number++)
-      if (found_[number].data &&
-          (MEANINGS[number].group == TREE || MEANINGS[number].group == PLACING))
-        return false;
-    return true;
-  }
-
-  bool check_all(Arrays &arrays) {
-    const void **pointers = reinterpret_cast<const void **>(&arrays);
+  bool check_all() {
     for (int number = 0; number < N_MEANINGS; number++) {
       const Meaning &meaning = MEANINGS[number];
-      const Found &found = found_[number];
-      pointers[number] = found.data;
-      if (!found.data) continue;
+      if (!arrays_[number]) continue;
       for (uint32_t axis = 0; axis < 4; axis++) {
         const int64_t wanted = meaning.shape[axis];
-        if (axis >= found.dimensions ? wanted != 0 : wanted == 0)
+        if ((axis < entries_[number].dimensions) != (wanted != 0))
           return refuse(meaning.name, "of another number of dimensions");
-        const int64_t own = static_cast<int64_t>(found.shape[axis]);
-        if (wanted > 0 && own != wanted) return refuse(meaning.name, "of another shape");
-        if (wanted < 0 && wanted != SIZE_any && own != arrays.size[-wanted])
+        const int64_t own = static_cast<int64_t>(entries_[number].shape[axis]);
+        if (wanted != SIZE_any && own != size_of(arrays_, wanted))
           return refuse(meaning.name, "of another shape");
       }
-      if (!is_plausible(meaning, found)) return refuse(meaning.name, "a number that no tree has");
+      if (!is_plausible(number)) return refuse(meaning.name, "a number that no tree has");
     }
     return true;
   }
 
-  static bool is_plausible(const Meaning &meaning, const Found &found) {
-    const double *doubles = reinterpret_cast<const double *>(found.data);
-    const float *singles = reinterpret_cast<const float *>(found.data);
+  bool is_plausible(int number) {
+    const Type type = MEANINGS[number].type;
+    const double *doubles = static_cast<const double *>(arrays_[number]);
+    const float *singles = static_cast<const float *>(arrays_[number]);
     bool holds = true;
-    for (uint64_t i = 0; i < found.count && meaning.type != 2; i++) {
-      const double value = meaning.type == 0 ? doubles[i] : static_cast<double>(singles[i]);
+    for (uint64_t i = 0; i < counts_[number] && type != TYPE_int64_t; i++) {
+      const double value = type == TYPE_double ? doubles[i] : static_cast<double>(singles[i]);
       holds &= value >= -LARGEST && value <= LARGEST;
     }
     return holds;
   }
 
-  bool check_indices(const Arrays &a) {
-    if (is_table_alone()) return has_table(a) || refuse("turning", "missing, and no tree");
+  bool check_indices() {
+    Arrays &a = arrays_;
+    if (is_table_alone(a)) return has_table(a) || refuse("turning", "missing, and no tree");
     const int64_t n = a.size[-SIZE_n], b = a.size[-SIZE_b], N = a.size[-SIZE_N];
-    for (int number = 0; number < N_MEANINGS; number++) {
-      const Group group = MEANINGS[number].group;
-      if ((group == TREE || group == PLACING) && !found_[number].data)
-        return refuse(MEANINGS[number].name, "missing");
-    }
+    const int of_tree = first_of(a, TREE, false), of_placing = first_of(a, PLACING, false);
+    if (of_tree >= 0) return refuse(MEANINGS[of_tree].name, "missing");
+    if (of_placing >= 0) return refuse(MEANINGS[of_placing].name, "missing");
     if (has_table(a) && !a.shapes) return refuse("shapes", "missing");
     if (b < 1 || b > n) return refuse("branch_parent", "no tree");
     if (a.branch_first[0] != 0 || a.branch_first[b] != n)
@@ -237,51 +218,39 @@ private:
         return refuse("branch_base_segment", "no segment of the parent");
       if (a.branch_coordinate[i] < 0 || a.branch_coordinate[i] > N - a.branch_keys[i])
         return refuse("branch_coordinate", "a key rotation that does not exist");
+      if (a.limb_delay && (a.limb_delay[i] < 0 || a.limb_delay[i] >= a.size[-SIZE_delays]))
+        return refuse("limb_delay", "a delay that does not exist");
     }
     if (a.size[-SIZE_delays] > DELAYS) return refuse("limb_share", "more delays than there are");
-    if (a.limb_delay)
-      for (int64_t i = 0; i < b; i++)
-        if (a.limb_delay[i] < 0 || a.limb_delay[i] >= a.size[-SIZE_delays])
-          return refuse("limb_delay", "a delay that does not exist");
     return true;
   }
 
   const char *bytes_;
   size_t size_;
+  Arrays &arrays_;
   Text &error_;
-  Found found_[N_MEANINGS] = {};
+  Entry entries_[N_MEANINGS] = {};
+  uint64_t counts_[N_MEANINGS] = {};
 };
 
-// Rows of coordinates, filled up with zeros to whole vectors.
-template <class T>
-const T *padded_rows(Memory &memory, const T *from, int64_t rows, int64_t m, int64_t padded) {
-  T *rows_out = memory.take<T>(rows * padded);
-  if (!rows_out || !from) return nullptr;
-  for (int64_t row = 0; row < rows; row++)
-    memcpy(rows_out + row * padded, from + row * m, m * sizeof(T));
-  return rows_out;
-}
-
-void lay_out_table(sway_model &model, const Arrays &a) {
-  Memory &memory = model.memory;
-  const int64_t m = model.sizes.coordinates, M = model.padded;
-  const int64_t corners = AZIMUTHS * LEVELS;
-  WindTable &table = model.table;
-  table.levels = padded_rows(memory, a.levels, AZIMUTHS, LEVELS, LEVELS);
-  table.limit = padded_rows(memory, a.limit, 1, m, M);
-  table.motion = padded_rows(memory, a.motion, 1, m, M);
-  table.harmonics = padded_rows(memory, a.harmonics, HARMONICS, m, M);
-  table.amount = padded_rows(memory, a.amount, AZIMUTHS, m, M);
-  table.equilibrium = padded_rows(memory, a.equilibrium, corners, m, M);
-  table.load = padded_rows(memory, a.load, corners, m, M);
-  table.cross_damping = padded_rows(memory, a.cross_damping, corners, m, M);
-  table.turning = padded_rows(memory, a.turning, corners * m, m, M);
-  table.damping = padded_rows(memory, a.damping, corners * m, m, M);
-  table.lean = padded_rows(memory, a.lean, AZIMUTHS * m, m, M);
-  table.steep_turning = padded_rows(memory, a.steep_turning, 2 * m, m, M);
-  table.steep_damping = padded_rows(memory, a.steep_damping, 2 * m, m, M);
-  table.most_pressure = *a.most_pressure;
-  table.most_energy = *a.most_energy;
+// Copy the arrays of a group; rows of coordinates are filled up with zeros to whole vectors.
+void lay_out_group(sway_model &model, Arrays &given, Group group) {
+  for (int number = 0; number < N_MEANINGS; number++) {
+    const Meaning &meaning = MEANINGS[number];
+    const char *from = static_cast<const char *>(given[number]);
+    if (meaning.group != group || !from) continue;
+    const size_t bytes = BYTES[meaning.type];
+    int64_t rows = 1, own = 1, padded = 1;
+    for (int axis = 0; axis < 4 && meaning.shape[axis]; axis++) {
+      rows *= own;
+      own = size_of(given, meaning.shape[axis]);
+      padded = meaning.shape[axis] == SIZE_m ? model.padded : own;
+    }
+    char *to = model.memory.take<char>(rows * padded * bytes);
+    for (int64_t row = 0; row < rows && to; row++)
+      memcpy(to + row * padded * bytes, from + row * own * bytes, own * bytes);
+    model.table[number] = to;
+  }
 }
 
 // Shapes of 64 key rotations at a time, in single precision.
@@ -294,7 +263,7 @@ void lay_out_shapes(sway_model &model, const Arrays &a) {
       shapes[(key / 64 * m + i) * 64 + key % 64] = static_cast<float>(a.shapes[key * m + i]);
 }
 
-void lay_out(sway_model &model, const Arrays &a) {
+void lay_out(sway_model &model, Arrays &a) {
   sway_sizes &sizes = model.sizes;
   sizes.segments = a.size[-SIZE_n];
   sizes.branches = a.size[-SIZE_b];
@@ -306,7 +275,6 @@ void lay_out(sway_model &model, const Arrays &a) {
   sizes.is_stepped = by_table;
   model.rows = a.size[-SIZE_k];
   model.padded = (sizes.coordinates + WHOLE - 1) / WHOLE * WHOLE;
-  for (int axis = 0; axis < 3; axis++) model.drag_law[axis] = a.drag_law ? a.drag_law[axis] : 0.0;
   if (a.tree_start) lay_out_places(model, a);
   if (a.shapes) lay_out_shapes(model, a);
   if (!by_table && !at_pose) return;
@@ -320,14 +288,10 @@ void lay_out(sway_model &model, const Arrays &a) {
     }
   model.stiffness = stiffness;
   model.own_damping = damping;
-  if (by_table) lay_out_table(model, a);
-  if (sizes.delays) {
-    model.limb_share = padded_rows(model.memory, a.limb_share, 1, sizes.delays, sizes.delays);
-    model.limb_harmonics =
-        padded_rows(model.memory, a.limb_harmonics, sizes.delays * HARMONICS, m, model.padded);
-    model.limb_spread = *a.limb_spread;
-    model.crown_coherence = *a.crown_coherence;
-  }
+  lay_out_group(model, a, NUMBERS);
+  if (by_table) lay_out_group(model, a, TABLE);
+  if (sizes.delays) lay_out_group(model, a, LIMBS);
+  if (sizes.delays) lay_out_group(model, a, LIMB_LOADS);
   if (!ON_TABLES && at_pose && lay_out_limp(model, a)) sizes.is_stepped = 2;
 }
 
@@ -346,22 +310,21 @@ sway_model *sway_model_open(const void *bytes, size_t size, char *error, size_t 
   Memory memory;
   // A copy at the beginning of a line, so that every array is aligned.
   char *own = bytes ? memory.take<char>(size) : nullptr;
+  Arrays arrays = {};
   sway_model *model = nullptr;
-  if (own) {
-    memcpy(own, bytes, size);
-    Arrays arrays;
-    Reader reader(own, size, text);
-    if (reader.read(arrays)) {
-      model = static_cast<sway_model *>(calloc(1, sizeof(sway_model)));
-      if (model) lay_out(*model, arrays);
-      if (model && model->memory.is_short) {
-        sway_model_close(model);
-        model = nullptr;
-      }
-      if (!model) text.add("memory is short");
+  if (own) memcpy(own, bytes, size);
+  if (!bytes) {
+    text.add("no bytes");
+  } else if (!own) {
+    text.add("memory is short");
+  } else if (Reader(own, size, arrays, text).read()) {
+    model = static_cast<sway_model *>(calloc(1, sizeof(sway_model)));
+    if (model) lay_out(*model, arrays);
+    if (!model || model->memory.is_short) {
+      sway_model_close(model);
+      model = nullptr;
+      text.add("memory is short");
     }
-  } else {
-    text.add(bytes ? "memory is short" : "no bytes");
   }
   memory.release();
   return model;

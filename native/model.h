@@ -49,6 +49,9 @@ struct Arrays {
 #include "arrays.inc"
 #undef SWAY_ARRAY
   int64_t size[SIZES];  // by -Size
+
+  // An array by its number in arrays.inc.
+  const void *&operator[](int number) { return reinterpret_cast<const void **>(this)[number]; }
 };
 
 // Segments at the same place in sixteen branches are placed at once: a slot each.
@@ -63,6 +66,10 @@ struct Segment {
   double *turn;             // rotation vector per unit of each key rotation (rows, 3, WIDTH)
   int64_t n_slots;          // branches that have this segment, in the first slots
 };
+
+inline __attribute__((always_inline)) void raise_to(int64_t &largest, int64_t value) {
+  if (value > largest) largest = value;
+}
 
 // Sixteen branches; parents are in earlier blocks than their children.
 struct Block {
@@ -81,14 +88,6 @@ struct Block {
   double bound_factor[WIDTH];  // key rotations less one
   double *steepest;            // largest squared rotation of a segment per unit (rows, WIDTH)
   double *base_rotation;       // per unit of each key rotation of the parent (rows, 3, WIDTH)
-};
-
-// The table of winds; rows of coordinates have `padded` numbers, zeros after the last.
-struct WindTable {
-  const double *levels;  // (AZIMUTHS, LEVELS)
-  const double *limit, *motion, *harmonics, *amount, *equilibrium, *load, *cross_damping;
-  const float *lean, *turning, *damping, *steep_turning, *steep_damping;  // (.., m, padded)
-  double most_pressure, most_energy;
 };
 
 // A limp tree at rest, one that is solved at its pose ("A limp tree" of doc/sway_model.md). A place
@@ -122,7 +121,6 @@ struct sway_model {
   sway_sizes sizes;
   int64_t rows;    // room for key rotations of a branch, k
   int64_t padded;  // coordinates, up to whole vectors
-  double drag_law[3];
 
   int64_t n_blocks;
   const sway::Block *blocks;
@@ -130,11 +128,9 @@ struct sway_model {
 
   const double *stiffness, *own_damping;  // (padded), 1 and 0 after the last
   const float *shapes;                    // (keys / 64, m, 64), rounded up
-  sway::WindTable table;
-
-  const double *limb_share;      // (delays)
-  const double *limb_harmonics;  // (delays, HARMONICS, padded)
-  double limb_spread, crown_coherence;
+  // Numbers, limbs and the table of winds, if it is stepped by one: rows of coordinates have `padded`
+  // numbers, zeros after the last.
+  sway::Arrays table;
 
   sway::Limp limp;  // where `is_limp`
 };

@@ -102,13 +102,7 @@ SWAY_API page_placer *page_placer_open(const sway_model *model) {
   if (!placer) return nullptr;
   placer->model = model;
   Memory &memory = placer->memory;
-  Room &room = placer->room;
-  room.keys = memory.take<double>(model->sizes.keys + 64 + KEYS_BEYOND);
-  room.bases = memory.take<double>(8 * model->sizes.branches);
-  room.poses = memory.take<double>(7 * model->sizes.segments);
-  room.slots = memory.take<double>(slots_of(model->rows + 4));
-  room.shown = memory.take<float>(model->padded);
-  room.single_keys = memory.take<float>(16);
+  open_room(memory, &model, 1, placer->room);
   double *numbers = memory.take<double>(2 * model->padded + 1);
   placer->state.eta = numbers;
   placer->state.hidden = numbers + model->padded;

@@ -2,12 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "place_layout.h"
 
+#include "turn.h"
+
 namespace {
 
 using namespace sway;
 
 // Largest deviation of a segment from a chord that it is taken to span, as a share of the chord.
 constexpr double AS_ONE = 1e-12;
+
+int64_t size_of(const Arrays &a, int64_t branch) {
+  return a.branch_first[branch + 1] - a.branch_first[branch];
+}
 
 // Branches whose parents have slots: the richest and longest first, then children of the richest.
 class Ready {
@@ -39,14 +45,11 @@ public:
   }
 
 private:
-  int64_t size(int64_t branch) const {
-    return a_.branch_first[branch + 1] - a_.branch_first[branch];
-  }
-
   bool is_before(int64_t one, int64_t other) const {
     const int64_t *keys = a_.branch_keys, *parent = a_.branch_parent;
     if (keys[one] != keys[other]) return keys[one] > keys[other];
-    if (size(one) != size(other)) return size(one) > size(other);
+    const int64_t size = size_of(a_, one), other_size = size_of(a_, other);
+    if (size != other_size) return size > other_size;
     const int64_t below = keys[parent[one] < 0 ? 0 : parent[one]];
     const int64_t other_below = keys[parent[other] < 0 ? 0 : parent[other]];
     if (below != other_below) return below > other_below;
@@ -68,12 +71,8 @@ struct Slots {
 
 bool assign_slots(Memory &memory, const Arrays &a, Slots &slots) {
   const int64_t b = a.size[-SIZE_b];
-  slots.block = memory.take<int64_t>(b);
-  slots.slot = memory.take<int64_t>(b);
-  slots.record = memory.take<int64_t>(b);
-  int64_t *carried = memory.take<int64_t>(b);
-  int64_t *first_child = memory.take<int64_t>(b);
-  int64_t *sibling = memory.take<int64_t>(b);
+  int64_t *carried, *first_child, *sibling;
+  memory.take_each(b, slots.block, slots.slot, slots.record, carried, first_child, sibling);
   Ready ready(memory, a, carried);
   if (memory.is_short) return false;
   for (int64_t i = 0; i < b; i++) carried[i] = 1, first_child[i] = sibling[i] = -1;
@@ -89,14 +88,10 @@ bool assign_slots(Memory &memory, const Arrays &a, Slots &slots) {
     int count = 0;
     while (count < WIDTH && ready.count() > 0) {
       const int64_t branch = ready.take();
-      const int64_t size = a.branch_first[branch + 1] - a.branch_first[branch];
       // The longest first, as records have segments of the first slots only.
       int at = count++;
-      for (; at > 0; at--) {
-        const int64_t before = together[at - 1];
-        if (a.branch_first[before + 1] - a.branch_first[before] >= size) break;
-        together[at] = before;
-      }
+      for (; at > 0 && size_of(a, together[at - 1]) < size_of(a, branch); at--)
+        together[at] = together[at - 1];
       together[at] = branch;
     }
     for (int at = 0; at < count; at++) {
@@ -108,81 +103,68 @@ bool assign_slots(Memory &memory, const Arrays &a, Slots &slots) {
         ready.add(child);
     }
     slots.n_blocks++;
-    slots.n_records += a.branch_first[together[0] + 1] - a.branch_first[together[0]];
+    slots.n_records += size_of(a, together[0]);
   }
   return true;
 }
 
-void rotate_back(const double q[4], const double v[3], double out[3]) {
-  const double w = q[0], x = -q[1], y = -q[2], z = -q[3];
-  const double tx = 2.0 * (y * v[2] - z * v[1]);
-  const double ty = 2.0 * (z * v[0] - x * v[2]);
-  const double tz = 2.0 * (x * v[1] - y * v[0]);
-  out[0] = v[0] + w * tx + y * tz - z * ty;
-  out[1] = v[1] + w * ty + z * tx - x * tz;
-  out[2] = v[2] + w * tz + x * ty - y * tx;
+// Whether a vector is along the x axis.
+bool is_along(const Vector<double> &v) {
+  return __builtin_sqrt(v.y * v.y + v.z * v.z) <= AS_ONE * v.x;
 }
 
-double square(const double v[3]) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-
-// Whether a vector is along the x axis.
-bool is_along(const double v[3]) {
-  return __builtin_sqrt(v[1] * v[1] + v[2] * v[2]) <= AS_ONE * v[0];
+// Write numbers to a slot of rows.
+void put(double *rows, int64_t slot, const double *numbers, int64_t count) {
+  for (int64_t row = 0; row < count; row++) rows[row * WIDTH + slot] = numbers[row];
 }
 
 // Write one segment of a branch; returns whether its chord is its x axis.
 bool fill_segment(const Arrays &a, int64_t number, Segment &record, int64_t slot) {
   const int64_t k = a.size[-SIZE_k];
-  double chord[3];
-  rotate_back(a.segment_rest + 4 * number, a.segment_chord + 3 * number, chord);
+  const double *rest = a.segment_rest + 4 * number;
+  const Vector<double> chord =
+      rotated(inverse(read_quaternion(rest)), read(a.segment_chord + 3 * number));
   record.slope[slot] = a.segment_slope[number];
   record.tip_slope[slot] = a.segment_tip_slope[number] - a.segment_slope[number];
-  for (int axis = 0; axis < 3; axis++) record.chord[axis][slot] = chord[axis];
-  for (int axis = 0; axis < 4; axis++) record.rest[axis][slot] = a.segment_rest[4 * number + axis];
-  for (int64_t row = 0; row < k && record.turn; row++)
-    for (int axis = 0; axis < 3; axis++)
-      record.turn[(3 * row + axis) * WIDTH + slot] = a.segment_turn[(number * k + row) * 3 + axis];
-  if (slot >= record.n_slots) record.n_slots = slot + 1;
+  put(*record.chord, slot, &chord.x, 3);
+  put(*record.rest, slot, rest, 4);
+  if (record.turn) put(record.turn, slot, a.segment_turn + 3 * k * number, 3 * k);
+  raise_to(record.n_slots, slot + 1);
   return is_along(chord);
 }
 
 void fill_branch(const Arrays &a, int64_t branch, Block &block, int64_t slot) {
   const int64_t k = a.size[-SIZE_k], parent = a.branch_parent[branch];
   const int64_t below = parent < 0 ? 0 : parent;
+  const double *frame = a.branch_frame + 9 * branch, *skew = a.branch_skew + 2 * branch;
+  const double *offset = a.branch_offset + 3 * branch;
   block.branch[slot] = branch;
   block.parent[slot] = parent;
   block.coordinate[slot] = a.branch_coordinate[branch];
   block.parent_coordinate[slot] = a.branch_coordinate[below];
   block.base_segment[slot] = a.branch_base_segment[branch];
   block.first[slot] = a.branch_first[branch];
-  block.skew[slot] = a.branch_skew[2 * branch];
-  block.tip_skew[slot] = a.branch_skew[2 * branch + 1] - a.branch_skew[2 * branch];
+  block.skew[slot] = skew[0];
+  block.tip_skew[slot] = skew[1] - skew[0];
   block.bound_factor[slot] = static_cast<double>(a.branch_keys[branch] - 1);
-  for (int axis = 0; axis < 3; axis++) {
-    block.axes[0][axis][slot] = a.branch_frame[9 * branch + 3 + axis];
-    block.axes[1][axis][slot] = a.branch_frame[9 * branch + 6 + axis];
-    block.offset[axis][slot] = a.branch_offset[3 * branch + axis];
-  }
-  for (int64_t row = 0; row < k; row++)
-    for (int axis = 0; axis < 3; axis++)
-      block.base_rotation[(3 * row + axis) * WIDTH + slot] =
-          a.branch_twist[(branch * k + row) * 6 + 3 + axis];
-  for (int64_t i = a.branch_first[branch]; i < a.branch_first[branch + 1]; i++)
-    for (int64_t row = 0; row < k; row++) {
-      double &steepest = block.steepest[row * WIDTH + slot];
-      double turn = square(a.segment_turn + (i * k + row) * 3);
-      const double tip = a.segment_tip_slope[i] * a.segment_tip_slope[i];
-      if (row == 0 && tip > turn) turn = tip;
-      if (turn > steepest) steepest = turn;
+  put(**block.axes, slot, frame + 3, 6);
+  put(*block.offset, slot, offset, 3);
+  for (int64_t row = 0; row < k; row++) {
+    const double *twist = a.branch_twist + 6 * (branch * k + row);
+    put(block.base_rotation + 3 * row * WIDTH, slot, twist + 3, 3);
+    double &steepest = block.steepest[row * WIDTH + slot];
+    for (int64_t i = a.branch_first[branch]; i < a.branch_first[branch + 1]; i++) {
+      const Vector<double> turn = read(a.segment_turn + 3 * (i * k + row));
+      const double tip = row == 0 ? a.segment_tip_slope[i] : 0.0;
+      steepest = most(steepest, most(dot(turn, turn), tip * tip));
     }
-  const double *offset = a.branch_offset + 3 * branch;
-  const bool is_aside = __builtin_fabs(offset[1]) > AS_ONE * offset[0] ||
-                        __builtin_fabs(offset[2]) > AS_ONE * offset[0];
-  if (is_aside) block.is_at_axes = 0;
-  if (slot >= block.n_slots) block.n_slots = slot + 1;
-  if (a.branch_keys[branch] > block.n_rows) block.n_rows = a.branch_keys[branch];
-  if (parent >= 0 && a.branch_keys[below] > block.n_parent_rows)
-    block.n_parent_rows = a.branch_keys[below];
+  }
+  if (__builtin_fabs(offset[1]) > AS_ONE * offset[0] ||
+      __builtin_fabs(offset[2]) > AS_ONE * offset[0])
+    block.is_at_axes = 0;
+  raise_to(block.n_slots, slot + 1);
+  raise_to(block.n_rows, a.branch_keys[branch]);
+  if (parent >= 0) raise_to(block.n_parent_rows, a.branch_keys[below]);
 }
 
 }  // namespace
@@ -216,16 +198,15 @@ void lay_out_places(sway_model &model, const Arrays &a) {
     for (int64_t branch = 0; branch < a.size[-SIZE_b]; branch++) {
       Block &block = blocks[slots.block[branch]];
       const int64_t slot = slots.slot[branch], record = slots.record[branch];
-      const int64_t first = a.branch_first[branch], end = a.branch_first[branch + 1];
+      const int64_t first = a.branch_first[branch], size = size_of(a, branch);
       block.first_record = record;
-      if (end - first > block.n_records) block.n_records = end - first;
+      raise_to(block.n_records, size);
       fill_branch(a, branch, block, slot);
-      for (int64_t i = first; i < end; i++)
-        if (!fill_segment(a, i, segments[record + i - first], slot)) block.is_joined = 0;
+      for (int64_t i = 0; i < size; i++)
+        if (!fill_segment(a, first + i, segments[record + i], slot)) block.is_joined = 0;
       if (branch == 0) continue;
-      Block &below = blocks[slots.block[a.branch_parent[branch]]];
-      const int64_t seat = slots.slot[a.branch_parent[branch]] + 1;
-      if (seat > below.n_parents) below.n_parents = seat;
+      const int64_t parent = a.branch_parent[branch];
+      raise_to(blocks[slots.block[parent]].n_parents, slots.slot[parent] + 1);
     }
   }
   model.n_blocks = slots.n_blocks;

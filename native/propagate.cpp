@@ -52,17 +52,7 @@ struct Sum {
   double high, low;
 };
 
-// The first half of the digits, whose products are exact.
-double half_of_digits(double a) {
-  const double spread = 134217729.0 * a;  // 2^27 + 1
-  return spread - (spread - a);
-}
-
-Sum exact_product(double a, double b) {
-  const double high = a * b, a_high = half_of_digits(a), b_high = half_of_digits(b);
-  const double a_low = a - a_high, b_low = b - b_high;
-  return {high, a_low * b_low - (((high - a_high * b_high) - a_low * b_high) - a_high * b_low)};
-}
+Sum exact_product(double a, double b) { return {a * b, fma(a, b, -(a * b))}; }
 
 // delta = alpha^2 - kappa, and if it is not positive the phase sqrt(-delta).
 struct Discriminant {

@@ -9,26 +9,17 @@ namespace {
 using namespace sway;
 
 void open_limp_room(Memory &memory, const Limp &limp, int64_t m, int64_t padded, LimpRoom &room) {
-  double **keys[] = {&room.turned, &room.turning, &room.keys};
-  for (double **each : keys) *each = memory.take<double>(limp.keys);
-  double **places[] = {&room.here,    &room.ahead, &room.behind, &room.trial,
-                       &room.tangent, &room.force, &room.gust};
-  for (double **each : places) *each = memory.take<double>(limp.places);
-  room.products = memory.take<double>((m + 2) * limp.row);
-  room.rows = memory.take<const double *>(m + 2);
-  double **rows[] = {&room.momentum, &room.across, &room.along};
-  for (double **each : rows) *each = memory.take<double>(limp.row);
-  room.matrix = memory.take<double>(limp.leading * limp.row);
-  room.block = memory.take<double>(limp.leading * limp.row);
-  room.coupled = memory.take<double>(8 * limp.row);
-  room.solved = memory.take<double>(3 * limp.row);
-  double **coordinates[] = {&room.eta,     &room.rate,   &room.new_force,
-                            &room.by_wind, &room.wanted, &room.sloped};
-  for (double **each : coordinates) *each = memory.take<double>(padded);
-}
-
-void raise_to(int64_t &largest, int64_t value) {
-  if (value > largest) largest = value;
+  memory.take_each(limp.keys, room.turned, room.turning, room.keys);
+  memory.take_each(limp.places, room.here, room.ahead, room.behind, room.trial, room.tangent,
+                   room.force, room.gust);
+  memory.take_each((m + 2) * limp.row, room.products);
+  memory.take_each(m + 2, room.rows);
+  memory.take_each(limp.row, room.momentum, room.across, room.along);
+  memory.take_each(limp.leading * limp.row, room.matrix, room.block);
+  memory.take_each(8 * limp.row, room.coupled);
+  memory.take_each(3 * limp.row, room.solved);
+  memory.take_each(padded, room.eta, room.rate, room.new_force, room.by_wind, room.wanted,
+                   room.sloped);
 }
 
 }  // namespace
@@ -52,16 +43,14 @@ void open_room(Memory &memory, const sway_model *const *models, size_t n_models,
     raise_to(limp.places, model.limp.places);
     raise_to(limp.keys, model.limp.keys);
   }
-  room.keys = memory.take<double>(keys + 64 + KEYS_BEYOND);
-  room.bases = memory.take<double>(8 * branches);
-  room.poses = memory.take<double>(7 * segments);
-  room.slots = memory.take<double>(slots_of(rows + 4));
-  double **doubles[] = {&room.middle, &room.middle_rate, &room.change};
-  for (double **each : doubles) *each = memory.take<double>(padded);
-  float **singles[] = {&room.turned, &room.damped, &room.single_rate, &room.shown};
-  for (float **each : singles) *each = memory.take<float>(padded);
-  room.distance = memory.take<float>(4 * padded);
-  room.single_keys = memory.take<float>(16);
+  memory.take_each(keys + 64 + KEYS_BEYOND, room.keys);
+  memory.take_each(8 * branches, room.bases);
+  memory.take_each(7 * segments, room.poses);
+  memory.take_each(slots_of(rows + 4), room.slots);
+  memory.take_each(padded, room.middle, room.middle_rate, room.change);
+  memory.take_each(padded, room.turned, room.damped, room.single_rate, room.shown);
+  memory.take_each(4 * padded, room.distance);
+  memory.take_each(16, room.single_keys);
   if (!ON_TABLES && limp.leading) open_limp_room(memory, limp, coordinates, padded, room.limp);
 }
 

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "frame.h"
-#include "vec.h"
+#include "turn.h"
 
 namespace {
 
@@ -35,39 +35,40 @@ INLINE double drag_density(const double law[3], double speed) {
 }
 
 struct Wind {
-  double x, y, z;            // unit vector
+  Vector<double> direction;  // a unit vector
   double dynamic_pressure;   // p U^2 [kg/m/s^2]
   double per_speed_squared;  // p [kg/m^3]
 };
 
 // Real spherical harmonics of degree 1, 3 and 5 at a unit vector, as harmonic polynomials; those of
-// a degree n are out[c - n] .. out[c + n] about a centre c.
-static void fill_harmonics(double x, double y, double z, double *out) {
+// a degree n are 2 n + 1 numbers about a centre, by sines before it and by cosines behind.
+static void fill_harmonics(const Vector<double> &at, double *out) {
   // Cosine and sine of m times the azimuth, times the m-th power of the horizontal part.
   double cosine[6] = {1.0}, sine[6] = {0.0};
   for (int m = 1; m < 6; m++) {
-    cosine[m] = x * cosine[m - 1] - y * sine[m - 1];
-    sine[m] = x * sine[m - 1] + y * cosine[m - 1];
+    cosine[m] = at.x * cosine[m - 1] - at.y * sine[m - 1];
+    sine[m] = at.x * sine[m - 1] + at.y * cosine[m - 1];
   }
-  const double zz = z * z;
-  const double degree_1[] = {1.7320508075688772 * z, 1.7320508075688772};
-  const double degree_3[] = {1.3228756555322954 * z * (5.0 * zz - 3.0),
-                             1.620185174601965 * (5.0 * zz - 1.0), 5.123475382979799 * z,
-                             2.091650066335189};
-  const double degree_5[] = {0.414578098794425 * z * (63.0 * zz * zz - 70.0 * zz + 15.0),
-                             1.6056540723331412 * (21.0 * zz * zz - 14.0 * zz + 1.0),
-                             8.496322733983215 * z * (3.0 * zz - 1.0),
-                             1.734304615688951 * (9.0 * zz - 1.0),
-                             7.358031326380718 * z,
-                             2.3268138086232857};
-  const double *degrees[] = {degree_1, degree_3, degree_5};
-  const int centre[] = {1, 6, 15}, degree[] = {1, 3, 5};
-  for (int each = 0; each < 3; each++) {
-    double *at = out + centre[each];
-    at[0] = degrees[each][0];
-    for (int m = 1; m <= degree[each]; m++) {
-      at[m] = degrees[each][m] * cosine[m];
-      at[-m] = degrees[each][m] * sine[m];
+  const double z = at.z, zz = z * z;
+  // Of each degree by m, over the horizontal part.
+  const double upright[] = {1.7320508075688772 * z,
+                            1.7320508075688772,
+                            1.3228756555322954 * z * (5.0 * zz - 3.0),
+                            1.620185174601965 * (5.0 * zz - 1.0),
+                            5.123475382979799 * z,
+                            2.091650066335189,
+                            0.414578098794425 * z * (63.0 * zz * zz - 70.0 * zz + 15.0),
+                            1.6056540723331412 * (21.0 * zz * zz - 14.0 * zz + 1.0),
+                            8.496322733983215 * z * (3.0 * zz - 1.0),
+                            1.734304615688951 * (9.0 * zz - 1.0),
+                            7.358031326380718 * z,
+                            2.3268138086232857};
+  const double *by_m = upright;
+  double *centre = out + 1;
+  for (int degree = 1; degree <= 5; by_m += degree + 1, centre += 2 * degree + 3, degree += 2) {
+    for (int m = 0; m <= degree; m++) {
+      centre[-m] = by_m[m] * sine[m];
+      centre[m] = by_m[m] * cosine[m];
     }
   }
 }
@@ -75,16 +76,19 @@ static void fill_harmonics(double x, double y, double z, double *out) {
 // The four corners around a wind and a mean deflection, and their bilinear weights; 0: azimuth
 // before, level below; 1: before, above; 2: after, below; 3: after, above.
 struct Corners {
-  int64_t azimuth[2], level;
-  double azimuth_share, level_share;
+  int64_t azimuth[2];
+  double by_azimuth[2], by_level[2];  // shares of before and after, below and above
   int64_t number[4];
   double weight[4];
 };
 
-static Corners find_corners(const sway_model &model, const Wind &wind, const double *eta) {
-  const WindTable &table = model.table;
+// `level_winds` is the share of the slopes of winds that are not steep.
+static Corners find_corners(const sway_model &model, const Wind &wind, const double *eta,
+                            double level_winds) {
+  const Arrays &table = model.table;
   const int64_t M = model.padded;
-  const double position = __builtin_atan2(wind.y, wind.x) * (AZIMUTHS / (360.0 * DEGREE));
+  const double position =
+      __builtin_atan2(wind.direction.y, wind.direction.x) * (AZIMUTHS / (360.0 * DEGREE));
   const double whole = __builtin_floor(position);
   Corners corners;
   corners.azimuth[0] = (static_cast<int64_t>(whole) + AZIMUTHS) % AZIMUTHS;
@@ -105,20 +109,18 @@ static Corners find_corners(const sway_model &model, const Wind &wind, const dou
     below = above;
     above = rest * low[level + 1] + share * high[level + 1];
   }
-  corners.level = level;
-  corners.azimuth_share = share;
-  corners.level_share = least(most((deflection - below) / (above - below), 0.0), 1.0);
-  return corners;
-}
-
-static void weigh(Corners &corners, double level_winds) {
+  const double climbed = least(most((deflection - below) / (above - below), 0.0), 1.0);
+  corners.by_azimuth[0] = rest;
+  corners.by_azimuth[1] = share;
+  corners.by_level[0] = 1.0 - climbed;
+  corners.by_level[1] = climbed;
   for (int corner = 0; corner < 4; corner++) {
     const int is_after = corner / 2, is_above = corner % 2;
-    const double by_azimuth = is_after ? corners.azimuth_share : 1.0 - corners.azimuth_share;
-    const double by_level = is_above ? corners.level_share : 1.0 - corners.level_share;
-    corners.number[corner] = corners.azimuth[is_after] * LEVELS + corners.level + is_above;
-    corners.weight[corner] = level_winds * by_azimuth * by_level;
+    corners.number[corner] = corners.azimuth[is_after] * LEVELS + level + is_above;
+    corners.weight[corner] =
+        level_winds * corners.by_azimuth[is_after] * corners.by_level[is_above];
   }
+  return corners;
 }
 
 // A value of coordinates from i on, between the corners.
@@ -134,15 +136,15 @@ INLINE Vec between(const double *values, int64_t M, const Corners &corners, int6
 static void find_distances(const sway_model &model, const Corners &corners, Room &room) {
   const int64_t M = model.padded;
   const double *equilibrium = model.table.equilibrium;
-  const double share = corners.azimuth_share, above = corners.level_share;
-  const double to_below = 0.5 * above, to_above = 0.5 * (1.0 - above);
+  const double above = corners.by_level[1];
+  const double to_below = 0.5 * above, to_above = 0.5 * corners.by_level[0];
   for (int64_t i = 0; i < M; i++) {
     const double low = equilibrium[corners.number[0] * M + i];
     const double other_low = equilibrium[corners.number[2] * M + i];
     const double rise = equilibrium[corners.number[1] * M + i] - low;
     const double other_rise = equilibrium[corners.number[3] * M + i] - other_low;
-    const double away = room.middle[i] - (1.0 - share) * (low + above * rise) -
-                        share * (other_low + above * other_rise);
+    const double away = room.middle[i] - corners.by_azimuth[0] * (low + above * rise) -
+                        corners.by_azimuth[1] * (other_low + above * other_rise);
     room.distance[i] = static_cast<float>(corners.weight[0] * (away + to_below * rise));
     room.distance[M + i] = static_cast<float>(corners.weight[1] * (away - to_above * rise));
     room.distance[2 * M + i] =
@@ -159,7 +161,7 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
 static void add_slopes(const sway_model &model, const Corners &corners, double slant,
                        double level_winds, Room &room, int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   const float *turning[4], *damping[4];
   float weight[4];
   for (int corner = 0; corner < 4; corner++) {
@@ -170,9 +172,8 @@ static void add_slopes(const sway_model &model, const Corners &corners, double s
   const float *lean[2];
   float slants[2];
   for (int side = 0; side < 2; side++) {
-    const double share = side ? corners.azimuth_share : 1.0 - corners.azimuth_share;
     lean[side] = table.lean + corners.azimuth[side] * m * M;
-    slants[side] = static_cast<float>(level_winds * share * slant);
+    slants[side] = static_cast<float>(level_winds * corners.by_azimuth[side] * slant);
   }
   for (int64_t moving = 0; moving < n_coupled; moving++) {
     const int64_t row = moving * M;
@@ -220,12 +221,11 @@ static void add_steep_slopes(const sway_model &model, bool is_upwards, double st
 static void find_wind_force(const sway_model &model, const Wind &wind, State &state, Room &room,
                             int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
-  const WindTable &table = model.table;
+  const Arrays &table = model.table;
   double harmonics[HARMONICS];
-  fill_harmonics(wind.x, wind.y, wind.z, harmonics);
-  Corners corners = find_corners(model, wind, room.middle);
-  const double steepness = most(0.0, (__builtin_fabs(wind.z) - STEEP) / (1.0 - STEEP));
-  weigh(corners, 1.0 - steepness);
+  fill_harmonics(wind.direction, harmonics);
+  const double steepness = most(0.0, (__builtin_fabs(wind.direction.z) - STEEP) / (1.0 - STEEP));
+  const Corners corners = find_corners(model, wind, room.middle, 1.0 - steepness);
   Vec squares = {};
   for (int64_t i = 0; i < M; i += LANES) {
     const Vec rate = load(room.middle_rate + i);
@@ -241,7 +241,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
     store(state.wanted + i, force);
   }
   find_distances(model, corners, room);
-  add_slopes(model, corners, least(most(wind.z, -STEEP), STEEP), 1.0 - steepness, room, n_coupled);
+  add_slopes(model, corners, least(most(wind.direction.z, -STEEP), STEEP), 1.0 - steepness, room,
+             n_coupled);
   for (int64_t i = 0; i < m; i++) {
     double slope = 0.0;
     for (int corner = 0; corner < 4; corner++)
@@ -251,7 +252,7 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
   }
   for (int64_t i = m; i < M; i++) state.diagonal[i] = 0.0;
   if (steepness > 0.0)
-    add_steep_slopes(model, wind.z > 0.0, steepness, drag, state, room, n_coupled);
+    add_steep_slopes(model, wind.direction.z > 0.0, steepness, drag, state, room, n_coupled);
   // Slopes hold near an equilibrium; the load far from it is bounded by that of any wind.
   for (int64_t i = 0; i < M; i += LANES) {
     const Vec limit = load(table.limit + i);
@@ -329,16 +330,15 @@ INLINE void keep_at_rest(const sway_model &model, State &state) {
 // Step a tree in a uniform wind [m/s] in its own frame, of a drag density [kg/m^3]. Returns whether
 // wind or energy were clamped.
 static bool step_table(const sway_model &model, const double *stiffness, const Step &step,
-                       State &state, Room &room, const double velocity[3],
+                       State &state, Room &room, const Vector<double> &velocity,
                        double per_speed_squared) {
-  const WindTable &table = model.table;
-  const double x = velocity[0], y = velocity[1], z = velocity[2];
-  const double speed = __builtin_sqrt(x * x + y * y + z * z);
+  const Arrays &table = model.table;
+  const double speed = __builtin_sqrt(dot(velocity, velocity));
   const double pressure = per_speed_squared * speed * speed;
-  bool is_clamped = pressure > table.most_pressure;
-  const Wind wind = {speed > 0.0 ? x / speed : 1.0, speed > 0.0 ? y / speed : 0.0,
-                     speed > 0.0 ? z / speed : 0.0, least(pressure, table.most_pressure),
-                     per_speed_squared};
+  bool is_clamped = pressure > *table.most_pressure;
+  const Vector<double> direction = {velocity.x / speed, velocity.y / speed, velocity.z / speed};
+  const Wind wind = {speed > 0.0 ? direction : Vector<double>{1.0, 0.0, 0.0},
+                     least(pressure, *table.most_pressure), per_speed_squared};
   const int64_t n_coupled =
       model.sizes.coordinates - count_of(*state.left_out, model.sizes.coordinates);
   const double energy_before = twice_energy(model, stiffness, state);
@@ -357,7 +357,7 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
   keep_at_rest(model, state);
   // A pull may bend a tree more than any wind; no wind adds to that.
   const double energy = twice_energy(model, stiffness, state);
-  const double most_energy = most(energy_before, table.most_energy);
+  const double most_energy = most(energy_before, *table.most_energy);
   if (!(energy <= most_energy)) {
     const double scale = __builtin_sqrt(most_energy / energy);
     for (int64_t i = 0; i < model.padded; i++) {
@@ -366,7 +366,7 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
     }
     is_clamped = true;
   }
-  for (int axis = 0; axis < 3; axis++) state.wind[axis] = velocity[axis];
+  write(state.wind, velocity);
   *state.drag_density = per_speed_squared;
   *state.is_clamped = is_clamped;
   return is_clamped;

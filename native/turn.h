@@ -16,6 +16,10 @@ INLINE Vector<double> read(const double *from) { return {from[0], from[1], from[
 
 INLINE void write(double *to, const Vector<double> &v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
+INLINE Quaternion<double> read_quaternion(const double *q) { return {q[0], q[1], q[2], q[3]}; }
+
+INLINE Quaternion<double> inverse(const Quaternion<double> &q) { return {q.w, -q.x, -q.y, -q.z}; }
+
 // A vector of numbers and one of lanes.
 INLINE Vector<Vec> lanes_of(const Vector<double> &v) { return {all(v.x), all(v.y), all(v.z)}; }
 

@@ -10,8 +10,8 @@ import pytest
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named
-from tree_sway.core.tree.crown_allometry import breast_height_diameter, crown_change, crown_size
 from tree_sway.core.tree.tree import Tree
+from tree_sway.growth.crown_allometry import breast_height_diameter, crown_change, crown_size
 from tree_sway.growth.growing import grow
 
 SLENDER, USUAL, STOUT = 0.75, 1.0, 1.3

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Array types: float64, int64, and the records of the hot path, whose fields are typed."""
+"""Array types: float64, int64, and records, whose fields a class lists."""
 
 from __future__ import annotations
 
-from typing import Any, get_args, get_type_hints, overload, Protocol, TypeVar
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,20 +20,6 @@ Records = NDArray[np.void]
 
 #: Codes of fields by type.
 _CODES = {int: 'i8', float: 'f8', Ints: 'i8', Floats: 'f8', Singles: 'f4'}
-
-_Record = TypeVar('_Record', covariant=True)
-
-
-class RecordsOf(Protocol[_Record]):
-    """Records as compiled code reads them: fields of one are attributes, typed as its class."""
-
-    def __len__(self) -> int: ...
-
-    @overload
-    def __getitem__(self, index: int, /) -> _Record: ...
-
-    @overload
-    def __getitem__(self, index: slice, /) -> RecordsOf[_Record]: ...
 
 
 def fields_of(record: type, **sizes: int) -> list[tuple[Any, ...]]:

@@ -31,13 +31,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.species import species_named
-from tree_sway.core.tree import (
-    AREA_SPREAD,
-    breast_height_diameter,
-    crown_size,
-    Tree,
-    tree_from_segments,
-)
+from tree_sway.core.tree import Tree, tree_from_segments
+from tree_sway.growth.crown_allometry import AREA_SPREAD, breast_height_diameter, crown_size
 
 _CUT_AT = 0.015
 """Median diameter of the ends from which on a scan has been cut in [m]."""

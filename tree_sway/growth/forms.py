@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree import CrownChange
+from tree_sway.growth.crown_allometry import CrownChange
 from tree_sway.tables import table_beside
 
 _HIGHEST_BASE, _LARGEST_HALF_WIDTH = 0.8, 0.7

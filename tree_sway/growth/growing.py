@@ -22,11 +22,12 @@ from tree_sway.core.checks import number_of
 from tree_sway.core.random_source import generator_of
 from tree_sway.core.setup import greenhill_length
 from tree_sway.core.species import Species, species_named
-from tree_sway.core.tree import crown_change, Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.growth.benjamina import grow_benjamina
 from tree_sway.growth.broadleaf import grow_broadleaf
 from tree_sway.growth.conifer import grow_conifer
+from tree_sway.growth.crown_allometry import crown_change
 from tree_sway.growth.forms import broadleaf_form, changed_form, conifer_form
 from tree_sway.growth.goldcrest import grow_goldcrest
 

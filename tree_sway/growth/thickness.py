@@ -18,10 +18,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
+from tree_sway.growth.crown_allometry import BREAST_HEIGHT
 from tree_sway.growth.skeleton import Shoot, Skeleton
-
-BREAST_HEIGHT = 1.3
-"""Breast height, where foresters measure a stem, in [m]."""
 
 _INSERTION_RATIO = 0.76
 """Largest ratio of a branch's diameter to its parent's at its base, in [-]."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tree_sway.simulation.exposure import exposure_of as exposure_of
     from tree_sway.simulation.exposure import EXPOSURES as EXPOSURES
     from tree_sway.simulation.exposure import STATION_HEIGHT as STATION_HEIGHT
+    from tree_sway.simulation.interpolated import interpolated_means as interpolated_means
     from tree_sway.simulation.rig import PlacedMotion as PlacedMotion
     from tree_sway.simulation.rig import refuse_too_many_steps as refuse_too_many_steps
     from tree_sway.simulation.rig import Rig as Rig

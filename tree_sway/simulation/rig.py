@@ -24,7 +24,6 @@ from tree_sway.core.setup import TreeReductions
 from tree_sway.core.tree import GrownTree, tips_of_poses, Tree, tree_and_species
 from tree_sway.core.wind import (
     FASTEST_WIND,
-    interpolated_means,
     LONGEST_HOLD,
     shorter_than,
     WindAverage,
@@ -33,6 +32,7 @@ from tree_sway.core.wind import (
 )
 from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.interpolated import interpolated_means
 from tree_sway.simulation.strength_use import StrengthGauge, StrengthUse
 from tree_sway.simulation.sway_record import SwayRecord
 

@@ -29,12 +29,12 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.drag import drag_density
-from tree_sway.core.model import Branches, SwayModel, WIDTH
+from tree_sway.core.model import SwayModel, WIDTH
 from tree_sway.core.oscillators import LOAD_MAX
 from tree_sway.core.run import FARTHEST, ModalCoordinates
 from tree_sway.core.setup import MOST_CHANGE
 from tree_sway_lab.full.branch_loads import wind_moments
-from tree_sway_lab.full.load_layouts import Loads, WORK, Works
+from tree_sway_lab.full.load_layouts import Branches, Loads, WORK, Works
 from tree_sway_lab.full.load_records import load_records
 from tree_sway_lab.kernel import entry_of, fused, part
 

@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.model import Branch, Branches, WIDTH
-from tree_sway_lab.full.load_layouts import Load, Loads, Work, Works
+from tree_sway.core.model import Branch, WIDTH
+from tree_sway_lab.full.load_layouts import Branches, Load, Loads, Work, Works
 from tree_sway_lab.full.rotation import product, quaternion, rotated
 from tree_sway_lab.full.vector import (
     column,

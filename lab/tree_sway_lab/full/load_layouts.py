@@ -9,12 +9,26 @@ The model `full` sums the load over the branches.
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, overload, Protocol, TypeVar
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf
-from tree_sway.core.model import WIDTH
+from tree_sway.core.arrays import fields_of, Floats, Records
+from tree_sway.core.model import Branch, WIDTH
+
+_Record = TypeVar('_Record', covariant=True)
+
+
+class RecordsOf(Protocol[_Record]):
+    """Records as compiled code reads them: fields of one are attributes, typed as its class."""
+
+    def __len__(self) -> int: ...
+
+    @overload
+    def __getitem__(self, index: int, /) -> _Record: ...
+
+    @overload
+    def __getitem__(self, index: slice, /) -> RecordsOf[_Record]: ...
 
 
 class Work:
@@ -65,6 +79,7 @@ class Load:
     load: Annotated[Floats, 'rows', WIDTH]  # load on each coordinate [N m]
 
 
+Branches = RecordsOf[Branch]
 Works = RecordsOf[Work]
 Loads = RecordsOf[Load]
 

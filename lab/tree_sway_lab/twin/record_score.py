@@ -24,11 +24,11 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.setup import LEAVES
 from tree_sway.core.tree import ends_of_poses
-from tree_sway.core.wind import interpolated_means
 from tree_sway.errors import ParameterError
 from tree_sway.files.motion import MotionRecord, read_motion, TreeRecord
 from tree_sway.files.trees import open_tree
 from tree_sway.files.wind import read_wind
+from tree_sway.simulation import interpolated_means
 from tree_sway.twin import align, Alignment, GRAVITY, ObservedTree, place_on, SensorPlace
 from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway, low_passed, SwayComparison

@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree import breast_height_diameter, crown_size, Tree, tree_from_segments
-from tree_sway.growth import open_diameter
+from tree_sway.core.tree import Tree, tree_from_segments
+from tree_sway.growth import breast_height_diameter, crown_size, open_diameter
 
 SCAN_WEIGHT = 0.2
 """Weight of a scan beside the allometry [-]."""

@@ -14,7 +14,7 @@ from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf
+from tree_sway.core.arrays import fields_of, Floats, Ints, Records
 from tree_sway.core.tree import Tree
 
 WIDTH = 16
@@ -62,9 +62,6 @@ class Branch:
     base: Annotated[Floats, 3]  # base at rest
     arm: Annotated[Floats, 3]  # base at rest from the parent's base
     per_arm: float  # 0.5 over the squared length of the arm [1/m^2]
-
-
-Branches = RecordsOf[Branch]
 
 
 def room_for_fields(most: int) -> int:

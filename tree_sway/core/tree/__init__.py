@@ -9,9 +9,9 @@ subtree is one slice, so that sums over what a branch carries are differences of
 places where they are missing (`parents_first`), follows the thickest child for a branch, and names
 what is wrong with the first bad segment.
 
-`oddities` and `refuse_implausible` compare a tree with what is known of trees (`plausibility`,
-`crown_allometry`); `ends_of_poses` and `tips_of_poses` read poses of segments, whose frames
-`segment_frame` defines. `GrownTree` is anything with a tree and its species.
+`oddities` and `refuse_implausible` compare a tree with what is known of trees (`plausibility`);
+`ends_of_poses` and `tips_of_poses` read poses of segments, whose frames `segment_frame` defines.
+`GrownTree` is anything with a tree and its species.
 
 Here is no wind and no motion; wood is in `species`, leaves are in `leaves`.
 """
@@ -23,14 +23,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.tree.building import check_numbers as check_numbers
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
-    from tree_sway.core.tree.crown_allometry import AREA_SPREAD as AREA_SPREAD
-    from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT as BREAST_HEIGHT
-    from tree_sway.core.tree.crown_allometry import (
-        breast_height_diameter as breast_height_diameter,
-    )
-    from tree_sway.core.tree.crown_allometry import crown_change as crown_change
-    from tree_sway.core.tree.crown_allometry import crown_size as crown_size
-    from tree_sway.core.tree.crown_allometry import CrownChange as CrownChange
     from tree_sway.core.tree.grown_tree import GrownTree as GrownTree
     from tree_sway.core.tree.grown_tree import rooted as rooted
     from tree_sway.core.tree.grown_tree import tree_and_species as tree_and_species

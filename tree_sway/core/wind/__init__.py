@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.height_profile import WindProfile as WindProfile
     from tree_sway.core.wind.intake import GoodWind as GoodWind
     from tree_sway.core.wind.intake import WindIntake as WindIntake
-    from tree_sway.core.wind.interpolated import interpolated_means as interpolated_means
     from tree_sway.core.wind.limits import FASTEST_WIND as FASTEST_WIND
     from tree_sway.core.wind.limits import is_wind as is_wind
     from tree_sway.core.wind.limits import shorter_than as shorter_than

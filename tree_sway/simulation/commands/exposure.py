@@ -12,9 +12,10 @@ from typing import Any
 from tree_sway.commands import refuse_unused
 from tree_sway.core.checks import within
 from tree_sway.core.species import Species
-from tree_sway.core.tree import breast_height_diameter, Tree
+from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.files.commands import say_warnings
+from tree_sway.growth import breast_height_diameter
 from tree_sway.simulation import Exposure, exposure_of, EXPOSURES
 from tree_sway.twin import LearnedTree
 

@@ -19,8 +19,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import standing_tree, TreeReductions
-from tree_sway.core.tree import breast_height_diameter
 from tree_sway.files.trees import open_tree, TreeFile
+from tree_sway.growth import breast_height_diameter
 from tree_sway.simulation import simulate
 from tree_sway_lab.validation.drawn_scans import by_one_length, by_one_ratio, TWIG
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section

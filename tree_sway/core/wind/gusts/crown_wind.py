@@ -78,21 +78,29 @@ def _loads(tree: Tree, leaf_area: Floats | float) -> tuple[Floats, Floats]:
     area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
     wood = np.add.reduceat(area, first)
-    centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return centre, wood + leaf_area
+    moment = np.add.reduceat(middle, first, axis=0)
+    return moment / np.maximum(wood, 1e-12)[:, None], wood + leaf_area
 
 
 def parts_of(tree: Tree, leaf_area: Floats | float = 0.0) -> CrownDelays:
     """Part the branches of a tree by their places; leaves, as above, count in the share alone."""
     centre, wood = _loads(tree, 0.0)
-    middle = centre[np.unique(np.linspace(0, len(centre) - 1, N_DELAYS).astype(np.intp))]
+    evenly = np.linspace(0, len(centre) - 1, N_DELAYS).astype(np.intp)
+    middle = centre[np.unique(evenly)]
     for _ in range(20):
-        nearest = np.linalg.norm(centre[:, None] - middle, axis=2).argmin(axis=1)
+        apart = np.linalg.norm(centre[:, None] - middle, axis=2)
+        nearest = apart.argmin(axis=1)
         share = np.bincount(nearest, wood, len(middle))
-        moved = [np.bincount(nearest, wood * x, len(middle)) for x in centre.T]
-        middle = np.where(share > 0.0, moved / np.maximum(share, 1e-12), middle.T).T
-    share = np.bincount(nearest, wood + leaf_area, N_DELAYS)
-    return CrownDelays(nearest, share / max(float(share.sum()), 1e-12), 0.0)
+        moments = [np.bincount(nearest, wood * x, len(middle)) for x in centre.T]
+        means = moments / np.maximum(share, 1e-12)
+        middle = np.where(share > 0.0, means, middle.T).T
+    return CrownDelays(nearest, _shares(nearest, wood + leaf_area), 0.0)
+
+
+def _shares(part: Ints, load: Floats) -> Floats:
+    """Share of each of `N_DELAYS` parts in the load of branches, (b,)."""
+    loads = np.bincount(part, load, N_DELAYS)
+    return np.asarray(loads / max(float(loads.sum()), 1e-12))
 
 
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
@@ -109,15 +117,16 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
             limb[branch] = limb[below]
     n = int(on_stem.sum()) + 1
     total = np.maximum(np.bincount(limb, load, n), 1e-12)
-    middle = np.stack([np.bincount(limb, load * x, n) / total for x in centre.T], axis=1)
-    away = np.linalg.norm(middle - np.average(centre, axis=0, weights=load + 1e-12), axis=1)
+    moments = [np.bincount(limb, load * x, n) for x in centre.T]
+    middle = np.stack(moments, axis=1) / total[:, None]
+    of_crown = np.average(centre, axis=0, weights=load + 1e-12)
+    away = np.linalg.norm(middle - of_crown, axis=1)
     away[0] = 0.0
     farthest = max(float(away.max()), 1e-9)
     wanted = (np.arange(n) * _GOLDEN % 1.0) * away / farthest
     of_branch = np.rint(wanted * (N_DELAYS - 1)).astype(np.int64)[limb]
-    share = np.bincount(of_branch, load, N_DELAYS)
     spread = 3.0 * DECAY * farthest / (2.0 * math.pi)
-    return CrownDelays(of_branch, share / max(float(share.sum()), 1e-12), spread)
+    return CrownDelays(of_branch, _shares(of_branch, load), spread)
 
 
 class CrownWind:

@@ -104,7 +104,8 @@ class FarWind:
         *,
         is_sample: bool = False,
     ) -> None:
-        self._share, self._places = share, places
+        self._share = share
+        self._places = places
         self._mast = distance, bearing
         self._weights = _weights(places, distance, bearing)
         self._memory = np.zeros((len(LENGTHS) + 4, 3))
@@ -114,19 +115,25 @@ class FarWind:
         if seed is not None:
             self._rest = _drawn_rest(places, size, self._weights, frequency / _USUAL, seed)
         self._native = NativeFarWind(
-            parts=len(share), stages=len(LENGTHS), directions=len(self._weights),
-            samples=SAMPLES, is_sample=is_sample and self._rest is not None, length=LENGTHS,
-            weights=self._weights, share=share,
+            parts=len(share),
+            stages=len(LENGTHS),
+            directions=len(self._weights),
+            samples=SAMPLES,
+            is_sample=is_sample and self._rest is not None,
+            length=LENGTHS,
+            weights=self._weights,
+            share=share,
             rest=np.zeros(0) if self._rest is None else self._rest,
-            memory=self._memory, whole=self._whole,
-        )  # fmt: skip
+            memory=self._memory,
+            whole=self._whole,
+        )
         self._apart: Floats | None = None
         self._apart_at = Address(0)
 
     @property
     def told(self) -> float:
         """Share of the variance of the crown's gusts that the anemometer tells [-]."""
-        power = Turbulence(1.0, _HEIGHT, 1.0).spectrum(_WAVENUMBERS)[:, 0] * _WAVENUMBERS
+        power = _power_along()
         known = np.mean([_told(_WAVENUMBERS, each) for each in self._weights], axis=0)
         return float(power @ known @ self._share / power.sum())
 
@@ -137,7 +144,8 @@ class FarWind:
         The array is reused. What the wind of each part is beside it is written to `apart`, (g, 3).
         """
         if apart is not self._apart:
-            self._apart_at, self._apart = contiguous(apart, (len(self._share), 3)), apart
+            self._apart_at = contiguous(apart, (len(self._share), 3))
+            self._apart = apart
         LIBRARY.sway_push_farwind(self._native.at, x, y, z, dt, self._apart_at)
         return self._whole
 
@@ -150,7 +158,8 @@ class FarWind:
         """
         assert self._rest is not None
         east, north, _ = self._mean.tolist()
-        turned = np.array([[along], [across], [across]]) * self._turned(east, north)
+        factors = np.array([along, across, across])
+        turned = factors[:, None] * self._turned(east, north)
         first = int(self._run[0] / _SPACING)
         return np.asarray(self._rest[(first + offsets) % SAMPLES] @ turned)
 
@@ -175,9 +184,11 @@ class FarWind:
         wavenumbers = hertz / max(math.hypot(*mean), 1.0)
         angle = math.atan2(mean[1], mean[0])
         (true,) = _coherences(self._places, *self._mast, wavenumbers, [angle])
-        nearest = round(angle * len(self._weights) / (2.0 * np.pi)) % len(self._weights)
-        stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
-        turn = true @ self._share * (stages @ self._weights[nearest].T @ self._share).conj()
+        n_directions = len(self._weights)
+        nearest = round(angle * n_directions / (2.0 * np.pi)) % n_directions
+        stages = _low_passes(wavenumbers)
+        expected = stages @ self._weights[nearest].T @ self._share
+        turn = true @ self._share * expected.conj()
         return np.asarray(turn / np.maximum(np.abs(turn), 1e-300))
 
     @property
@@ -188,7 +199,8 @@ class FarWind:
     def _turned(self, east: float, north: float) -> Floats:
         """Wind per drawn one along the mean wind, across it and up, (3, 3)."""
         level = math.hypot(east, north)
-        c, s = (east / level, north / level) if level > 0.0 else (1.0, 0.0)
+        c = east / level if level > 0.0 else 1.0
+        s = north / level if level > 0.0 else 0.0
         xx, yy, zz = self._variance.tolist()
         along = math.sqrt(c * c * xx + s * s * yy)
         across = math.sqrt(s * s * xx + c * c * yy)
@@ -209,22 +221,33 @@ class FarWind:
         self._memory[:] = 0.0
 
 
+def _power_along() -> Floats:
+    """Power of gusts along the wind in the bands of `_WAVENUMBERS`, without a scale."""
+    spectrum = Turbulence(1.0, _HEIGHT, 1.0).spectrum(_WAVENUMBERS)
+    return np.asarray(spectrum[:, 0] * _WAVENUMBERS)
+
+
+def _low_passes(wavenumbers: Floats) -> Complexes:
+    """Return what the low-passes of `LENGTHS` let through, (n, k)."""
+    return np.asarray(1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS))
+
+
 def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
     """Weights of the low-passes in winds from every direction, or in all alike, (d, g, k)."""
-    spectrum = Turbulence(1.0, _HEIGHT, 1.0).spectrum(_WAVENUMBERS)[:, 0] * _WAVENUMBERS
-    stages = 1.0 / (1.0 + 2j * np.pi * _WAVENUMBERS[:, None] * LENGTHS)
-    weighed = stages.conj().T * spectrum
+    stages = _low_passes(_WAVENUMBERS)
+    weighed = stages.conj().T * _power_along()
     square = (weighed @ stages).real
     return np.array(
-        [np.linalg.solve(square, (weighed @ each).real).T
-         for each in _coherences(places, distance, bearing, _WAVENUMBERS, _ANGLES)]
-    )  # fmt: skip
+        [
+            np.linalg.solve(square, (weighed @ coherence).real).T
+            for coherence in _coherences(places, distance, bearing, _WAVENUMBERS, _ANGLES)
+        ]
+    )
 
 
 def _told(wavenumbers: Floats, weights: Floats) -> Floats:
     """Share of the power of each part that low-passes by weights (g, k) tell, (n, g)."""
-    stages = 1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS)
-    return np.asarray(np.square(np.abs(stages @ weights.T)))
+    return np.asarray(np.square(np.abs(_low_passes(wavenumbers) @ weights.T)))
 
 
 def _coherences(
@@ -239,16 +262,26 @@ def _coherences(
 
     Without a bearing it is the mean over all ways to the anemometer.
     """
-    found = []
-    for angle in _ANGLES if bearing is None else angles:
-        seen = angle if bearing is None else 0.5 * np.pi - bearing
-        mast = distance * np.array([math.cos(seen), math.sin(seen), 0.0])
-        c, s = (1.0, 0.0) if bearing is None else (math.cos(angle), math.sin(angle))
-        away = places - mast
-        x, y = away[:, 0] * c + away[:, 1] * s, away[:, 1] * c - away[:, 0] * s
-        apart = np.linalg.norm(np.stack([x, y, away[:, 2]], axis=1) * _DECAYS, axis=1)
-        found.append(np.exp(-wavenumbers[:, None] * (apart + 2j * np.pi * x)))
-    return [np.mean(found, axis=0)] if bearing is None else found
+    if bearing is None:
+        all_ways = [_coherence(places, distance, seen, 0.0, wavenumbers) for seen in _ANGLES]
+        return [np.mean(all_ways, axis=0)]
+    seen = 0.5 * np.pi - bearing
+    return [_coherence(places, distance, seen, angle, wavenumbers) for angle in angles]
+
+
+def _coherence(
+    places: Floats, distance: float, seen: float, angle: float, wavenumbers: Floats
+) -> Complexes:
+    """Find the coherence in a wind to an angle of an anemometer that is seen at another."""
+    mast = distance * np.array([math.cos(seen), math.sin(seen), 0.0])
+    c = math.cos(angle)
+    s = math.sin(angle)
+    away = places - mast
+    x = away[:, 0] * c + away[:, 1] * s
+    y = away[:, 1] * c - away[:, 0] * s
+    along_across_up = np.stack([x, y, away[:, 2]], axis=1)
+    apart = np.linalg.norm(along_across_up * _DECAYS, axis=1)
+    return np.asarray(np.exp(-wavenumbers[:, None] * (apart + 2j * np.pi * x)))
 
 
 def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, seed: int) -> Singles:
@@ -260,18 +293,21 @@ def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, see
     count = len(places)
     wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
     told = np.mean([_told(wavenumbers, each) for each in weights], axis=0)
-    extent = size * np.minimum(1.0, 2.0 / (1.0 + np.square(wavenumbers[:, None] / first)))
-    acting = 1.0 / (1.0 + _WITHIN * wavenumbers[:, None] * extent)
+    column = wavenumbers[:, None]
+    extent = size * np.minimum(1.0, 2.0 / (1.0 + np.square(column / first)))
+    acting = 1.0 / (1.0 + _WITHIN * column * extent)
     missing = np.sqrt(np.maximum(1.0 - told, 0.0) * acting)
     apart = np.linalg.norm(places[:, None] - places, axis=2)
-    shared = np.exp(-_WITHIN * wavenumbers[:, None, None] * apart) + 1e-9 * np.eye(count)
-    root = np.linalg.cholesky(shared)
+    shared = np.exp(-_WITHIN * column[..., None] * apart)
+    root = np.linalg.cholesky(shared + 1e-9 * np.eye(count))
     spectra = Turbulence(1.0, _HEIGHT, 1.0).spectrum(wavenumbers)
     amplitudes = SAMPLES * np.sqrt(0.5 * spectra / spectra.sum(axis=0))
-    phases = np.exp(2j * np.pi * np.random.default_rng(seed).random((3, len(wavenumbers), count)))
+    turns = np.random.default_rng(seed).random((3, len(wavenumbers), count))
+    phases = np.exp(2j * np.pi * turns)
     rest = np.empty((SAMPLES, count, 3), dtype=np.float32)
     for axis, phase in enumerate(phases):
         lines = np.zeros((SAMPLES // 2 + 1, count), dtype=np.complex128)
-        lines[1:-1] = np.einsum('kij,kj->ki', root, phase) * missing * amplitudes[:, axis, None]
+        drawn = np.einsum('kij,kj->ki', root, phase)
+        lines[1:-1] = drawn * missing * amplitudes[:, axis, None]
         rest[..., axis] = np.fft.irfft(lines, SAMPLES, axis=0)
     return rest

@@ -8,8 +8,7 @@ tree at x is ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc t
 gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
 (Raupach, Finnigan & Brunet 1996). Waves of sway in a stand follow from that.
 
-Delays follow the mean wind so
-slowly that time increases for every tree.
+Delays follow the mean wind so slowly that time increases for every tree.
 """
 
 from __future__ import annotations
@@ -26,10 +25,7 @@ from tree_sway.core.wind.gusts.wind_history import follow_mean, WindHistory
 from tree_sway.errors import ParameterError
 
 SLOWEST_GUST = 0.5
-"""
-Mean speed in [m/s] below which delays decrease to 0 with the wind.
-
-"""
+"""Mean speed in [m/s] below which delays decrease to 0 with the wind."""
 
 _SPACING = 0.05
 """Time in [s] over which `GustHistory.recent` takes means."""
@@ -150,7 +146,8 @@ class GustHistory:
         delay = float(_delays(along, east, north, self.convection_ratio)[0]) - first
         now = rows[-1, 0] - min(max(delay, 0.0), self._memory)
         span = min(_SPACING, float(rows[-1, 0] - rows[0, 0]))
-        return (_run_until(rows, now) - _run_until(rows, now - span)) / span
+        run = _run_until(rows, now) - _run_until(rows, now - span)
+        return run / span
 
     def recent(self, until: float) -> dict[str, list[float]]:
         """
@@ -162,10 +159,14 @@ class GustHistory:
         rows, mean, delay, _ = self._copied()
         count = min(self._memory, until - float(rows[0, 0])) // _SPACING
         times = until + _SPACING * np.arange(-count, 1.0)
-        runs = [np.interp(times, rows[:, 0], rows[:, k]) for k in (1, 2, 3)]
+        ends, *runs_at_ends = rows.T
+        runs = [np.interp(times, ends, each) for each in runs_at_ends]
         wind = np.diff(runs).T.ravel() / _SPACING
-        found = {'mean': mean, 'delay': delay, 'wind': wind}
-        return {name: each.round(4).tolist() for name, each in found.items()}
+        return {
+            'mean': mean.round(4).tolist(),
+            'delay': delay.round(4).tolist(),
+            'wind': wind.round(4).tolist(),
+        }
 
     def _copied(self) -> tuple[Floats, Floats, Floats, float]:
         """Copy the history between two steps: its runs, mean wind, delays, first delay."""
@@ -180,7 +181,8 @@ class GustHistory:
 
     def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
         """Continue from the `recent` of a history of the same places."""
-        rows = array_to_read('gusts', wind, (np.size(wind) // 3 * 3,)).reshape(-1, 3)
+        whole_rows = np.size(wind) // 3 * 3
+        rows = array_to_read('gusts', wind, (whole_rows,)).reshape(-1, 3)
         means = array_to_read('gusts', mean, self._mean.shape)
         delays = array_to_read('gusts', delay, self.delay.shape)
         if not all(np.isfinite(each).all() for each in (rows, means, delays)):
@@ -210,12 +212,15 @@ class GustHistory:
 def _delays(along: Floats, east: float, north: float, ratio: float) -> Floats:
     """Delays of places [m] from the origin, (t, 2), by the mean wind [m/s], in [s], (t,)."""
     speed = max(math.hypot(east, north), SLOWEST_GUST)
-    return np.asarray((along[:, 0] * east + along[:, 1] * north) / (ratio * speed * speed))
+    on_the_way = along[:, 0] * east + along[:, 1] * north
+    return np.asarray(on_the_way / (ratio * speed * speed))
 
 
 def _run_until(rows: Floats, time: float) -> Floats:
     """Run of the wind at a time, (3,); before the history begins it is that of its first step."""
-    later = int(np.clip(np.searchsorted(rows[:, 0], time, 'right'), 1, len(rows) - 1))
-    before, after = rows[later - 1], rows[later]
+    found = np.searchsorted(rows[:, 0], time, 'right')
+    later = int(np.clip(found, 1, len(rows) - 1))
+    before = rows[later - 1]
+    after = rows[later]
     share = (time - before[0]) / (after[0] - before[0])
     return np.asarray(before[1:] + share * (after[1:] - before[1:]))

@@ -48,9 +48,17 @@ class WindHistory:
         """
         wanted_at, delay_at, wind_at, out_at = self._given_at
         LIBRARY.sway_past_winds(
-            self._memory_at, len(self._run), self._finest, wanted_at.of(wanted),
-            delay_at.of(delay), len(delay), self._longest, wind_at.of(wind), dt, out_at.of(out),
-        )  # fmt: skip
+            self._memory_at,
+            len(self._run),
+            self._finest,
+            wanted_at.of(wanted),
+            delay_at.of(delay),
+            len(delay),
+            self._longest,
+            wind_at.of(wind),
+            dt,
+            out_at.of(out),
+        )
 
     @property
     def count(self) -> int:
@@ -60,7 +68,8 @@ class WindHistory:
     @property
     def time(self) -> float:
         """Time of the history at the end of the last step in [s]."""
-        return float(self._run[int(self._at[0]) % len(self._run), 0])
+        last = int(self._at[0]) % len(self._run)
+        return float(self._run[last, 0])
 
     def rows(self) -> Floats:
         """Return a copy of time [s] and run [m] at the ends of steps, the oldest first, (r, 4)."""

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.species import species_named
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree import Tree
 
 BREAST_HEIGHT = 1.3
 """Height above the ground at which foresters measure the diameter of a stem in [m]."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.wind.interpolated import interpolated_means
+from tree_sway.simulation.interpolated import interpolated_means
 
 
 @pytest.mark.parametrize('spacing', [20.0, 60.0, 601.0, 3600.0, 6480.0])
