@@ -46,6 +46,7 @@ struct sway_stand {
   const Frame *frame;
   size_t n_trees, n_models, n_rooms, n_steps;
   Tree *trees;
+  const Tree **order;  // of steps: neighbours read the same rows of a table; null on a page
   Kind *kinds;
   OwnStep *steps;
   Room *rooms;
@@ -129,9 +130,17 @@ void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
 }
 
+int by_rows(const void *a, const void *b) {
+  const Tree &one = **static_cast<const Tree *const *>(a);
+  const Tree &other = **static_cast<const Tree *const *>(b);
+  if (one.model != other.model) return one.model < other.model ? -1 : 1;
+  return (one.place.cosine > other.place.cosine) - (one.place.cosine < other.place.cosine);
+}
+
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
   stand.kinds = stand.memory.take<Kind>(stand.n_models);
   stand.trees = stand.memory.take<Tree>(stand.n_trees);
+  if (!ON_TABLES) stand.order = stand.memory.take<const Tree *>(stand.n_trees);
   stand.steps = stand.memory.take<OwnStep>(stand.n_trees);
   stand.rooms = stand.memory.take<Room>(stand.n_rooms);
   if (stand.memory.is_short) return false;
@@ -156,6 +165,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     const sway_tree &given = trees[i];
     n_segments += models[given.model]->sizes.segments;
     Tree &tree = stand.trees[i];
+    if (!ON_TABLES) stand.order[i] = &tree;
     tree.model = given.model;
     tree.speed = given.speed;
     tree.place = {cos(0.5 * given.yaw),
@@ -168,7 +178,9 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
   }
   if (!ON_TABLES && stand.n_rooms > 1) stand.threads = open_threads(stand.memory, stand.n_rooms);
   stand.is_large = n_segments > BEYOND_CACHES;
-  return !stand.memory.is_short;
+  if (stand.memory.is_short) return false;
+  if (!ON_TABLES) qsort(stand.order, stand.n_trees, sizeof(*stand.order), by_rows);
+  return true;
 }
 
 // The wind at the height of a tree, in the frame of its model; calm if it is not below `STRONGEST`.
@@ -198,6 +210,7 @@ void come_to_rest(const State &state, int64_t count) {
 struct Steps {
   sway_stand *stand;
   size_t first;
+  bool is_all;  // in any order
   const double *winds;
   int64_t counts[2];
 };
@@ -207,20 +220,21 @@ void step_part(void *work, size_t room, size_t from, size_t count) {
   sway_stand *stand = steps.stand;
   int64_t n_clamped = 0, n_restarted = 0;
   for (size_t i = from; i < from + count; i++) {
-    const Tree &tree = stand->trees[steps.first + i];
+    const size_t number = steps.is_all ? stand->order[i] - stand->trees : steps.first + i;
+    const Tree &tree = stand->trees[number];
     const Kind &kind = stand->kinds[tree.model];
     const sway_model &model = *kind.model;
     if (!model.sizes.is_stepped) continue;
-    State state = state_of(*stand, steps.first + i);
+    State state = state_of(*stand, number);
     double wind[3];
-    wind_in_frame(tree, steps.winds + 3 * i, wind);
+    wind_in_frame(tree, steps.winds + 3 * (number - steps.first), wind);
     const Step &step = stand->steps[tree.step].step;
     Room &own = stand->rooms[room];
     const Frame &frame = *stand->frame;
     bool is_sound = true;
     // A tree of which coordinates are left out is stepped by its table, if it has one.
     if (is_limp(model) && (!model.table.levels || !(*state.left_out > 0.0))) {
-      LimpTree &limp = stand->limp[steps.first + i];
+      LimpTree &limp = stand->limp[number];
       n_clamped += frame.step_at_pose(model, kind.tuning, step, state, limp, own, wind);
       is_sound = isfinite(limp.allowed);
     } else {
@@ -339,7 +353,7 @@ int sway_set_step(sway_stand *stand, double dt) {
 
 int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const double *winds,
               int64_t counts[2]) {
-  Steps steps = {stand, first, winds, {}};
+  Steps steps = {stand, first, !ON_TABLES && count == stand->n_trees, winds, {}};
   do_parts(*stand, room, count, step_part, &steps);
   if (counts) memcpy(counts, steps.counts, sizeof(steps.counts));
   return (steps.counts[0] ? SWAY_CLAMPED : SWAY_OK) | (steps.counts[1] ? SWAY_RESTARTED : SWAY_OK);

@@ -117,7 +117,8 @@ SWAY_API int sway_set_step(sway_stand *stand, double dt);
 SWAY_API int sway_step(sway_stand *stand, size_t room, size_t first, size_t count,
                        const double *winds, int64_t counts[2]);
 
-/* Place trees: `rows` (count, 2) has the number of each and its first row of `poses`. */
+/* Place trees: `rows` (count, 2) has the number of each and its first row of `poses`. Many are placed
+ * sooner where those of a model follow each other. */
 SWAY_API void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count,
                          double *poses);
 
