@@ -78,7 +78,7 @@ if 'bdist_wheel' in sys.argv:
 NATIVE = 'tree_sway.core.native._sway'
 SOURCES = (
     'branch_loads', 'far_wind', 'gusts', 'limp_layout', 'model', 'observe', 'place_layout',
-    'propagate', 'room', 'samples', 'stand', 'target',
+    'propagate', 'room', 'samples', 'stand', 'target', 'threads',
 )  # fmt: skip
 #: Options of the frame's code by target: it is compiled once for each, and chosen when it runs.
 TARGETS = {
@@ -121,7 +121,7 @@ class BuildNative(build_ext):
         is_zig = 'ziglang' in compiler
         # Such as -fsanitize=address,undefined, which .ci/run tests the core with.
         more = os.environ.get('TREE_SWAY_CXXFLAGS', '').split()
-        options = [*OPTIONS.split(), *([] if IS_WINDOWS else ['-fPIC']), *more]
+        options = [*OPTIONS.split(), *([] if IS_WINDOWS else ['-fPIC', '-pthread']), *more]
         # What the library is built of, which `tree_sway.core.native.library` asks it for.
         headers = [(ROOT / 'native' / name).read_bytes() for name in ('sway.h', 'library.h')]
         options += [f'-DSWAY_INTERFACE={zlib.crc32(b"".join(headers))}u']
@@ -145,7 +145,7 @@ class BuildNative(build_ext):
         linker = ['cc' if word == 'c++' else word for word in compiler] if is_zig else compiler
         linked = folder / Path(self.get_ext_filename(ext.name)).name
         own = ['-shared', '-s'] if is_zig else ['-shared']
-        own += [] if IS_WINDOWS else ['-lm']
+        own += [] if IS_WINDOWS else ['-lm', '-pthread']
         own += ['-Wl,--as-needed'] if 'linux' in SYSTEM else []
         run([*linker, *own, *objects, *more, '-o', str(linked)])
         target = Path(self.get_ext_fullpath(ext.name))
@@ -226,7 +226,7 @@ class BuildWasm(Command):
         frame += ['-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
         with TemporaryDirectory() as folder:
             objects = []
-            for name in (*SOURCES, 'page', 'frame'):
+            for name in (*(each for each in SOURCES if each != 'threads'), 'page', 'frame'):
                 own = frame if name == 'frame' else ['-Oz']
                 objects.append(f'{folder}/{name}.o')
                 source = f'native/{name}.cpp'

@@ -8,6 +8,7 @@
 #include "past_caches.h"
 #include "propagate.h"
 #include "text.h"
+#include "threads.h"
 
 using namespace sway;
 
@@ -45,9 +46,11 @@ struct sway_stand {
   const Frame *frame;
   size_t n_trees, n_models, n_rooms, n_steps;
   Tree *trees;
+  const Tree **order;  // of steps: neighbours read the same rows of a table; null on a page
   Kind *kinds;
   OwnStep *steps;
   Room *rooms;
+  Threads *threads;  // null on a page
   LimpTree *limp;  // of each tree; null without limp ones
   double *states;
   size_t stride, width;
@@ -127,9 +130,17 @@ void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
 }
 
+int by_rows(const void *a, const void *b) {
+  const Tree &one = **static_cast<const Tree *const *>(a);
+  const Tree &other = **static_cast<const Tree *const *>(b);
+  if (one.model != other.model) return one.model < other.model ? -1 : 1;
+  return (one.place.cosine > other.place.cosine) - (one.place.cosine < other.place.cosine);
+}
+
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
   stand.kinds = stand.memory.take<Kind>(stand.n_models);
   stand.trees = stand.memory.take<Tree>(stand.n_trees);
+  if (!ON_TABLES) stand.order = stand.memory.take<const Tree *>(stand.n_trees);
   stand.steps = stand.memory.take<OwnStep>(stand.n_trees);
   stand.rooms = stand.memory.take<Room>(stand.n_rooms);
   if (stand.memory.is_short) return false;
@@ -154,6 +165,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     const sway_tree &given = trees[i];
     n_segments += models[given.model]->sizes.segments;
     Tree &tree = stand.trees[i];
+    if (!ON_TABLES) stand.order[i] = &tree;
     tree.model = given.model;
     tree.speed = given.speed;
     tree.place = {cos(0.5 * given.yaw),
@@ -164,8 +176,11 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     if (stand.limp && is_limp(*models[given.model]))
       open_limp(stand.memory, *models[given.model], stand.limp[i]);
   }
+  if (!ON_TABLES && stand.n_rooms > 1) stand.threads = open_threads(stand.memory, stand.n_rooms);
   stand.is_large = n_segments > BEYOND_CACHES;
-  return !stand.memory.is_short;
+  if (stand.memory.is_short) return false;
+  if (!ON_TABLES) qsort(stand.order, stand.n_trees, sizeof(*stand.order), by_rows);
+  return true;
 }
 
 // The wind at the height of a tree, in the frame of its model; calm if it is not below `STRONGEST`.
@@ -189,6 +204,81 @@ bool is_finite(const State &state, int64_t count) {
 
 void come_to_rest(const State &state, int64_t count) {
   for (int64_t i = 0; i < count; i++) state.eta[i] = state.rate[i] = state.force[i] = 0.0;
+}
+
+// Trees from a number on that are stepped, and how many were clamped and went on from rest.
+struct Steps {
+  sway_stand *stand;
+  size_t first;
+  bool is_all;  // in any order
+  const double *winds;
+  int64_t counts[2];
+};
+
+void step_part(void *work, size_t room, size_t from, size_t count) {
+  Steps &steps = *static_cast<Steps *>(work);
+  sway_stand *stand = steps.stand;
+  int64_t n_clamped = 0, n_restarted = 0;
+  for (size_t i = from; i < from + count; i++) {
+    const size_t number = steps.is_all ? stand->order[i] - stand->trees : steps.first + i;
+    const Tree &tree = stand->trees[number];
+    const Kind &kind = stand->kinds[tree.model];
+    const sway_model &model = *kind.model;
+    if (!model.sizes.is_stepped) continue;
+    State state = state_of(*stand, number);
+    double wind[3];
+    wind_in_frame(tree, steps.winds + 3 * (number - steps.first), wind);
+    const Step &step = stand->steps[tree.step].step;
+    Room &own = stand->rooms[room];
+    const Frame &frame = *stand->frame;
+    bool is_sound = true;
+    // A tree of which coordinates are left out is stepped by its table, if it has one.
+    if (is_limp(model) && (!model.table.levels || !(*state.left_out > 0.0))) {
+      LimpTree &limp = stand->limp[number];
+      n_clamped += frame.step_at_pose(model, kind.tuning, step, state, limp, own, wind);
+      is_sound = isfinite(limp.allowed);
+    } else {
+      n_clamped += frame.step(model, kind.tuning.stiffness, step, state, own, wind);
+    }
+    if (is_sound && is_finite(state, model.padded)) continue;
+    come_to_rest(state, model.padded);
+    n_restarted++;
+  }
+  __atomic_fetch_add(&steps.counts[0], n_clamped, __ATOMIC_RELAXED);
+  __atomic_fetch_add(&steps.counts[1], n_restarted, __ATOMIC_RELAXED);
+}
+
+struct Places {
+  sway_stand *stand;
+  const int64_t *rows;
+  double *poses;
+};
+
+void place_part(void *work, size_t room, size_t from, size_t count) {
+  const Places &places = *static_cast<Places *>(work);
+  const sway_stand *stand = places.stand;
+  Room &own = stand->rooms[room];
+  const bool is_large = PASSES_CACHES && stand->is_large;
+  for (const int64_t *row = places.rows + 2 * from; row < places.rows + 2 * (from + count);
+       row += 2) {
+    const Tree &tree = stand->trees[row[0]];
+    const sway_model &model = *stand->kinds[tree.model].model;
+    stand->frame->find_keys(model, state_of(*stand, row[0]), own);
+    double *out = places.poses + 7 * row[1];
+    stand->frame->place(model, tree.place, own, is_large ? own.poses : out);
+    if (is_large) write_past_caches(own.poses, 7 * model.sizes.segments, out);
+  }
+  if (is_large) end_of_writes();
+}
+
+// Do work in a room, or by all threads in theirs.
+void do_parts(const sway_stand &stand, size_t room, size_t count, Part part, void *work) {
+  if (ON_TABLES || room != SWAY_EVERY_ROOM)
+    part(work, room, 0, count);
+  else if (stand.threads)
+    share(*stand.threads, count, part, work);
+  else
+    part(work, 0, 0, count);
 }
 
 }  // namespace
@@ -221,6 +311,7 @@ sway_stand *sway_stand_open(const sway_model *const *models, size_t n_models,
 
 void sway_stand_close(sway_stand *stand) {
   if (!stand) return;
+  if (!ON_TABLES) close_threads(stand->threads);
   stand->memory.release();
   free(stand);
 }
@@ -262,47 +353,15 @@ int sway_set_step(sway_stand *stand, double dt) {
 
 int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const double *winds,
               int64_t counts[2]) {
-  int64_t n_clamped = 0, n_restarted = 0;
-  for (size_t i = 0; i < count; i++) {
-    const Tree &tree = stand->trees[first + i];
-    const Kind &kind = stand->kinds[tree.model];
-    const sway_model &model = *kind.model;
-    if (!model.sizes.is_stepped) continue;
-    State state = state_of(*stand, first + i);
-    double wind[3];
-    wind_in_frame(tree, winds + 3 * i, wind);
-    const Step &step = stand->steps[tree.step].step;
-    Room &own = stand->rooms[room];
-    const Frame &frame = *stand->frame;
-    bool is_sound = true;
-    // A tree of which coordinates are left out is stepped by its table, if it has one.
-    if (is_limp(model) && (!model.table.levels || !(*state.left_out > 0.0))) {
-      LimpTree &limp = stand->limp[first + i];
-      n_clamped += frame.step_at_pose(model, kind.tuning, step, state, limp, own, wind);
-      is_sound = isfinite(limp.allowed);
-    } else {
-      n_clamped += frame.step(model, kind.tuning.stiffness, step, state, own, wind);
-    }
-    if (is_sound && is_finite(state, model.padded)) continue;
-    come_to_rest(state, model.padded);
-    n_restarted++;
-  }
-  if (counts) counts[0] = n_clamped, counts[1] = n_restarted;
-  return (n_clamped ? SWAY_CLAMPED : SWAY_OK) | (n_restarted ? SWAY_RESTARTED : SWAY_OK);
+  Steps steps = {stand, first, !ON_TABLES && count == stand->n_trees, winds, {}};
+  do_parts(*stand, room, count, step_part, &steps);
+  if (counts) memcpy(counts, steps.counts, sizeof(steps.counts));
+  return (steps.counts[0] ? SWAY_CLAMPED : SWAY_OK) | (steps.counts[1] ? SWAY_RESTARTED : SWAY_OK);
 }
 
 void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count, double *poses) {
-  Room &own = stand->rooms[room];
-  const bool is_large = PASSES_CACHES && stand->is_large;
-  for (size_t i = 0; i < count; i++) {
-    const Tree &tree = stand->trees[rows[2 * i]];
-    const sway_model &model = *stand->kinds[tree.model].model;
-    stand->frame->find_keys(model, state_of(*stand, rows[2 * i]), own);
-    double *out = poses + 7 * rows[2 * i + 1];
-    stand->frame->place(model, tree.place, own, is_large ? own.poses : out);
-    if (is_large) write_past_caches(own.poses, 7 * model.sizes.segments, out);
-  }
-  if (is_large) end_of_writes();
+  Places places = {stand, rows, poses};
+  do_parts(*stand, room, count, place_part, &places);
 }
 
 void sway_keys(sway_stand *stand, size_t room, size_t tree, double *keys) {

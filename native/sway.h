@@ -16,8 +16,9 @@
  * place of 0.01, and with some hundred kilobytes for each tree beside its state.
  *
  * A stand is used by one thread at a time, but for ranges of trees: `sway_step`, `sway_place`,
- * `sway_keys` and `sway_place_keys` may run at once for different trees in different rooms. The
- * result does not depend on how trees are shared out.
+ * `sway_keys` and `sway_place_keys` may run at once for different trees in different rooms, or a
+ * stand has threads of its own: `SWAY_EVERY_ROOM`. The result does not depend on how trees are
+ * shared out.
  */
 #ifndef SWAY_H
 #define SWAY_H
@@ -78,6 +79,11 @@ SWAY_API void sway_model_close(sway_model *model);
 
 SWAY_API void sway_model_sizes(const sway_model *model, sway_sizes *sizes);
 
+/* In place of a room: `sway_step` and `sway_place` share the trees among as many threads as there are
+ * rooms, of which the caller is one. The others are started with the stand and sleep between calls;
+ * after a fork the child starts its own. */
+#define SWAY_EVERY_ROOM SIZE_MAX
+
 /* Make a stand at rest. Models must outlive it. `rooms` is the number of threads that may work
  * at once. Returns NULL, with `error`, for a tree whose numbers are not finite, whose scale is not
  * above 0 or whose model does not exist, or where memory is short. */
@@ -111,7 +117,8 @@ SWAY_API int sway_set_step(sway_stand *stand, double dt);
 SWAY_API int sway_step(sway_stand *stand, size_t room, size_t first, size_t count,
                        const double *winds, int64_t counts[2]);
 
-/* Place trees: `rows` (count, 2) has the number of each and its first row of `poses`. */
+/* Place trees: `rows` (count, 2) has the number of each and its first row of `poses`. Many are placed
+ * sooner where those of a model follow each other. */
 SWAY_API void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count,
                          double *poses);
 

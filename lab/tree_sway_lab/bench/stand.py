@@ -59,7 +59,8 @@ def time_stand(
     Returns
     -------
     list of Measured
-        CPU times of a frame in [ms], medians; set-up in [s] of CPU time; memory in [GB].
+        Times of a frame in [ms], medians, by the processors that the process may use (one under
+        ``taskset -c 0``), and CPU time of all of them; set-up in [s] of CPU time; memory in [GB].
 
     """
     begun = time.process_time()
@@ -69,20 +70,21 @@ def time_stand(
     stand.step(winds[0], _DT)
     stand.place(poses)
     set_up = time.process_time() - begun
-    spent = np.empty((frames, 2))
+    spent = np.empty((frames, 3))
     for row, wind in zip(spent, bar(list(winds), 'frames of the stand'), strict=True):
-        begun = time.thread_time()
+        cpu, begun = time.process_time(), time.perf_counter()
         stand.step(wind, _DT)
-        stepped = time.thread_time()
+        stepped = time.perf_counter()
         stand.place(poses)
-        row[:] = stepped - begun, time.thread_time() - stepped
-    solve, place = (1e3 * np.median(spent, axis=0)).tolist()
+        row[:] = stepped - begun, time.perf_counter() - stepped, time.process_time() - cpu
+    solve, place, cpu = (1e3 * np.median(spent, axis=0)).tolist()
     what = f'{len(stand.names)} trees, {len(poses)} segments'
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     return [
         Measured(f'solve {what}', solve, 'ms'),
         Measured(f'place {what}', place, 'ms'),
         Measured('both', solve + place, 'ms'),
+        Measured('both, CPU', cpu, 'ms'),
         Measured('place a segment', 1e6 * place / len(poses), 'ns'),
         Measured('set-up, CPU', set_up, 's'),
         Measured('memory at most', peak, 'GB'),

@@ -5,10 +5,13 @@
 from __future__ import annotations
 
 import copy
+import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
+import time
 
 from drawn_trees import weeping
 import numpy as np
@@ -101,18 +104,85 @@ def test_two_threads_that_step_a_limp_tree_stay_within_its_memory(hanging):
     assert np.isfinite(stand.states.eta).all()
 
 
-def test_a_stand_beyond_the_caches_is_placed_as_each_of_its_trees(model):
-    own = NativeModel(bytes_of(model.native_arrays()))
-    segments = own.sizes.segments
-    count = 100_000 // segments + 1
+def forest_of(models, count, **how):
+    """Return a stand of many trees of some models, and where it places them."""
     rng = np.random.default_rng(1)
     places = np.column_stack([rng.uniform(0.0, 9.0, (count, 4)), rng.uniform(0.7, 1.3, count)])
-    stand = NativeStand([own], np.zeros(count, dtype=np.int64), places, np.ones(count))
+    own = [NativeModel(bytes_of(each.native_arrays())) for each in models]
+    kinds = np.arange(count) % len(own)
+    stand = NativeStand(own, kinds, places, np.ones(count), **how)
     stand.set_step(1 / 60)
+    sizes = np.array([each.sizes.segments for each in own])[kinds]
+    return stand, np.stack([np.arange(count), np.cumsum(sizes) - sizes], axis=1), sizes.sum()
+
+
+def moved(stand, rows, size):
+    """Return states and poses after some steps, and what the steps counted."""
+    rng = np.random.default_rng(2)
+    poses = np.zeros((size, 7))
+    counted = []
+    for _ in range(4):
+        winds = rng.normal(0.0, 5.0, (len(rows), 3))
+        winds[::5] = 1e9  # clamped
+        stand.states.eta[1::7] = np.nan  # goes on from rest
+        counted.append(stand.step(winds))
+        stand.place(rows, poses)
+    return [each.tobytes() for each in (poses, *stand.states)], counted
+
+
+def n_threads():
+    """Return the number of threads of this process."""
+    return len(os.listdir('/proc/self/task'))
+
+
+threads_are_counted = pytest.mark.skipif(
+    not os.path.isdir('/proc/self/task'), reason='threads are counted on Linux alone'
+)
+
+
+def test_the_number_of_threads_changes_no_bit(model, hanging):
+    expected = moved(*forest_of([model, hanging], 61, threads=1))
+    assert all(clamped >= 10 and restarted >= 8 for clamped, restarted in expected[1])
+    for threads in (2, 3, 64):
+        assert moved(*forest_of([model, hanging], 61, threads=threads)) == expected
+
+
+@threads_are_counted
+@pytest.mark.filterwarnings('ignore:.*multi-threaded:DeprecationWarning')
+def test_a_process_that_was_forked_has_threads_of_its_own(model):
+    forest = forest_of([model], 300, threads=3)
+    expected = moved(*forest_of([model], 300, threads=1))
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)  # ends it if it waits for threads that it does not have
+        before = n_threads()
+        os._exit(0 if moved(*forest) == expected and n_threads() == before + 2 else 1)
+    assert os.waitpid(child, 0)[1] == 0
+    assert moved(*forest) == expected
+
+
+@threads_are_counted
+def test_threads_sleep_between_calls_and_end_with_the_stand(model):
+    before = n_threads()
+    forest = forest_of([model], 300, threads=4)
+    assert n_threads() == before + 3
+    moved(*forest)
+    spent = time.process_time()
+    threading.Event().wait(0.2)
+    assert time.process_time() - spent < 0.1
+    assert n_threads() == before + 3
+    del forest
+    assert n_threads() == before
+
+
+def test_a_stand_beyond_the_caches_is_placed_as_each_of_its_trees(model):
+    segments = model.tree.n_segments
+    count = 100_000 // segments + 1
+    stand, rows, _ = forest_of([model], count)
+    rng = np.random.default_rng(2)
     for _ in range(3):
         assert stand.step(rng.normal(0.0, 5.0, (count, 3))) == (0, 0)
-    rows = np.stack([np.arange(count), segments * np.arange(count)], axis=1)
-    keys, expected = np.zeros(own.sizes.keys), np.zeros((segments, 7))
+    keys, expected = np.zeros(stand.models[0].sizes.keys), np.zeros((segments, 7))
     for first in (0, 1):  # poses begin at any number of a line
         poses = np.zeros((count * segments + 1, 7))[first:]
         stand.place(rows, poses)

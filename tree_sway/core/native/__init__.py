@@ -4,7 +4,8 @@
 The native core of ``native/``, as Python calls it: by ctypes, with checked arrays.
 
 `LIBRARY` is opened once, the build for this processor chosen by itself. `NativeModel` is a model
-that the library has checked; `NativeStand` has the states of trees, steps and places them.
+that the library has checked; `NativeStand` has the states of trees, steps and places them,
+a large stand by several threads.
 `structures` mirrors the structs of ``library.h`` for observers. What each call does stands in
 ``sway.h`` and ``library.h``.
 """

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import ctypes
+import os
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,15 @@ _TREE = np.dtype(
     [('model', 'i8'), ('at', 'f8', 3), ('yaw', 'f8'), ('scale', 'f8'), ('speed', 'f8')]
 )
 """``sway_tree`` of the header."""
+
+_EVERY_ROOM = ctypes.c_size_t(-1).value
+"""``SWAY_EVERY_ROOM`` of the header."""
+
+_LARGE = 100_000
+"""Segments beyond which a stand has several threads, unless their number is given."""
+
+_MOST_THREADS = 8
+"""Threads beyond which the memory is the limit."""
 
 
 class States(NamedTuple):
@@ -64,6 +74,10 @@ class NativeStand:
         x, y, z [m] of the root node, turn about the vertical [rad] and scale, (t, 5).
     speeds
         Wind of each tree over that of its model, (t,).
+    threads
+        Threads that share the trees, 1 or more; if None, a stand of more than 100,000 segments
+        has one for each processor that the process may use, up to eight. No bit of the result
+        depends on it.
 
     Raises
     ------
@@ -73,7 +87,12 @@ class NativeStand:
     """
 
     def __init__(
-        self, models: Sequence[NativeModel], kinds: Ints, places: Floats, speeds: Floats
+        self,
+        models: Sequence[NativeModel],
+        kinds: Ints,
+        places: Floats,
+        speeds: Floats,
+        threads: int | None = None,
     ) -> None:
         self.models = tuple(models)
         """Models of the trees."""
@@ -85,8 +104,11 @@ class NativeStand:
         trees['speed'] = speeds
         handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
+        if threads is None:
+            sizes = np.array([each.sizes.segments for each in models])
+            threads = _granted() if sizes[kinds].sum() > _LARGE else 1
         handle = LIBRARY.sway_stand_open(
-            handles, len(models), address(trees), len(trees), 1, error, _ROOM
+            handles, len(models), address(trees), len(trees), threads, error, _ROOM
         )
         if not handle:
             raise ParameterError(error.value.decode(), where='trees')
@@ -154,7 +176,7 @@ class NativeStand:
 
         """
         winds_at = self._winds_at.of(winds)
-        LIBRARY.sway_step(self._handle, 0, 0, len(winds), winds_at, self._counts_at)
+        LIBRARY.sway_step(self._handle, _EVERY_ROOM, 0, len(winds), winds_at, self._counts_at)
         clamped, restarted = self._counts.tolist()
         return clamped, restarted
 
@@ -165,7 +187,7 @@ class NativeStand:
     def place(self, rows: Ints, out: Floats) -> None:
         """Place trees: their numbers and first rows in a pose block, (w, 2)."""
         rows_at, poses_at = self._rows_at.of(rows), self._poses_at.of(out)
-        LIBRARY.sway_place(self._handle, 0, rows_at, len(rows), poses_at)
+        LIBRARY.sway_place(self._handle, _EVERY_ROOM, rows_at, len(rows), poses_at)
 
     def keys(self, tree: int, out: Floats) -> None:
         """Write the key rotations of a tree [rad], (N,)."""
@@ -175,3 +197,10 @@ class NativeStand:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
         keys_at = self._keys_at.of(keys)
         LIBRARY.sway_place_keys(self._handle, 0, tree, keys_at, self._poses_at.of(out))
+
+
+def _granted() -> int:
+    """Return the number of threads of a large stand."""
+    of_process = getattr(os, 'sched_getaffinity', None)
+    count = len(of_process(0)) if of_process else os.cpu_count() or 1
+    return min(count, _MOST_THREADS)

@@ -326,7 +326,8 @@ class SharedTables:
         if not self.kinds:
             return
         if ends is not self._ends:
-            trees = np.flatnonzero(self._sharing.is_shared)
+            # Those of a kind one after another: its arrays stay in the caches.
+            trees = np.concatenate(self._trees_on)
             self._ends, self._rows = ends, np.stack([trees, ends[trees]], axis=1)
         self._place_rows(self._rows, out)
 
