@@ -139,37 +139,61 @@ typedef struct sway_ring {
   double newest, period;        /* time of the newest; a running median of the period [s] */
   int64_t same[6];              /* how often each number was repeated */
   double before[6];             /* numbers of the sample before */
+  int64_t given, lead; /* bits of the quantities of most samples, and the lead of these */
+  int64_t still, spikes; /* samples in a row that repeat the one before, or are far from it */
+  int64_t is_followed; /* whether the last sample was kept */
+  double moved_at; /* time of the first one of those that repeat each other [s] */
+  double offered[9], last[9]; /* the last sample, and the last one that was kept */
+  double changes[3], noise[3]; /* running medians of the changes of quantities; least noise */
 } sway_ring;
 
-/* Results of `sway_keep_sample`: the sample was kept with the first and the last. */
+/* Results of `sway_keep_sample`: the sample was kept with the first two. */
 enum {
   SWAY_KEPT,
+  SWAY_CLOCK_BACK,
   SWAY_NOT_FINITE,
   SWAY_TOO_LARGE,
   SWAY_SATURATED,
   SWAY_OUT_OF_ORDER,
-  SWAY_CLOCK_BACK
+  SWAY_STUCK,
+  SWAY_SPIKE,
+  SWAY_OTHERS
 };
 
-/* Check a sample (9) of a time [s], and keep it; `is_measured` (9) says which of its numbers are
- * asked for. */
-SWAY_API int sway_keep_sample(sway_ring *ring, double time, const double *sample,
-                              const uint8_t *is_measured);
+/* Check a sample (9) of a time [s], and keep it, where the quantities of most samples are asked for.
+ * If they are others from this sample on, it is not looked at: all samples are to be forgotten, and
+ * it is to be offered again. */
+SWAY_API int sway_keep_sample(sway_ring *ring, double time, const double *sample);
+
+/* Forget all samples, and ask for quantities by their bits; the clock stays. */
+SWAY_API void sway_ask_for(sway_ring *ring, int64_t given);
 
 /* Read the motion about a time [s] into a sample (9), and forget older ones. Samples within a step
  * of dt [s] about the time are averaged; elsewhere those before and after are joined by a line.
  * Returns 0, and leaves zeros or a sum, where no sample is near. */
 SWAY_API int sway_read_samples(sway_ring *ring, double time, double dt, double *sample);
 
+enum { SWAY_HALVES = 3 };
+
+/* Motions and forces in stretches that overlap by half, of which spectra are found. */
+typedef struct sway_series {
+  double *rows; /* a motion to east and north, n forces, another motion (SWAY_HALVES half, 4 + n),
+                   written */
+  int64_t half; /* rows of half a stretch */
+  int64_t filled; /* rows since the last gap; the next one, modulo SWAY_HALVES half */
+  int64_t first, second; /* numbers of the motions to east in a sample of a sensor */
+} sway_series;
+
 /* A sensor on a tree. */
 typedef struct sway_sensor {
   sway_ring *ring;
-  const double *mounting;   /* rotation to the frame of the tree (9), factors of acceleration and
+  const double *mounting; /* rotation to the frame of the tree (9), factors of acceleration and
                                rate, gravity in the acceleration [m/s^2], and bias (9) */
-  double *kept;             /* memory of samples (rows, 9), written */
-  double *computed;         /* and of what the model says (rows, 12), written */
-  double *moved;            /* the last sample in the frame of the tree (9), written */
-  int64_t rows;             /* of the memory */
+  double *kept; /* memory of samples (rows, 9), written */
+  double *computed; /* and of what the model says (rows, 12), written */
+  double *moved; /* the last sample in the frame of the tree (9), written */
+  sway_series *series; /* series of its motion; none where null */
+  int64_t rows; /* of the memory */
   int64_t count; /* samples since its mounting is looked for; the next row, modulo rows */
   int64_t is_mounted; /* whether its mounting is known */
   int64_t is_awaited; /* whether its mounting is being found */

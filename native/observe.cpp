@@ -163,6 +163,16 @@ bool read(sway_sensor &sensor, double time, const double *computed, double *beyo
   return sensor.is_mounted;
 }
 
+// Add the last sample of a sensor to its series, with forces (n) at its time.
+void add_to_series(const sway_sensor &sensor, const double *forces, int64_t n) {
+  sway_series *series = sensor.series;
+  if (!series) return;
+  double *row = series->rows + series->filled++ % (SWAY_HALVES * series->half) * (n + 4);
+  memcpy(row, sensor.moved + series->first, 2 * sizeof(double));
+  memcpy(row + 2, forces, static_cast<size_t>(n) * sizeof(double));
+  memcpy(row + 2 + n, sensor.moved + series->second, 2 * sizeof(double));
+}
+
 }  // namespace
 
 extern "C" {
@@ -185,6 +195,7 @@ int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, do
     sway_sensor &sensor = *by.sensor[i];
     const double when = time - static_cast<double>(by.late) * sensor.dt;
     by.is_known[i] = read(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
+    if (by.is_known[i]) add_to_series(sensor, by.still + then % SWAY_SLOTS * n, n);
   }
   return then;
 }

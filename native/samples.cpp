@@ -23,6 +23,72 @@ constexpr double SILENT_PERIODS = 4.0;
 // Share of a step within which a sample is of the time asked for.
 constexpr double SAME_TIME = 0.01;
 
+// Most votes by which quantities lead.
+constexpr int64_t MOST_LEAD = 100;
+
+// Time [s] and number of equal samples after which they are left out: a second of a dead sensor would
+// throw the tree about.
+constexpr double STILL = 0.15;
+constexpr int64_t LEAST_STILL = 5;
+
+// Change of a quantity that is a spike, over a running median of its changes or its least noise;
+// spikes in a row that may be, and samples before the first.
+constexpr double APART = 20.0;
+constexpr int64_t SPIKES = 3, USUAL = 20;
+
+// Bits of the quantities of a sample.
+int64_t given_by(const double *sample) {
+  int64_t bits = 0;
+  for (int k = 0; k < 3; k++)
+    if (isfinite(sample[3 * k] + sample[3 * k + 1] + sample[3 * k + 2])) bits |= 1 << k;
+  return bits;
+}
+
+// Let a sample vote for its quantities (Boyer & Moore); whether most are for others.
+bool outvotes(sway_ring &ring, int64_t given) {
+  if (given == ring.given) {
+    if (ring.lead < MOST_LEAD) ring.lead++;
+    return false;
+  }
+  ring.lead -= given != 0;
+  return ring.lead < 0;
+}
+
+// Whether the sensor has repeated its numbers for too long: it is dead, not at rest.
+bool is_still(sway_ring &ring, double time, const double *sample) {
+  if (memcmp(ring.offered, sample, sizeof ring.offered) != 0) {
+    memcpy(ring.offered, sample, sizeof ring.offered);
+    ring.moved_at = time;
+    ring.still = 0;
+    return false;
+  }
+  ring.moved_at = fmin(ring.moved_at, time);
+  return ++ring.still >= LEAST_STILL && time - ring.moved_at >= STILL;
+}
+
+// Whether a sample is far from the one before, unless it is the last of several.
+bool is_spike(sway_ring &ring, const double *sample) {
+  bool is_far = false;
+  for (int k = 0; k < 3; k++) {
+    if (!(ring.given >> k & 1)) continue;
+    double square = 0.0;
+    for (int j = 3 * k; j < 3 * k + 3; j++) {
+      const double way = sample[j] - ring.last[j];
+      square += way * way;
+    }
+    const double change = sqrt(square);
+    double usual = ring.changes[k] > 0.0 ? ring.changes[k] : change;
+    if (usual < ring.noise[k]) usual = ring.noise[k];
+    is_far |= change > APART * usual;
+    // A running median: up or down by a twentieth.
+    ring.changes[k] = (change > usual ? 1.05 : 0.95) * usual;
+  }
+  if (++ring.spikes <= 0) return false;
+  if (is_far && ring.spikes <= SPIKES) return true;
+  ring.spikes = 0;
+  return false;
+}
+
 // Whether a number is repeated at the limit of the sensor.
 bool is_saturated(sway_ring &ring, const double *sample) {
   bool found = false;
@@ -44,16 +110,9 @@ void drop_oldest(sway_ring &ring) {
   ring.count--;
 }
 
-}  // namespace
-
-extern "C" {
-
-int sway_keep_sample(sway_ring *kept, double time, const double *sample,
-                     const uint8_t *is_measured) {
-  sway_ring &ring = *kept;
-  if (!isfinite(time)) return SWAY_NOT_FINITE;
-  for (int j = 0; j < 9; j++)
-    if (is_measured[j] && !isfinite(sample[j])) return SWAY_NOT_FINITE;
+// Keep a sample unless it is bad.
+int keep(sway_ring &ring, double time, const double *sample, int64_t given) {
+  if (!isfinite(time) || (given & ring.given) != ring.given) return SWAY_NOT_FINITE;
   for (int j = 0; j < 6; j++)
     if (fabs(sample[j]) > MOST[j / 3]) return SWAY_TOO_LARGE;
   int outcome = SWAY_KEPT;
@@ -83,6 +142,33 @@ int sway_keep_sample(sway_ring *kept, double time, const double *sample,
   ring.count++;
   ring.newest = time;
   return outcome;
+}
+
+}  // namespace
+
+extern "C" {
+
+int sway_keep_sample(sway_ring *kept, double time, const double *sample) {
+  sway_ring &ring = *kept;
+  const int64_t given = given_by(sample);
+  if (outvotes(ring, given)) return SWAY_OTHERS;
+  if (given && is_still(ring, time, sample)) {
+    ring.is_followed = 0;
+    return SWAY_STUCK;
+  }
+  if (ring.is_followed && is_spike(ring, sample)) return SWAY_SPIKE;
+  const int outcome = keep(ring, time, sample, given);
+  if (outcome > SWAY_CLOCK_BACK) return outcome;
+  memcpy(ring.last, sample, sizeof ring.last);
+  ring.is_followed = 1;
+  return outcome;
+}
+
+void sway_ask_for(sway_ring *kept, int64_t given) {
+  sway_ring &ring = *kept;
+  ring.given = given;
+  ring.lead = ring.count = ring.behind = ring.is_followed = 0;
+  ring.spikes = -USUAL;
 }
 
 int sway_read_samples(sway_ring *kept, double time, double dt, double *sample) {

@@ -11,12 +11,14 @@ import pytest
 
 from tree_sway.twin.sample_ring import _RING, CAPACITY
 from tree_sway.twin.sensor_readings import _KEPT, LATEST
+from tree_sway.twin.sensor_spectrum import HALVES
 
 pytestmark = pytest.mark.skipif(not NATIVE.is_dir(), reason='the sources are not here')
 
 
 def test_rings_and_readings_are_those_of_the_header() -> None:
-    for name, number in {'RING': CAPACITY, 'SLOTS': _KEPT, 'LATEST': LATEST}.items():
+    sizes = {'RING': CAPACITY, 'SLOTS': _KEPT, 'LATEST': LATEST, 'HALVES': HALVES}
+    for name, number in sizes.items():
         assert number_of(f'SWAY_{name}') == number
     assert fields_of('sway_ring') == [
         (name, of.base.kind == 'f', math.prod(of.shape)) for name, (of, _) in _RING.fields.items()

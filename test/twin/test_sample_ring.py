@@ -9,7 +9,6 @@ import numpy as np
 from tree_sway.twin.sample_ring import CAPACITY, KEPT, SampleRing
 
 DT = 1.0 / 60.0
-ALL = np.ones(9, dtype=np.bool_)
 
 
 def test_samples_are_averaged_within_a_step_and_joined_elsewhere() -> None:
@@ -18,7 +17,8 @@ def test_samples_are_averaged_within_a_step_and_joined_elsewhere() -> None:
     times[4000:] += 2.0  # a gap
     values = rng.normal(0.0, 3.0, (6000, 9))
     sample = np.zeros(9)
-    ring, asked, kinds = SampleRing(sample, ALL), 0.1, set()
+    ring, asked, kinds = SampleRing(sample), 0.1, set()
+    ring.ask_for((True, True, True))
     for now, each in zip(times.tolist(), values, strict=True):
         sample[:] = each
         assert ring.keep(now) == KEPT
@@ -42,7 +42,8 @@ def test_samples_are_averaged_within_a_step_and_joined_elsewhere() -> None:
 
 def test_the_oldest_samples_make_room() -> None:
     sample = np.zeros(9)
-    ring, count = SampleRing(sample, ALL), CAPACITY + 100
+    ring, count = SampleRing(sample), CAPACITY + 100
+    ring.ask_for((True, True, True))
     for k in range(count):
         sample[:] = k % 7
         assert ring.keep(float(k)) == KEPT

@@ -19,6 +19,7 @@ from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_place import PlaceMotion, SensorPlace
 from tree_sway.twin.sensor_readings import SensorReadings
+from tree_sway.twin.sensor_spectrum import SensorSpectrum
 from tree_sway.twin.sensor_track import as_felt, FoundMounting, sensed_rows, SensorTrack
 
 M, N, DT = 7, 4, 1.0 / 60.0
@@ -53,7 +54,7 @@ def test_measurements_are_rows_by_the_state(count: int) -> None:
     for k, place in enumerate(places):
         rows = sensed_rows(place, law.all_stiffness, law.all_damping)
         np.testing.assert_allclose(of._sensed[5, k], rows @ state.ravel(), atol=1e-12)
-    np.testing.assert_allclose(of.forces, law.air_damping * state[1, :N] + state[2, :N])
+    np.testing.assert_allclose(of._forces[5], law.air_damping * state[1, :N] + state[2, :N])
     assert not of._sensed[[4, 6]].any()
     assert not of.is_known.any()
 
@@ -70,14 +71,20 @@ def test_what_is_beyond_the_model_is_turned_into_the_frame_of_the_tree(has_gravi
     track.take(FoundMounting(found, rng.normal(size=9)))
     sample = rng.normal(size=9)
     track.sensor._sample[:] = sample
+    track.sensor.ring.ask_for((True, True, True))
     assert track.sensor.ring.keep(0.3) == 0
+    spectrum = SensorSpectrum(1.0, DT, N)
+    track.native.series = spectrum.native.at
     of.read(0.3, 0, -1)
     assert of.is_known.all()
     law = of._unknown
     rows = as_felt(sensed_rows(place, law.all_stiffness, law.all_damping), has_gravity=has_gravity)
     expected = found.motion(sample) - track.bias - rows @ state.ravel()
     np.testing.assert_allclose(of.beyond[0], expected, atol=1e-12)
-    np.testing.assert_allclose(track.watched_motion, found.motion(sample)[:2], atol=1e-12)
+    moved = found.motion(sample)
+    series = np.concatenate((moved[3:5], of._forces[0], moved[:2]))
+    np.testing.assert_allclose(spectrum._series[0, 0], series, atol=1e-12)
+    assert spectrum.advance()
     np.testing.assert_array_equal(track._sensed[0], sample)
     np.testing.assert_array_equal(track._computed[0], of._sensed[0, 0])
     assert track.native.count == 1
@@ -149,11 +156,11 @@ def test_one_spike_in_a_hundred_samples_is_no_disagreement() -> None:
 def lateness_of(arrivals: list[tuple[float, float]], seconds: float) -> int:
     """Return the steps by which a sensor is read late; arrivals are (when, stamp), both in [s]."""
     of, *_ = readings(1)
-    k = 0
+    sensor, k = track_of(of).sensor, 0
     for step in range(round(seconds / DT)):
         time = step * DT
         while k < len(arrivals) and arrivals[k][0] <= time:
-            track_of(of).sensor.ring.keep(arrivals[k][1])
+            sensor.offer(arrivals[k][1], acceleration=(0.1 * (k % 2), 0.0, GRAVITY))
             k += 1
         of.read(time, step, -1)
     return int(of.native.late)

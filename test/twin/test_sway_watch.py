@@ -37,14 +37,16 @@ def watched(
     rng = np.random.default_rng(seed)
     spectrum = SensorSpectrum(1.0, DT, 1)
     watch = SwayWatch(spectrum, 1.0)
-    force = np.zeros(1)
+    rows, native = spectrum._series.reshape(-1, 5), spectrum.native
     blown, count = 0.0, 0
     for k, (frequency, wind) in enumerate(zip(frequencies, WINDS, strict=False)):
         of_limb = 0.2 * swayed(3.0 if k < 5 else limb, wind, rng)
         sway = swayed(frequency, wind, rng) + of_limb
         motion = share * sway + NOISE * rng.normal(size=(N_STEPS, 3))
         for each in motion:
-            spectrum.add(each[:2], force, each[:2])
+            rows[native.filled % len(rows), [0, 1, 3, 4]] = *each[:2], *each[:2]
+            native.filled += 1
+            assert spectrum.advance()
             blown, count = blown + wind, count + 1
             if watch.is_due:
                 watch.advance((blown, 0.0, count), NOISE, NOISE)

@@ -6,29 +6,29 @@ Samples of a motion sensor: checked as they come, and read at any time.
 A sample has an acceleration, an angular rate, an orientation, or several of them, in the sensor's
 own frame. A sample that is not finite, beyond any sensor, stuck at the limit of the sensor, out of
 order, or far from those about it is refused and counted, and so are those of a sensor that repeats
-its numbers.
-
-What a sensor measures is decided by a majority vote (Boyer and Moore 1991, Automated Reasoning,
-105-117), so that neither a bad first sample nor a part that stops makes the others useless.
+its numbers (`sample_ring`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import dist, inf, isfinite, nan
+from math import inf, nan
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.alignment import LEAST_NOISE, matrix_of
+from tree_sway.twin.alignment import matrix_of
 from tree_sway.twin.sample_ring import (
     KEPT,
     NOT_FINITE,
+    OTHERS,
     OUT_OF_ORDER,
     RESTARTED,
     SampleRing,
     SATURATED,
+    SPIKE,
+    STUCK,
     TOO_LARGE,
 )
 from tree_sway.twin.sensor_place import SensorPlace, turn_between
@@ -36,24 +36,8 @@ from tree_sway.twin.sensor_place import SensorPlace, turn_between
 QUANTITIES = ('acceleration', 'rate', 'orientation')
 """Quantities of a sample: [m/s^2], [rad/s], and a quaternion x y z w."""
 
-_ROWS = slice(0, 3), slice(3, 6), slice(6, 9)
-"""Numbers of each quantity."""
-
-_MOST_LEAD = 100
-"""Most votes by which the quantities of a sensor lead."""
-
-_STILL = 0.15
-_LEAST_STILL = 5
-"""
-Time [s] and number of equal samples after which they are left out: a second of a dead sensor would
-throw the tree about.
-"""
-
-_APART = 20.0
-_LEAST_CHANGE = LEAST_NOISE.tolist()
-"""Change of a quantity that is a spike, over a running median of its changes, or over noise."""
-_SPIKES, _USUAL = 3, 20
-"""Spikes in a row that may be, and samples before the first."""
+_MANY = 100
+"""Samples that were kept from which on a quantity that is missing was lost."""
 
 _WINDOW, _AHEAD, _BEHIND = 2.0, 0.1, 0.3
 """
@@ -61,8 +45,8 @@ Time [s] over which stamps are compared with arrivals; by how much all of them a
 the clock of the sensor is ahead, and by how much all are before if it may be behind [s].
 """
 
-STUCK, SPIKE, AHEAD = 6, 7, 8
-"""Results of `MotionSensor.offer` beside those of `SampleRing.keep`."""
+AHEAD = OTHERS + 1
+"""Result of a sample beside those of `SampleRing.keep`: it came before its time."""
 
 _COUNTED = {
     NOT_FINITE: 'not_finite',
@@ -146,20 +130,12 @@ class MotionSensor:
         """Why its newest sample was refused, and what to do; empty if it was not."""
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
-        self._is_measured = np.ones(9, dtype=np.bool_)
         self._sample = np.full(9, nan)
-        self.ring = SampleRing(self._sample, self._is_measured)
+        self.ring = SampleRing(self._sample)
         """Its last samples."""
         self._reference: Floats | None = None
         self._first_turn: Floats = np.eye(3)
         self._unit = np.zeros(4)
-        self._is_given: tuple[bool, ...] = ()
-        self._lead = 0
-        self._numbers = b''
-        self._moved_at, self._n_still = inf, 0
-        self._kept: list[float] = []
-        self._changes = [0.0] * 3  # running medians
-        self._n_spikes = -_USUAL
         self._began = -inf
         # Least and most time from stamp to arrival, in this window and in the one before.
         self._soonest, self._latest = -inf, inf
@@ -243,7 +219,10 @@ class MotionSensor:
             if arrival is not None and self._is_ahead(arrival - stamp, arrival):
                 outcome = AHEAD
             else:
-                outcome = self._check(stamp, values.tolist())
+                outcome = self.ring.keep(stamp)
+                if outcome == OTHERS:
+                    self._begin()
+                    outcome = self.ring.keep(stamp)
         except (TypeError, ValueError, OverflowError):
             outcome = NOT_FINITE
         counts = self.counts
@@ -272,76 +251,17 @@ class MotionSensor:
             self._latest = late
         return self._latest < -_AHEAD and self._latest_before < -_AHEAD
 
-    def _check(self, time: float, numbers: list[float]) -> int:
-        """Keep the sample in `_sample` unless it is bad; return what became of it."""
-        a, b, c, d, e, f, g, h, i = numbers
-        is_given = isfinite(a + b + c), isfinite(d + e + f), isfinite(g + h + i)
-        self._vote(is_given)
-        if any(is_given) and self._is_still(time):
-            self._kept = []
-            return STUCK
-        if self._kept and self._is_spike(numbers):
-            return SPIKE
-        outcome = self.ring.keep(time)
-        if outcome in {KEPT, RESTARTED}:
-            self._kept = numbers
-        return outcome
-
-    def _vote(self, is_given: tuple[bool, ...]) -> None:
-        """Let a sample vote for its quantities; a majority for others begins the sensor anew."""
-        if is_given == self._is_given:
-            if self._lead < _MOST_LEAD:
-                self._lead += 1
-            return
-        self._lead -= any(is_given)
-        if self._lead >= 0:
-            return
+    def _begin(self) -> None:
+        """Begin anew with the quantities of the sample that is offered."""
+        is_given = np.isfinite(self._sample.reshape(3, 3)).all(axis=1).tolist()
         before, pairs = self.quantities, zip(QUANTITIES, is_given, strict=True)
         self.quantities = tuple([name for name, is_there in pairs if is_there])
-        if self.counts.accepted > _MOST_LEAD:
+        if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
-        self._is_given, self._lead = is_given, 1
-        self._is_measured[:] = np.repeat(is_given, 3)
-        self._kept, self._n_spikes = [], -_USUAL
-        self.ring.clear()
+        self.ring.ask_for(is_given)
         if is_given[2]:
             self._reference = None
             self._sample[6:9] = self._turn(self._unit)
-
-    def _is_still(self, time: float) -> bool:
-        """Whether the sensor has repeated its numbers for too long: it is dead, not at rest."""
-        numbers = self._sample.tobytes()
-        if numbers != self._numbers:
-            self._numbers, self._moved_at, self._n_still = numbers, time, 0
-            return False
-        self._moved_at = min(self._moved_at, time)
-        self._n_still += 1
-        return self._n_still >= _LEAST_STILL and time - self._moved_at >= _STILL
-
-    def _is_spike(self, numbers: list[float]) -> bool:
-        """Whether a sample is far from the one before, unless it is the last of several."""
-        is_far, kept, changes = False, self._kept, self._changes
-        for k, is_given in enumerate(self._is_given):
-            if not is_given:
-                continue
-            rows = _ROWS[k]
-            change = dist(kept[rows], numbers[rows])
-            usual = changes[k] or change
-            if usual < _LEAST_CHANGE[k]:
-                usual = _LEAST_CHANGE[k]
-            if change > usual:
-                # A running median: up or down by a twentieth.
-                changes[k] = 1.05 * usual
-                is_far = is_far or change > _APART * usual
-            else:
-                changes[k] = 0.95 * usual
-        self._n_spikes += 1
-        if self._n_spikes <= 0:
-            return False
-        if is_far and self._n_spikes <= _SPIKES:
-            return True
-        self._n_spikes = 0
-        return False
 
     def _turn(self, quaternion: Floats) -> Floats:
         """

@@ -225,7 +225,7 @@ class Observer:
             self._smoothed.note_computed(self._step, self._swing[0])
         at = self._readings.read(time, self._step, self._done)
         if at >= 0:
-            self._fit.add(self._readings.is_known, self._readings.forces, wind[0], wind[1])
+            self._fit.note(wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:
             self._take(gains)

@@ -6,10 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tree_sway.core.arrays import Floats
 from tree_sway.twin.later_work import LaterWork, Submit
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
@@ -77,28 +73,31 @@ class RunningFit:
         self._stiffness, self._damping = before._stiffness, before._damping
         self.found = before.found
 
-    def add(self, is_known: NDArray[np.bool_], forces: Floats, east: float, north: float) -> None:
-        """Add the motion that sensors have just read, forces of the wind, (n,), and the wind."""
+    def note(self, east: float, north: float) -> None:
+        """Note the wind of a step in [m/s], and go on with the spectra of what was read."""
         self._east += east
         self._north += north
         self._n_winds += 1
-        for k, (known, track) in enumerate(zip(is_known.tolist(), self._tracks, strict=True)):
-            if known and track.uses != self._uses[k]:
+        for k, track in enumerate(self._tracks):
+            if track.uses != self._uses[k]:
                 self._begin(k)
-            spectrum, watch = self._spectra[k], self.watches[k]
-            if known:
-                spectrum.add(track.fitted_motion, forces, track.watched_motion)
+            if self._spectra[k].advance():
+                watch = self.watches[k]
                 if watch.is_due:
                     winds = self._east, self._north, self._n_winds
                     watch.advance(winds, track.fitted_noise, track.watched_noise)
             elif track.is_silent:
-                spectrum.skip()
+                self._spectra[k].skip()
 
     def _begin(self, which: int) -> None:
         """Begin the spectrum of a sensor whose quantities have changed anew."""
-        self._uses[which] = self._tracks[which].uses
-        spectrum = SensorSpectrum(self._frequency, self._dt, len(self._stiffness))
+        track = self._tracks[which]
+        self._uses[which] = track.uses
+        first, second = 3 * track.fitted, 3 * track.uses[0]
+        n = len(self._stiffness)
+        spectrum = SensorSpectrum(self._frequency, self._dt, n, first, second)
         self._spectra[which] = spectrum
+        track.native.series = spectrum.native.at
         self.watches[which] = SwayWatch(spectrum, self._frequency, self._submit)
 
     def advance(self, used: Sequence[int]) -> None:

@@ -4,10 +4,14 @@
 The last samples of a motion sensor: checked as they are kept, and read at any time.
 
 A sample is (9,): acceleration, angular rate and rotation, not a number where not measured.
+
+What a sensor measures is decided by a majority vote (Boyer and Moore 1991, Automated Reasoning,
+105-117), so that neither a bad first sample nor a part that stops makes the others useless.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 from typing import Any
 
@@ -16,9 +20,15 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY
+from tree_sway.twin.alignment import LEAST_NOISE
 
-KEPT, NOT_FINITE, TOO_LARGE, SATURATED, OUT_OF_ORDER, RESTARTED = range(6)
-"""Results of `SampleRing.keep`; the sample was kept with the first and the last."""
+KEPT = 0
+RESTARTED, NOT_FINITE, TOO_LARGE, SATURATED, OUT_OF_ORDER, STUCK, SPIKE, OTHERS = range(1, 9)
+"""
+Results of `SampleRing.keep`; the sample was kept with the first two.
+
+With the last one, most samples are of other quantities from this one on (`SampleRing.ask_for`).
+"""
 
 CAPACITY = 4096
 """Samples that are kept."""
@@ -34,6 +44,16 @@ _RING = np.dtype(
         ('period', 'f8'),
         ('same', 'i8', (6,)),
         ('before', 'f8', (6,)),
+        ('given', 'i8'),
+        ('lead', 'i8'),
+        ('still', 'i8'),
+        ('spikes', 'i8'),
+        ('is_followed', 'i8'),
+        ('moved_at', 'f8'),
+        ('offered', 'f8', (9,)),
+        ('last', 'f8', (9,)),
+        ('changes', 'f8', (3,)),
+        ('noise', 'f8', (3,)),
     ]
 )
 """``sway_ring`` of the native core."""
@@ -45,25 +65,26 @@ class SampleRing:
 
     Parameters
     ----------
-    sample, is_measured
-        The sample that is kept next, and which of its numbers are asked for, (9,).
+    sample
+        The sample that is kept next, (9,).
 
     """
 
-    def __init__(self, sample: Floats, is_measured: NDArray[np.bool_]) -> None:
+    def __init__(self, sample: Floats) -> None:
         self.memory: NDArray[Any] = np.zeros(1, dtype=_RING)
         """Its memory, ``sway_ring`` of the native core."""
         self._newest, self._period = self.memory['newest'], self.memory['period']
         self._newest[0], self._period[0] = -math.inf, math.nan
-        self.memory['before'] = math.nan
-        self._kept = sample, is_measured
-        self._found = np.zeros(9)
-        arrays = self.memory, sample, is_measured, self._found
-        self._at, *self._next_at, self._found_at = map(address, arrays)
+        self.memory['before'] = self.memory['offered'] = math.nan
+        self.memory['noise'] = LEAST_NOISE
+        self.memory['given'] = -1
+        self._kept, self._found = sample, np.zeros(9)
+        arrays = self.memory, sample, self._found
+        self._at, self._next_at, self._found_at = map(address, arrays)
 
     def keep(self, time: float) -> int:
         """Check the next sample, of a time in [s], and keep it; return what became of it."""
-        return int(LIBRARY.sway_keep_sample(self._at, time, *self._next_at))
+        return int(LIBRARY.sway_keep_sample(self._at, time, self._next_at))
 
     def read(self, time: float, dt: float) -> Floats | None:
         """
@@ -75,9 +96,9 @@ class SampleRing:
         found = LIBRARY.sway_read_samples(self._at, time, dt, self._found_at)
         return self._found if found else None
 
-    def clear(self) -> None:
-        """Forget all samples; the clock stays."""
-        self.memory['count'] = self.memory['behind'] = 0
+    def ask_for(self, is_given: Sequence[bool]) -> None:
+        """Forget all samples, and ask for some of the three quantities; the clock stays."""
+        LIBRARY.sway_ask_for(self._at, sum(asked << k for k, asked in enumerate(is_given)))
 
     @property
     def newest(self) -> float:

@@ -81,8 +81,6 @@ class SensorReadings:
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
         self._forces = np.zeros((_KEPT, unknown.count))
-        self.forces = self._forces[0]
-        """Force of the wind on each coordinate at the step that was read, (n,)."""
         self.beyond = np.zeros((len(tracks), 9))
         """Motion of each beyond the model's, in the frame of the tree, (k, 9)."""
         self.is_known = np.zeros(len(tracks), dtype=np.bool_)
@@ -125,10 +123,7 @@ class SensorReadings:
             if track.heed() and self._search is not None and self._search[0] is track:
                 self._search = None  # it looks at what the sensor measured before
         self._find_mounting(step)
-        then = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
-        if then >= 0:
-            self.forces = self._forces[then % _KEPT]
-        return then
+        return int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
 
     def _find_mounting(self, step: int) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""

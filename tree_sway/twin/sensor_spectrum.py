@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.native import NativeSeries
 from tree_sway.twin.spectrum_change import WATCHED_BAND
 
 Waves = NDArray[np.complex128]
@@ -26,8 +27,11 @@ _BAND = (0.5, 2.2)
 _CYCLES = 40.0
 """Length of a stretch in periods of the first frequency."""
 
-_HALVES = 3
-"""Halves that are kept: the last stretch, and the half that is being measured."""
+HALVES = 3
+"""
+Halves that are kept, ``SWAY_HALVES`` of the native core: the last stretch, and the half that is
+being measured.
+"""
 
 
 class SpectrumBlock(NamedTuple):
@@ -58,16 +62,22 @@ class SensorSpectrum:
         Time step in [s].
     count
         Number of coordinates whose forces are known.
+    first, second
+        Numbers of the motion, and of the watched one, to east in a sample.
 
     """
 
-    def __init__(self, frequency: float, dt: float, count: int) -> None:
+    def __init__(
+        self, frequency: float, dt: float, count: int, first: int = 3, second: int = 0
+    ) -> None:
         self._dt = dt
         half = self._half = round(0.5 * _CYCLES / (frequency * dt))
         # East, north, the force on each coordinate, and the watched motion to east and north.
         self._n_products = 2 + count
         n_series = self._n_products + 2
-        self._series = np.zeros((_HALVES, half, n_series))
+        self._series = np.zeros((HALVES, half, n_series))
+        self.native = NativeSeries(rows=self._series, half=half, first=first, second=second)
+        """Its series in the native core, which adds the samples."""
         self._window = np.hanning(2 * half + 1)[:-1]
         self._stretch = np.zeros(2 * half)
         axis = np.fft.rfftfreq(2 * half, dt)
@@ -85,42 +95,42 @@ class SensorSpectrum:
         """Frequencies of the watched motion in [Hz], (g,)."""
         self._watched = np.zeros((len(self.watched_frequencies), 2))
         self._block = SpectrumBlock(np.zeros(n_frequencies), self._watched.copy(), 0, 0.0)
-        self._now, self._filled, self._n_halves = 0, 0, 0
+        self._filled = 0
         self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
 
-    def add(self, motion: Floats, force: Floats, watched: Floats) -> None:
-        """Add motions to east and north, (2,), and forces of the known wind, (count,)."""
-        np.concatenate((motion, force, watched), out=self._series[self._now, self._filled])
-        self._filled += 1
+    def advance(self) -> bool:
+        """Go on by a step; tell whether there is another sample."""
+        filled = self.native.filled
+        if filled == self._filled:
+            return False
+        self._filled = filled
         self.seconds += self._dt
         if self._next < self._n_series:
             self._transform_next()
-        if self._filled == self._half:
-            self._n_halves += 1
-            self._now, self._filled = (self._now + 1) % _HALVES, 0
-            if self._n_halves > 1:
-                self._next = 0
+        if filled > self._half and filled % self._half == 0:
+            self._next = 0
+        return True
 
     @property
     def until_first(self) -> float:
         """Motion in [s] that is missing to the first stretch."""
-        measured = self._n_halves * self._half + self._filled
-        return 0.0 if self.count else max(2 * self._half - measured, 0) * self._dt
+        return 0.0 if self.count else max(2 * self._half - self._filled, 0) * self._dt
 
     def skip(self) -> None:
         """Forget an unfinished stretch: the motion has a gap."""
-        self._filled = self._n_halves = 0
+        self.native.filled = self._filled = 0
         self._next = self._n_series
 
     def _transform_next(self) -> None:
         """Transform a series of the last stretch, and average after the last one."""
         series, stretch, half = self._series[..., self._next], self._stretch, self._half
-        stretch[:half] = series[self._now - 2]
-        stretch[half:] = series[self._now - 1]
+        now = self._filled // half % HALVES
+        stretch[:half] = series[now - 2]
+        stretch[half:] = series[now - 1]
         stretch -= stretch.mean()
         stretch *= self._window
         waves = np.fft.rfft(stretch)

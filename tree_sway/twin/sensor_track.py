@@ -376,15 +376,13 @@ class SensorTrack:
             is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
-        self.fitted_motion = self.watched_motion = self._moved[:2]
+        self.fitted_noise = self.watched_noise = 0.0
         """
-        The last sample of this quantity, and of the acceleration, to east and north, (2,).
+        Noise in each sample of this quantity, and of the acceleration, standard deviations.
 
         Without an acceleration, the first of the others is watched. The acceleration tells more of
         fast sway than the angular rate, which is less above its noise.
         """
-        self.fitted_noise = self.watched_noise = 0.0
-        """Standard deviations of their noise in each sample, as measured."""
 
     def _uses(self) -> tuple[int, ...]:
         given = self._quantities
@@ -547,9 +545,6 @@ class SensorTrack:
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
-        first, watched = 3 * self.fitted, 3 * self.uses[0]
-        self.fitted_motion = self._moved[first : first + 2]
-        self.watched_motion = self._moved[watched : watched + 2]
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias

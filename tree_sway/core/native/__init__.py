@@ -31,5 +31,6 @@ if TYPE_CHECKING:
     from tree_sway.core.native.structures import NativeFilter as NativeFilter
     from tree_sway.core.native.structures import NativeReadings as NativeReadings
     from tree_sway.core.native.structures import NativeSensor as NativeSensor
+    from tree_sway.core.native.structures import NativeSeries as NativeSeries
 else:
     __getattr__, __dir__, __all__ = face(__name__)

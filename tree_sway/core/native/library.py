@@ -68,7 +68,8 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_limb_winds': (None, (_pointer, _number, _number, _pointer, _number)),
     'sway_push_farwind': (None, (_pointer, _number, _number, _number, _number, _pointer)),
     # Motion sensors.
-    'sway_keep_sample': (_status, (_pointer, _number, _pointer, _pointer)),
+    'sway_keep_sample': (_status, (_pointer, _number, _pointer)),
+    'sway_ask_for': (None, (_pointer, _whole)),
     'sway_read_samples': (_status, (_pointer, _number, _number, _pointer)),
     'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
     'sway_judge': (None, (_pointer, _number)),

@@ -47,12 +47,18 @@ def _value(field: float | NDArray[Any]) -> float:
     return contiguous(field)
 
 
+class NativeSeries(Structure):
+    """``sway_series``."""
+
+    _fields_ = _fields('rows half filled first second')
+
+
 class NativeSensor(Structure):
     """``sway_sensor``."""
 
     _fields_ = _fields(
-        'ring mounting kept computed moved rows count is_mounted is_awaited in_use is_refused'
-        ' silences disagreements',
+        'ring mounting kept computed moved series rows count is_mounted is_awaited in_use'
+        ' is_refused silences disagreements',
         'dt absent unheard newest apart excess usual agreed heard came lag',
     )
 
