@@ -106,12 +106,15 @@ def _opened() -> ctypes.CDLL:
         library = ctypes.CDLL(str(FILE))
     except OSError as error:
         raise MissingDependencyError('the native core is not built', cure=cure) from error
-    functions = [getattr(library, name, None) for name in SIGNATURES]
     # A structure with another field would be read wrongly without a word.
-    if None in functions or library.sway_interface() != INTERFACE:
-        raise MissingDependencyError('the native core is of other sources', cure=cure)
-    for function, called in zip(functions, SIGNATURES.values(), strict=True):
-        function.restype, function.argtypes = called  # type: ignore[union-attr]
+    other = MissingDependencyError('the native core is of other sources', cure=cure)
+    for name, called in SIGNATURES.items():
+        function = getattr(library, name, None)
+        if function is None:
+            raise other
+        function.restype, function.argtypes = called
+    if library.sway_interface() != INTERFACE:
+        raise other
     return library
 
 
