@@ -4,6 +4,7 @@
 
 import contextlib
 import faulthandler
+import functools
 import gc
 from importlib.metadata import EntryPoint
 import importlib.util
@@ -80,16 +81,21 @@ def pytest_configure(config):
     _errors = os.dup(2)
 
 
+@functools.cache
+def _marks_of(file):
+    """Return the marks that all tests of a file have by its folder."""
+    folders = {'core': CORE_FOLDERS, 'long': LONG_FOLDERS}
+    return [name for name in folders if any(map(file.is_relative_to, folders[name]))]
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     """Mark tests of the core, those that open Chromium, and long ones, before any is chosen."""
     for item in items:
-        if any(item.path.is_relative_to(folder) for folder in CORE_FOLDERS):
-            item.add_marker('core')
+        for name in _marks_of(item.path):
+            item.add_marker(name)
         if 'one_chromium' in getattr(item, 'fixturenames', ()):
             item.add_marker('browser')
-        if any(item.path.is_relative_to(folder) for folder in LONG_FOLDERS):
-            item.add_marker('long')
 
 
 @pytest.hookimpl(hookwrapper=True)

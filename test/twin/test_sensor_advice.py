@@ -12,13 +12,11 @@ from tree_sway.growth.growing import grow
 from tree_sway.twin.sensor_advice import advised_places
 from tree_sway.twin.sensor_place import place_on
 
-SIMULATOR = make_simulator(
-    grow('spruce', 4.0, rng=np.random.default_rng(6)), species_named('spruce'), in_leaf=False
-)
-
 
 def test_a_tree_with_a_stem_has_its_first_sensor_high_on_it() -> None:
-    first, second = advised_places(SIMULATOR, 2)
+    spruce = grow('spruce', 4.0, rng=np.random.default_rng(6))
+    simulator = make_simulator(spruce, species_named('spruce'), in_leaf=False)
+    first, second = advised_places(simulator, 2)
     assert first.at in ('stem:0.6', 'stem:0.8')
-    assert place_on(SIMULATOR.tree, second.at) != place_on(SIMULATOR.tree, first.at)
+    assert place_on(simulator.tree, second.at) != place_on(simulator.tree, first.at)
     assert 0.0 < second.left < first.left < 0.6
