@@ -172,16 +172,18 @@ def modbus(link: socket.socket, offer: Offer) -> None:
 
 
 def broker(link: socket.socket, offer: Offer) -> None:
-    """Be a broker of MQTT."""
+    """Be a broker of MQTT, that closes now and then, as a damaged length hides the rest."""
     link.recv(4096)
     link.sendall(offer.damaged(b'\x20\x02\x00\x00'))
     link.recv(4096)
     link.sendall(offer.damaged(b'\x90\x03\x00\x01\x00'))
-    while not offer.is_over:
+    for _ in range(500):
         body = b'\x00\x01w' + offer.next()[:16_000]
         size = bytes([len(body) & 0x7F | 0x80, len(body) >> 7])
         link.sendall(offer.damaged(b'\x30' + size + body, 0.02))
         time.sleep(0.003)
+        if offer.is_over:
+            return
 
 
 def http(link: socket.socket, offer: Offer) -> None:
