@@ -12,25 +12,14 @@ from __future__ import annotations
 from importlib.metadata import entry_points
 from typing import Any
 
-from tree_sway.errors import MissingDependencyError
-from tree_sway.extras import cure_of_missing
-
 
 class Drawn:
     """An object of a kind that somebody draws."""
 
     def plot(self, kind: str = '') -> Any:
-        """
-        Return a figure of it, as of a kind; None where nothing that draws it is installed.
-
-        A `MissingDependencyError` names what to install where what draws it lacks a module.
-        """
+        """Return a figure of it, as of a kind; None where nothing that draws it is installed."""
         for point in entry_points(group='tree_sway.pictures', name=kind or type(self).__name__):
-            try:
-                return point.load()(self)
-            except ModuleNotFoundError as error:
-                what, cure = str(error), cure_of_missing(error.name or '')
-                raise MissingDependencyError(what, cure=cure) from None
+            return point.load()(self)
         return None
 
     def _repr_html_(self) -> Any:

@@ -391,9 +391,7 @@ def test_ten_thousand_columns_are_enough(tmp_path):
      b'1 1 0 0 0 1 -1\n2 1 0 0 1 1 2\n'],
     ids=['nothing', 'a mark', 'a comma', 'commas', 'its own parent', 'its own parent, swc'],
 )  # fmt: skip
-def test_files_of_almost_nothing_are_refused(
-    tmp_path: Path, content: bytes, reader: str
-) -> None:
+def test_files_of_almost_nothing_are_refused(tmp_path: Path, content: bytes, reader: str) -> None:
     suffix = '.swc' if content.startswith(b'1 1') else '.csv'
     path = tmp_path / f'a{suffix}'
     path.write_bytes(content)

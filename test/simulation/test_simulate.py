@@ -20,6 +20,7 @@ from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
+from tree_sway.files.trees import open_tree
 from tree_sway.simulation.rig import Rig, simulate
 
 STEADY = np.tile([3.0, 0.0, 0.0], (1200, 1))
@@ -191,3 +192,10 @@ def test_a_limp_tree_without_inertia_says_so():
     rig = Rig(weeping(), model=12)
     rig.simulator = SwaySimulator(replace(model, segment_mass=0.0 * model.segment_mass))
     assert 'no inertia to solve with' in ' '.join(rig.run(np.full((9, 3), 2.0)).notes)
+
+
+def test_the_share_that_is_done_is_told() -> None:
+    told: list[float] = []
+    tree = open_tree('benjamina')
+    simulate(tree, np.ones((5, 3)), model=3, progress=told.append)
+    assert told == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])

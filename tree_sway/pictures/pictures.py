@@ -49,7 +49,7 @@ def picture_in_wind(
     ------
     FormatError
         If the suffix is not that of a picture format, or the file cannot be written.
-    ModuleNotFoundError
+    MissingDependencyError
         If matplotlib is not installed.
 
     """

@@ -8,7 +8,8 @@ import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.extras import cure_of_missing
 from tree_sway.files import whole_file
 
 if TYPE_CHECKING:
@@ -18,9 +19,13 @@ _DOTS_PER_INCH = 110.0
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure of a size [inch]; a `ModuleNotFoundError` without matplotlib."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    """Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        cure = cure_of_missing('matplotlib', 'plot')
+        raise MissingDependencyError(str(error), cure=cure) from None
 
     figure = Figure(figsize=(width, height), facecolor='white')
     FigureCanvasAgg(figure)

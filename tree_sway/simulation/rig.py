@@ -85,6 +85,7 @@ def simulate(
     motion: Sequence[PlacedMotion] = (),
     film: FilmedMotion | None = None,
     band: bool = False,
+    progress: Callable[[float], object] = lambda share: None,
     **changes: Any,
 ) -> SwayRecord:
     """
@@ -112,6 +113,8 @@ def simulate(
         Film of the real tree, which the motion follows too (`FilmedTree`).
     band
         Whether to find where the real tree is for 80 % of the time, too (`ObservedTree.band`).
+    progress
+        Function called after each step with the share of all that is done.
 
     Returns
     -------
@@ -128,7 +131,7 @@ def simulate(
 
     """
     rig = Rig(tree, settings, motion=motion, film=film, band=band, **changes)
-    return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
+    return rig.run(wind, rate=rate, seconds=seconds, branches=branches, progress=progress)
 
 
 class Rig:
@@ -187,6 +190,7 @@ class Rig:
         seconds: float | None = None,
         branches: Sequence[int] | None = None,
         strained: int | None = None,
+        progress: Callable[[float], object] = lambda share: None,
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`; ``strained`` as in `WoodStrain`."""
         tree = self.tree
@@ -234,8 +238,8 @@ class Rig:
             short = shorter_than(count / rate, seconds)
             count = min(count, max(round(seconds * rate), 1))
         refuse_too_many_steps(count, rate)
-        for _ in itertools.islice(steps, count):
-            pass
+        for done, _ in enumerate(itertools.islice(steps, count), start=1):
+            progress(done / count)
         means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
         radius = 0.5 * float(tree.base_diameter[0])
         per_moment = radius / (self.reductions.species.modulus * np.pi / 4.0 * radius**4)

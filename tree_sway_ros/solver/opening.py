@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import math
 
 from tree_sway.core.scene import Scene, shard_of
@@ -27,7 +28,12 @@ def scene_of(values: ParameterValues) -> Scene:
     )
     x, y, z, yaw = values['pose']
     moved = source.moved(x=x, y=y, z=z, yaw=yaw)
-    return shard_of(moved, values['shard.index'], values['shard.count'])
+    shard = shard_of(moved, values['shard.index'], values['shard.count'])
+    if len(shard.trees) == 1 < len(moved.trees) and moved.anemometer is None:
+        # The place of the first tree would be an anemometer that it stands apart from.
+        note = 'the only tree of its shard: gusts reach it without the delay from the first tree'
+        return replace(shard, anemometer=None, notes=(*shard.notes, note))
+    return shard
 
 
 def settings_of(values: ParameterValues) -> Settings:

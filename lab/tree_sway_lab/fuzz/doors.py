@@ -23,7 +23,6 @@ import threading
 import time
 from typing import NamedTuple
 
-from tree_sway.live.transports.modbus import checksum
 from tree_sway_lab.fuzz.mutation import drawn, mutated
 
 _ANSWER = 0.1
@@ -137,7 +136,7 @@ def rtu(number: int, offer: Offer) -> None:
             request = os.read(number, 64)[:8]
             frame = offer.next()
             if offer.is_good or offer.rng.random() < 0.8:
-                frame += checksum(frame)
+                frame += _crc(frame)
             if len(request) == 8:
                 os.write(number, frame)
 
@@ -172,16 +171,18 @@ def modbus(link: socket.socket, offer: Offer) -> None:
 
 
 def broker(link: socket.socket, offer: Offer) -> None:
-    """Be a broker of MQTT."""
+    """Be a broker of MQTT, that closes now and then, as a damaged length hides the rest."""
     link.recv(4096)
     link.sendall(offer.damaged(b'\x20\x02\x00\x00'))
     link.recv(4096)
     link.sendall(offer.damaged(b'\x90\x03\x00\x01\x00'))
-    while not offer.is_over:
+    for _ in range(500):
         body = b'\x00\x01w' + offer.next()[:16_000]
         size = bytes([len(body) & 0x7F | 0x80, len(body) >> 7])
         link.sendall(offer.damaged(b'\x30' + size + body, 0.02))
         time.sleep(0.003)
+        if offer.is_over:
+            return
 
 
 def http(link: socket.socket, offer: Offer) -> None:
@@ -284,6 +285,14 @@ def _masked(body: bytes) -> bytes:
     frame[:start] = whole[:start]
     frame[1] |= 0x80
     return bytes(frame)
+
+
+def _crc(frame: bytes) -> bytes:
+    """Return the checksum of Modbus on a line."""
+    value = 0xFFFF
+    for bit in (byte >> k & 1 for byte in frame for k in range(8)):
+        value = value >> 1 ^ 0xA001 * ((value ^ bit) & 1)
+    return value.to_bytes(2, 'little')
 
 
 def _words(*values: int) -> bytes:

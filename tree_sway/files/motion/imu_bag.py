@@ -23,6 +23,9 @@ IMU = 'sensor_msgs/msg/Imu'
 _NUMBERS = 37
 """Numbers behind the header: a quaternion and two vectors, each with a covariance of nine."""
 
+_MOST_BACK = 0.1
+"""Largest share of messages that are not later than the one before."""
+
 
 def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     """
@@ -33,7 +36,8 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     Raises
     ------
     FormatError
-        Not a bag, no such topic, several to choose from, or no message on it.
+        Not a bag, no such topic, several to choose from, no good message on it, or times that
+        are not those of samples.
     MissingDependencyError
         If rosbags is not installed.
 
@@ -41,6 +45,7 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     bag = read_bag(path, (IMU,))
     chosen = bag.chosen(topic, (IMU,), 'motion', path, f'{path.name}?topic=')
     rows = []
+    n_short = 0
     frames = set[str]()
     for recorded, data in bag.messages[chosen]:
         try:
@@ -49,8 +54,9 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
             frames.add(frame)
         except struct.error:
             rows.append((recorded, np.full(_NUMBERS, np.nan)))
-    if not rows:
-        what = f'no message on {chosen}'
+            n_short += 1
+    if n_short == len(rows):
+        what = f'no message on {chosen}' + (f', {n_short} are too short' if rows else '')
         cure = 'record while the sensor publishes'
         raise FormatError(what, where=str(path), cure=cure)
     if len(frames) > 1:
@@ -63,7 +69,13 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     for first, size in ((25, 3), (13, 3), (0, 4)):
         is_absent = float(values[0, first + size]) == -1.0
         parts.append(None if is_absent else values[:, first : first + size])
-    notes = (f'topic {chosen}, {IMU}',)
+    n_back = int(np.count_nonzero(np.diff(time) <= 0.0))
+    if n_back > _MOST_BACK * len(rows):
+        what = f'time goes back or stands in {n_back} of {len(rows)} messages on {chosen}'
+        cure = 'stamp each by the clock of its sensor, or with zero for the time of recording'
+        raise FormatError(what, where=str(path), cure=cure)
+    counted = ((n_short, 'are too short'), (n_back, 'are not later than the one before'))
+    notes = (f'topic {chosen}, {IMU}', *(f'{n} messages {what}' for n, what in counted if n))
     return MotionRecord(time, parts[0], parts[1], parts[2], str(path), epoch, notes)
 
 

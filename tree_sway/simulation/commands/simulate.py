@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-from tree_sway.commands import waiting
+from tree_sway.commands import counting, waiting
 from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.commands import (
@@ -48,6 +48,9 @@ from tree_sway.twin.commands import (
     placed_motion,
     write_learned,
 )
+
+_STEPS = 1000
+"""Steps of the bar."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -102,15 +105,17 @@ def run(arguments: argparse.Namespace) -> int:
     film = filmed_motion(arguments, tree_file.tree)
     wind = _wind(arguments, exposure, film)
     motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
-    with waiting('simulating'):
+    with counting(_STEPS, 'simulating') as shown:
         record = simulate(
             tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
             profile=exposure.profile(ground), motion=motion, film=film,
-            band=arguments.band, **distance_settings(arguments),
+            band=arguments.band, progress=lambda share: shown(round(_STEPS * share)),
+            **distance_settings(arguments),
         )  # fmt: skip
-    write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
+    with waiting(f'writing {output}'):
+        write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
         print(f'note: {note}', file=sys.stderr)
     if learned_file is not None:
@@ -140,4 +145,5 @@ def _wind(
             simulated_speed(arguments), rate=arguments.rate, duration=seconds, rng=rng,
             **turbulence_of(exposure),
         )  # fmt: skip
-    return opened_record(arguments)
+    with waiting(f'reading {arguments.wind}'):
+        return opened_record(arguments)
