@@ -157,7 +157,7 @@ private:
     size[-SIZE_delays] = length("limb_share");
     if (is_table_alone(arrays_)) return true;
     if (!arrays_.branch_keys) return refuse("branch_keys", "missing");
-    for (int64_t i = 0; i < length("branch_keys"); i++) {
+    for (uint64_t i = 0; i < counts_[number_of("branch_keys")]; i++) {
       const int64_t own = arrays_.branch_keys[i];
       if (own < 2 || own > size[-SIZE_k])
         return refuse("branch_keys", "a number that no branch has");

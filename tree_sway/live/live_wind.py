@@ -20,9 +20,10 @@ import time
 import numpy as np
 
 from tree_sway.core.wind import is_wind
-from tree_sway.core.wind.simulated import GustsAboutMean, LEAST_INTERVAL, RATE
+from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.files.wind import Velocity
 from tree_sway.live.every_other import EveryOther
+from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.registry import OpenedSource

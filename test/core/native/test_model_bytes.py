@@ -94,6 +94,14 @@ def test_an_index_that_does_not_exist_is_refused(arrays, bad):
             NativeModel(bytes_of({**arrays, name: other}))
 
 
+def test_sizes_of_which_one_is_zero_name_no_numbers(arrays):
+    content = bytearray(bytes_of(arrays))
+    entry = 16 + 72 * list(arrays).index('branch_keys')
+    struct.pack_into('<I4Q', content, entry + 28, 2, len(content), 0, 0, 0)
+    with pytest.raises(FormatError, match="'branch_keys': of another shape"):
+        NativeModel(bytes(content))
+
+
 def test_another_version_is_refused(arrays):
     content = bytearray(bytes_of(arrays))
     struct.pack_into('<I', content, 8, 999)

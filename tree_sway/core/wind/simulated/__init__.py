@@ -4,9 +4,9 @@
 Simulated winds: turbulence of a given spectrum, gusts about means, an anemometer.
 
 `simulate_turbulence` draws a record from Kaimal's spectra (IEC 61400-1:2005, annex B.2) by a
-seeded generator; `turbulence_about_means` and `GustsAboutMean` put such gusts between means of
-minutes or hours; `AnemometerModel` is an instrument that never ends, with the faults of
-`SensorFaults` where a test asks for them. The same seed gives the same wind on every machine.
+seeded generator; `turbulence_about_means` puts such gusts between means of minutes or hours;
+`AnemometerModel` is an instrument that never ends, with the faults of `SensorFaults` where a test
+asks for them. The same seed gives the same wind on every machine.
 """
 
 from typing import TYPE_CHECKING
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.simulated.about_means import (
         turbulence_about_means as turbulence_about_means,
     )
+    from tree_sway.core.wind.simulated.about_means import usual_deviation as usual_deviation
+    from tree_sway.core.wind.simulated.about_means import usual_gust as usual_gust
     from tree_sway.core.wind.simulated.anemometer import AnemometerModel as AnemometerModel
-    from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean as GustsAboutMean
-    from tree_sway.core.wind.simulated.gusts_about_mean import RATE as RATE
     from tree_sway.core.wind.simulated.sensor_faults import SensorFaults as SensorFaults
     from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS as SCALE_RATIOS
     from tree_sway.core.wind.simulated.turbulence import simulate_turbulence as simulate_turbulence

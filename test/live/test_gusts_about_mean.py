@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, PASSING, RATE
+from tree_sway.live.gusts_about_mean import GustsAboutMean, PASSING, RATE
 
 WESTERLY = np.array([8.0, 0.0, 0.0])
 LATE = 1000.0
