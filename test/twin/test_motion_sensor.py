@@ -90,7 +90,7 @@ def test_a_sample_of_the_past_is_refused_and_a_new_clock_accepted() -> None:
     for k in range(10):
         phone.offer(3.0 + 0.01 * k, acceleration=UP)
     assert phone.counts.restarted == 1
-    assert phone.newest == pytest.approx(3.09)
+    assert phone.ring.newest == pytest.approx(3.09)
 
 
 def test_orientations_are_rotations_in_the_frame_of_the_sensor() -> None:

@@ -158,16 +158,6 @@ class MotionSensor:
         """Whether its samples come so late that its clock may be behind."""
         return self.lateness > _BEHIND
 
-    @property
-    def newest(self) -> float:
-        """Time of the newest sample in [s]; minus infinity before any."""
-        return self.ring.newest
-
-    @property
-    def period(self) -> float:
-        """Time between samples in [s], a running median; not a number before two samples."""
-        return self.ring.period
-
     def offer(
         self,
         time: float,

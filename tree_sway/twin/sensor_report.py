@@ -80,7 +80,7 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 track.in_use,
                 track.problem,
                 math.sqrt(max(track.excess, 0.0)),
-                0.0 if math.isnan(sensor.period) else 1.0 / max(sensor.period, 1e-9),
+                0.0 if math.isnan(sensor.ring.period) else 1.0 / max(sensor.ring.period, 1e-9),
                 twin.observer.late * twin.period,
                 sensor.counts,
                 (*recognised, *odd, *lost),

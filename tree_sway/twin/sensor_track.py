@@ -31,6 +31,7 @@ from tree_sway.twin.late_wind import LONGEST_WAY
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
 from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.sway_lever import other_lever
 from tree_sway.twin.wind_lag import find_lag
 
 LEARNING = 20.0
@@ -199,7 +200,11 @@ def _mountings(
     bias = np.zeros(9)
     if not found.problem:
         model = upright if found.has_gravity else free
-        bias = (found.motion(sensed) - model).mean(axis=0)
+        moved = found.motion(sensed)
+        bias = (moved - model).mean(axis=0)
+        frequency, pull = 1.0 / (windows.period * windows.dt), GRAVITY * found.has_gravity
+        where = other_lever(moved, model, frequency, windows.dt, pull)
+        found = replace(found, notes=(*found.notes, *filter(None, [where])))
     left_for: float | None = None
     said = ''
     apart = None if found.problem else _apart(found.motion(whole), windows, lags, left.seconds)
@@ -372,7 +377,7 @@ class SensorTrack:
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf,
+            newest=sensor.ring.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf,
             is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
@@ -401,7 +406,7 @@ class SensorTrack:
         if self.alignment is not None:
             known = np.maximum(self.alignment.noise, LEAST_NOISE)
         known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
-        period = self.sensor.period
+        period = self.sensor.ring.period
         # Samples that are joined by lines have the same noise in several steps.
         held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
         return known * math.sqrt(held)

@@ -209,11 +209,6 @@ class SwayWatch:
         band = None if before is None else before.band
         self.change = SwayChange(math.exp(found - foretold), error, hours, band)
 
-    @property
-    def has_changed(self) -> bool:
-        """Whether the tree sways differently since some block."""
-        return self.change is not None and self.change.is_change
-
 
 def _foretold(past: Floats, wind: float) -> tuple[float, float]:
     """

@@ -1,0 +1,90 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How far below a sensor is the point about which its place turns, by its motion and by the model's.
+
+A place that sways by x and leans by s has the lever l = x / s, which the shape of the tree tells,
+whatever the gusts, the wood and the damping. At a circular frequency w a sensor with gravity g
+feels the acceleration ``a = -(w^2 l + g) s`` and turns at the rate ``r = i w s``, so that the
+imaginary part of their cross spectrum is ``(w l + g / w) |r|^2``. A sensor on another tree, or at
+another height, has another lever.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.signal import csd
+
+from tree_sway.core.arrays import Floats
+
+_BANDS = np.array([0.4, 0.6, 0.8, 1.0, 1.25, 1.55, 1.95, 2.5])
+"""Edges of bands over the first frequency, each of which has a lever of its own."""
+
+_PERIODS, _LEAST_LENGTH = 20.0, 3.0
+"""Length of a stretch in periods of the first frequency; least one of the motion in stretches."""
+
+_ALIKE, _LEAST, _MOST_OF = 0.8, 0.2, 0.4
+"""
+Coherence of acceleration and rate from which a band has a lever, the least one [m], and the share
+of the power of the sway in such bands from which they tell.
+"""
+
+_OTHER = 0.35
+"""
+Difference of the logarithms of two levers from which a sensor is not where it is said to be: those
+of eight right ones had up to 0.3, whose branches were softer or stiffer than the stem by 15 %.
+"""
+
+
+def other_lever(moved: Floats, model: Floats, frequency: float, dt: float, pull: float) -> str:
+    """
+    Say that a sensor turns about another point than its place on the model; else nothing.
+
+    Parameters
+    ----------
+    moved, model
+        Motion of the sensor and of the model there at equal steps of dt [s], (n, 9).
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+    pull
+        Gravity in their accelerations [m/s^2].
+
+    """
+    length = round(_PERIODS / (frequency * dt))
+    if len(moved) < _LEAST_LENGTH * length:
+        return ''
+    found = [_levers(each, frequency, dt, length, pull) for each in (moved, model)]
+    levers, (power, _), likeness = (np.array(each) for each in zip(*found, strict=True))
+    is_told = (likeness.min(axis=0) > _ALIKE) & (levers.min(axis=0) > _LEAST)
+    told = np.where(is_told, power, 0.0)
+    if not told.sum() > _MOST_OF * power.sum():  # nor where one is not measured
+        return ''
+    here, there = np.exp(np.log(np.maximum(levers, _LEAST)) @ told / told.sum()).tolist()
+    if abs(math.log(here / there)) < _OTHER:
+        return ''
+    return (
+        f'it turns about a point {here:.1f} m below it, and its place on the tree about one '
+        f'{there:.1f} m below: check that it is on this tree, at this place'
+    )
+
+
+def _levers(
+    motion: Floats, frequency: float, dt: float, length: int, pull: float
+) -> tuple[Floats, Floats, Floats]:
+    """Lever [m], power of the rate, and coherence with the acceleration in each band, (b,)."""
+    felt, turned = motion[:, :2].T, np.stack([motion[:, 4], -motion[:, 3]])
+    pairs = (felt, felt), (turned, turned), (turned, felt)
+    spectra = [csd(*each, 1.0 / dt, nperseg=length)[1].sum(axis=0) for each in pairs]
+    hertz = np.fft.rfftfreq(length, dt)
+    own, power, shared = spectra[0].real, spectra[1].real, spectra[2].imag
+    circular = 2.0 * math.pi * np.maximum(hertz, hertz[1])
+    moment = (shared - pull / circular * power) / circular
+    edges = np.minimum(np.searchsorted(hertz, _BANDS * frequency), len(hertz) - 1)
+    series = np.stack([own, power, shared, moment])
+    own, power, shared, moment = np.add.reduceat(series, edges, axis=1)[:, :-1]
+    power = np.maximum(power, 1e-300)
+    return moment / power, power, shared / np.sqrt(own * power)
