@@ -26,7 +26,7 @@ _EVERY_ROOM = ctypes.c_size_t(-1).value
 """``SWAY_EVERY_ROOM`` of the header."""
 
 _LARGE = 100_000
-"""Segments beyond which a stand has several threads, unless their number is given."""
+"""Trees times segments of the largest beyond which a stand has several threads."""
 
 _MOST_THREADS = 8
 """Threads beyond which the memory is the limit."""
@@ -75,7 +75,7 @@ class NativeStand:
     speeds
         Wind of each tree over that of its model, (t,).
     threads
-        Threads that share the trees, 1 or more; if None, a stand of more than 100,000 segments
+        Threads that share the trees, 1 or more; if None, a stand of some 100,000 segments or more
         has one for each processor that the process may use, up to eight. No bit of the result
         depends on it.
 
@@ -105,8 +105,8 @@ class NativeStand:
         handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
         if threads is None:
-            sizes = np.array([each.sizes.segments for each in models])
-            threads = _granted() if sizes[kinds].sum() > _LARGE else 1
+            largest = max((each.sizes.segments for each in models), default=0)
+            threads = _granted() if largest * len(trees) > _LARGE else 1
         handle = LIBRARY.sway_stand_open(
             handles, len(models), address(trees), len(trees), threads, error, _ROOM
         )
