@@ -146,6 +146,12 @@ function edges({ values, indices }, i) {
   return [Math.hypot(...b.map((x, k) => x - a[k])), Math.hypot(...c.map((x, k) => x - b[k]))];
 }
 
+test("leaves that reach beyond the wood are lighter than those within it", () => {
+  const places = Array.from({ length: 2000 }, (_, i) => [(i % 10) - 4.5, (Math.floor(i / 10) % 10) - 4.5, i / 200]);
+  const shade = crownShade(places, places.map(() => 1), [-5, -5, 0], [5, 5, 10]);
+  assert.ok(shade([0, 0, 10.5]).open > 1.2 * shade([0, 0, 9.9]).open);
+});
+
 test("stubs below the crown of a conifer bear no needles, short limbs at its top do", () => {
   // A stem of two parts, a stub with a twig on it, a long limb, and a short one above.
   const arrays = {

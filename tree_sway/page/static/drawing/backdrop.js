@@ -55,16 +55,9 @@ export class Backdrop {
   }
 
   /** @param {ReturnType<typeof canvasTexture>} picture @param {WebGLFramebuffer | null} to bound then */
-  _copy({ texture, target, width, height }, to) {
-    const { gl } = this;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, to);
-    if (this._isPlain) {
-      // Costs less than drawing, but not for a canvas with several samples per point.
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target);
-      gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-      return;
-    }
-    use(gl, this._copying, { picture: [2, texture] });
-    drawPart(gl, this._whole);
+  _copy({ texture }, to) {
+    this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, to);
+    use(this.gl, this._copying, { picture: [2, texture] });
+    drawPart(this.gl, this._whole);
   }
 }

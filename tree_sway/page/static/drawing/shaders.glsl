@@ -33,14 +33,14 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-// Share of sunlight that reaches a point, filtered over two places beside it, which are turned by an angle.
+vec3 inSunMap(vec3 p) { return 0.5 + 0.5 * fallen(p) - vec3(0.0, 0.0, 0.35 * sqrt(shadowTop)); }
+// Share of sunlight that reaches a point, and the same filtered over two places beside it, which are turned by an angle.
+float sunlight(vec3 p) { return texture(sunMap, inSunMap(p)); }
 float sunlight(vec3 p, float soft, float turn) {
-  vec3 at = 0.5 + 0.5 * fallen(p);
-  float low = at.z - 0.35 * shadowTop * sqrt(1.0 / shadowTop);
-  vec2 a = soft * vec2(cos(turn), sin(turn));
-  return 0.5 * (texture(sunMap, vec3(at.xy + a, low)) + texture(sunMap, vec3(at.xy - a, low)));
+  vec3 at = inSunMap(p);
+  vec3 a = soft * vec3(cos(turn), sin(turn), 0.0);
+  return 0.5 * (texture(sunMap, at + a) + texture(sunMap, at - a));
 }
-float sunlight(vec3 p) { return sunlight(p, 0.0038, 0.38); }
 
 #part hung sunlit
 // Vertices that belong to a segment: its pose, and the scale of its tree.
@@ -113,7 +113,7 @@ void main() {
   tone = vec3(thickness, skin.z, clearness(p));
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
-  sunny = sunlight(p);
+  sunny = shadowArea.w < 0.5 ? sunlight(p) : 1.0;
   high = (p.z - ground) * shadowTop;
   gl_Position = seen(p);
 }
