@@ -24,8 +24,11 @@ _TURN = np.deg2rad(15.0)
 _BOW = np.deg2rad(15.0)
 """Largest angle between the ends of one key segment at rest in [rad]."""
 
-_MOST_PIECES = 3
-"""Largest number of pieces of a branch that rotates far; more add little."""
+_MOST_PIECES, _MOST_LIMP_PIECES = 3, 6
+"""
+Largest number of pieces of a branch that rotates far; more add little. That of a limp tree: in storms
+its twigs move in short waves.
+"""
 
 CARRIED, _MOST_CARRYING = 6, 6
 """
@@ -65,22 +68,22 @@ def whole_tree(tree: Tree) -> CutTree:
     return CutTree(tree, np.arange(b), np.arange(tree.n_segments), np.ones(b))
 
 
-def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
+def pieces_by_turn(tree: Tree, turn: Floats, *, is_limp: bool = False) -> Ints:
     """
     Count key segments of branches, (b,), by rotation [rad], (b,), curvature and children.
 
-    A piece has two segments or more.
+    A piece has two segments or more, one or more in a limp tree.
     """
     base = tree.direction[tree.branch_first[:-1]]
     tip = tree.direction[tree.branch_first[1:] - 1]
     cosine = np.einsum('bk,bk->b', base, tip)
     bow = np.arccos(np.clip(cosine, -1.0, 1.0))
     for_turn = np.nan_to_num(np.maximum(turn / _TURN, bow / _BOW), nan=1.0)
-    for_turn = np.minimum(for_turn, _MOST_PIECES)
+    for_turn = np.minimum(for_turn, _MOST_LIMP_PIECES if is_limp else _MOST_PIECES)
     n_children = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches)
     for_children = np.minimum(n_children / CARRIED, _MOST_CARRYING)
     wanted = np.ceil(np.maximum(for_turn, for_children)).astype(np.int64)
-    most = np.maximum(np.diff(tree.branch_first) // 2, 1)
+    most = np.maximum(np.diff(tree.branch_first) // (1 if is_limp else 2), 1)
     return np.asarray(np.clip(wanted, 1, most))
 
 
