@@ -46,8 +46,8 @@ _GALE = 20.0
 
 _CANDIDATES, _LIMP_CANDIDATES = 120, 300
 """
-Number of natural modes by which responses to gusts are computed; of a limp tree, whose many twigs
-wave each in its own short waves.
+Number of natural modes by which responses to gusts are computed; that of a limp tree, each of
+whose twigs moves in short waves of its own.
 """
 
 

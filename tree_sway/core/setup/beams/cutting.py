@@ -24,10 +24,10 @@ _TURN = np.deg2rad(15.0)
 _BOW = np.deg2rad(15.0)
 """Largest angle between the ends of one key segment at rest in [rad]."""
 
-_MOST_PIECES, _MOST_LIMP_PIECES = 3, 6
+_MOST_PIECES, _MOST_LIMP_PIECES = 3, 4
 """
-Largest number of pieces of a branch that rotates far; more add little. That of a limp tree: in storms
-its twigs move in short waves.
+Largest number of pieces of a branch that rotates far; more add little. That of a limp tree, whose
+twigs move in short waves in storms: with 6, its energy grows without damping.
 """
 
 CARRIED, _MOST_CARRYING = 6, 6
@@ -72,7 +72,7 @@ def pieces_by_turn(tree: Tree, turn: Floats, *, is_limp: bool = False) -> Ints:
     """
     Count key segments of branches, (b,), by rotation [rad], (b,), curvature and children.
 
-    A piece has two segments or more, one or more in a limp tree.
+    A piece has two segments or more.
     """
     base = tree.direction[tree.branch_first[:-1]]
     tip = tree.direction[tree.branch_first[1:] - 1]
@@ -83,7 +83,7 @@ def pieces_by_turn(tree: Tree, turn: Floats, *, is_limp: bool = False) -> Ints:
     n_children = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches)
     for_children = np.minimum(n_children / CARRIED, _MOST_CARRYING)
     wanted = np.ceil(np.maximum(for_turn, for_children)).astype(np.int64)
-    most = np.maximum(np.diff(tree.branch_first) // (1 if is_limp else 2), 1)
+    most = np.maximum(np.diff(tree.branch_first) // 2, 1)
     return np.asarray(np.clip(wanted, 1, most))
 
 
