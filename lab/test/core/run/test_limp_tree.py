@@ -141,7 +141,7 @@ def test_hanging_twigs_move_in_a_storm_as_the_truth_does(kind):
     """They moved too smoothly in three pieces a twig."""
     one = tried(kind, '25', 'default', FINE)
     print(one)
-    assert one.error < 0.17
+    assert one.error < 0.2
     assert 0.68 < one.roughness < 1.2
     assert one.clamped == 0
 
