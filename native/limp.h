@@ -71,7 +71,7 @@ static void find_gusts(const sway_model &model, const State &state, const Step &
   Crown &crown = crown_of(state.crown);
   push_crown(crown, *model.table.limb_spread, *model.table.crown_coherence, wind, step.dt);
   for (int axis = 0; axis < 3; axis++)
-    for (int64_t i = 0; i < model.sizes.segments; i++)
+    for (int64_t i = 0; i < POINTS * model.sizes.segments; i++)
       gust[axis * limp.each + i] = crown.apart[3 * limp.delay[i] + axis];
 }
 

@@ -11,6 +11,9 @@ using namespace sway;
 // Largest number of coordinates whose inertia is that of the pose, of models with a table.
 constexpr int64_t LEADING = 120;
 
+// Distance of a segment's points from its middle, over its length: half of 1 / sqrt(3).
+constexpr double GAUSS = 0.28867513459481287;
+
 // Largest key rotation [rad] of the differences for a column.
 constexpr double COLUMN_TURN = 1e-5;
 
@@ -32,16 +35,17 @@ double amount_of(const double *direction, int64_t count) {
   return COLUMN_TURN / steepest;
 }
 
-// Segments: roots of their masses, half lengths, and drag areas. The area of a branch beyond that of
-// its wood is leaves, spread evenly along it.
+// Points of segments: roots of their masses, distances from the start, and drag areas. The area of a
+// branch beyond that of its wood is leaves, spread evenly along it.
 void lay_out_segments(Memory &memory, const Arrays &a, Limp &limp) {
   double *root_mass = memory.take<double>(limp.each);
-  double *half_length = memory.take<double>(limp.each);
+  double *from_start = memory.take<double>(limp.each);
   double *area = memory.take<double>(limp.each);
   double *speed = memory.take<double>(limp.each);
   double *gravity = memory.take<double>(limp.each);
   int64_t *delay = a.limb_delay ? memory.take<int64_t>(limp.each) : nullptr;
   if (memory.is_short) return;
+  const int64_t n = a.size[-SIZE_n];
   for (int64_t i = 0; i < limp.each; i++) root_mass[i] = 1.0;
   for (int64_t branch = 0; branch < a.size[-SIZE_b]; branch++) {
     const int64_t first = a.branch_first[branch], end = a.branch_first[branch + 1];
@@ -52,21 +56,30 @@ void lay_out_segments(Memory &memory, const Arrays &a, Limp &limp) {
         const double apart = a.tree_end[axis] - a.tree_start[axis];
         square += apart * apart;
       }
-      half_length[i] = 0.5 * sqrt(square);
-      root_mass[i] = sqrt(a.segment_mass[i]);
-      gravity[i] = -*a.gravity * root_mass[i];
-      speed[i] = a.branch_speed[branch];
-      if (delay) delay[i] = a.limb_delay[branch];
-      area[i] = half_length[i] * (a.tree_base_diameter[i] + a.tree_tip_diameter[i]);
-      of_wood += area[i];
-      along += 2.0 * half_length[i];
+      const double length = sqrt(square);
+      const double of_segment = 0.5 * length * (a.tree_base_diameter[i] + a.tree_tip_diameter[i]);
+      of_wood += of_segment;
+      along += length;
+      for (int64_t k = 0; k < POINTS; k++) {
+        const int64_t point = k * n + i;
+        from_start[point] = length * (0.5 + (k ? GAUSS : -GAUSS));
+        root_mass[point] = sqrt(a.segment_mass[i] / POINTS);
+        gravity[point] = -*a.gravity * root_mass[point];
+        speed[point] = a.branch_speed[branch];
+        if (delay) delay[point] = a.limb_delay[branch];
+        area[point] = of_segment / POINTS;
+      }
     }
     const double clad = of_wood > 0.0 ? fmin(a.branch_area[branch] / of_wood, 1.0) : 0.0;
     const double leaves = along > 0.0 ? fmax(a.branch_area[branch] - of_wood, 0.0) / along : 0.0;
-    for (int64_t i = first; i < end; i++) area[i] = area[i] * clad + 2.0 * half_length[i] * leaves;
+    for (int64_t i = first; i < end; i++) {
+      const double length = from_start[i] + from_start[n + i];
+      for (int64_t point = i; point < POINTS * n; point += n)
+        area[point] = area[point] * clad + length / POINTS * leaves;
+    }
   }
   limp.root_mass = root_mass;
-  limp.half_length = half_length;
+  limp.from_start = from_start;
   limp.area = area;
   limp.speed = speed;
   limp.gravity = gravity;
@@ -145,7 +158,7 @@ bool lay_out_limp(sway_model &model, const Arrays &a) {
   const int64_t q = model.table.levels && m > LEADING ? LEADING : m;
   limp.leading = q;
   limp.row = whole(q + 3, 16);
-  limp.each = whole(n, 16);
+  limp.each = whole(POINTS * n, 16);
   limp.places = 3 * limp.each;
   limp.keys = whole(N, 32);
   double *shapes = memory.take<double>(m * limp.keys);

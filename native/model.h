@@ -90,8 +90,12 @@ struct Block {
   double *base_rotation;       // per unit of each key rotation of the parent (rows, 3, WIDTH)
 };
 
+// Points of a segment at which mass and drag are: Gauss's, so that a segment that turns about its
+// middle has its inertia, and is damped.
+constexpr int64_t POINTS = 2;
+
 // A limp tree at rest, one that is solved at its pose ("A limp tree" of doc/sway_model.md). A place
-// is the middles of the segments, each times the root of its mass: `places` numbers, x of all
+// is the points of the segments, each times the root of its mass: `places` numbers, x of all
 // segments, then y and z, `each` of them.
 struct Limp {
   int64_t leading;  // q: coordinates whose inertia is that of the pose
@@ -108,7 +112,7 @@ struct Limp {
   const double *all_slopes;    // its derivative by each coordinate (m, padded)
   const double *gravity;       // along z, over the factor of each place (each)
   double potential;            // of this at rest
-  const double *root_mass, *half_length;  // (each)
+  const double *root_mass, *from_start;  // (each)
   const double *area, *speed;             // drag area [m^2], wind over that of the tree (each)
   const int64_t *delay;                   // of the gusts at each segment (n); null without
   const double *damping;                  // by still air, per drag and speed (padded)

@@ -3,7 +3,7 @@
 //
 // Inertia, centrifugal force and weight of a limp tree at the pose it has, in its own coordinates.
 //
-// With p the middles of the segments, m their masses and J = dp/dq, Lagrange's equations of the tree
+// With p the points of the segments, m their masses and J = dp/dq, Lagrange's equations of the tree
 // are (Shabana 2020, Dynamics of Multibody Systems, chapter 3)
 //
 //     M q'' + J' m (dJ/dt) q' = forces + J' m g,   M = J' m J.
@@ -32,7 +32,7 @@ constexpr double OLDEST = 0.27, OLDEST_IN_STORM = 0.1, STORM = 15.0, MOST_STEPS 
 // Largest key rotation [rad] of the differences along the motion.
 constexpr double MOTION_TURN = 1e-2;
 
-// Write where the segments are at key rotations; directions of the segments unless null.
+// Write where the points of the segments are at key rotations; directions of the segments unless null.
 static void find_place(const sway_model &model, Room &room, const double *keys, double *out,
                        double *tangent) {
   const Limp &limp = model.limp;
@@ -44,17 +44,17 @@ static void find_place(const sway_model &model, Room &room, const double *keys, 
     const double *pose = room.poses + 7 * i;
     const Quaternion<double> q = {pose[6], pose[3], pose[4], pose[5]};
     const Vector<double> along = axis(q);
-    const double factor = limp.root_mass[i], half = limp.half_length[i];
-    out[i] = factor * (pose[0] + half * along.x);
-    out[each + i] = factor * (pose[1] + half * along.y);
-    out[2 * each + i] = factor * (pose[2] + half * along.z);
-    if (!tangent) continue;
-    tangent[i] = along.x;
-    tangent[each + i] = along.y;
-    tangent[2 * each + i] = along.z;
+    const double directions[] = {along.x, along.y, along.z};
+    for (int64_t point = i; point < POINTS * n; point += n) {
+      const double factor = limp.root_mass[point], from_start = limp.from_start[point];
+      for (int axis = 0; axis < 3; axis++) {
+        out[axis * each + point] = factor * (pose[axis] + from_start * directions[axis]);
+        if (tangent) tangent[axis * each + point] = directions[axis];
+      }
+    }
   }
   for (int axis = 0; axis < 3; axis++)
-    for (int64_t i = axis * each + n; i < (axis + 1) * each; i++) {
+    for (int64_t i = axis * each + POINTS * n; i < (axis + 1) * each; i++) {
       out[i] = 0.0;
       if (tangent) tangent[i] = 0.0;
     }

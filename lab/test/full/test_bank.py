@@ -68,6 +68,13 @@ def test_moments_beyond_the_limit_are_held_and_counted(fork):
     assert np.isfinite(bank.rotations()).all()
 
 
+def test_a_step_whose_load_is_not_found_is_counted(fork):
+    bank = modal(fork())
+    assert bank.advance_in(Air(8.0, 0.0, 0.0, DRAG)) == 0
+    bank._enough[0] = 0.0  # no change of the load is small enough
+    assert bank.advance_in(Air(8.0, 0.0, 0.0, DRAG)) == 1
+
+
 def test_compliance_is_the_answer_to_a_unit_of_force(fork):
     """What the bank says a force on a load centre does half a step on, tried on its modes."""
     tree = fork()

@@ -10,9 +10,10 @@ motion of each, at the state in the middle of the step, and is constant over the
 wind within a fraction of a step. The drag of a bent tree may stop a coordinate within a hundredth
 of a step: its inertia is that at rest, where a stem that twists moves no crown. So the load is
 iterated until it is that of the resulting state; in light wind, where the last step's load is
-close enough, once. The best of `MOST_TRIALS` is taken where none is close. Moments and drag
-impulses of the branches, by which the load of each is implicit in its own motion, are mixed alike,
-for the load depends on both. Rotations beyond the limit of a step are clamped and counted.
+close enough, once. The best of `MOST_TRIALS` is taken where none is close, and the step is counted
+as clamped. Moments and drag impulses of the branches, by which the load of each is implicit in its
+own motion, are mixed alike, for the load depends on both. Rotations beyond the limit of a step are
+clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -160,8 +161,8 @@ class FullBank(ModalCoordinates):
         """
         Advance one step under a mean wind [m/s].
 
-        Returns how many loads were clamped to their limit, `NOT_FINITE` if the motion is not
-        finite.
+        Returns how many loads were clamped to their limit, one more if no trial of the load was
+        close enough; `NOT_FINITE` if the motion is not finite.
         """
         return self.advance_in(Air(wx, wy, wz, self.density(wx, wy, wz)))
 
@@ -263,7 +264,7 @@ def _advance(
     air: Air,
 ) -> int:
     """
-    Advance one step; returns how many loads were clamped, or `NOT_FINITE`.
+    Advance one step; returns how many loads were clamped, or were not found, or `NOT_FINITE`.
 
     The load is iterated until it is that of the motion which it makes: rows of ``trials`` are
     those of `_try_next`, and the one that is left has moments and drag impulses of a trial.
@@ -300,7 +301,7 @@ def _advance(
                 impulse[i] += change[n + i]
         _write_impulses(impulse, loads)
         _project_load(motion, keys, law)
-    n_clamped = 0
+    n_clamped = 1 if most > enough else 0
     for i in range(n):
         if most <= enough:
             moment[i] = found[i]

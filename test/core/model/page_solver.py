@@ -187,7 +187,7 @@ class LimpPageSolver(PageSolver):
     def __init__(self, path, dt):
         super().__init__(path, dt)
         a, self.m = self.a, len(self.q)
-        self.root = np.sqrt(a['segment_mass'])[:, None]
+        self.root = np.tile(np.sqrt(a['segment_mass'] / 2)[:, None], (2, 1))
         self.down = np.array([0.0, 0.0, -self.about['settings']['gravity']])
         lengths = np.linalg.norm(a['tree_end'] - a['tree_start'], axis=1)
         first = a['branch_first'][:-1]
@@ -196,10 +196,11 @@ class LimpPageSolver(PageSolver):
         of_wood = np.add.reduceat(wood, first)
         leaves = np.maximum(a['branch_area'] - of_wood, 0) / np.add.reduceat(lengths, first)
         clad = np.minimum(a['branch_area'] / of_wood, 1)
-        self.area = wood * clad[branch] + lengths * leaves[branch]
-        self.air = a['branch_speed'][branch][:, None]
-        self.half_length = lengths[:, None] / 2
-        # Coordinates in which the inertia of the middles at rest is 1, by turns of their keys.
+        self.area = np.tile((wood * clad[branch] + lengths * leaves[branch]) / 2, 2)
+        self.air = np.tile(a['branch_speed'][branch][:, None], (2, 1))
+        apart = sqrt(1 / 3) / 2
+        self.from_start = np.concatenate([(0.5 + by) * lengths for by in (-apart, apart)])[:, None]
+        # Coordinates in which the inertia of the points at rest is 1, by turns of their keys.
         turns = a['shapes'].T
         at_rest = np.array([self.column(x, np.zeros(len(x)), both=True) for x in turns])
         self.factor = np.linalg.cholesky(at_rest @ at_rest.T)
@@ -209,16 +210,17 @@ class LimpPageSolver(PageSolver):
         self.weight_at_rest, self.slopes = self.columns @ gravity, unit @ a['weight_slopes']
         self.linear, self.gravity = at_rest @ gravity, gravity
         self.height = gravity @ self.places(np.zeros(len(a['shapes'])))[0]
-        per_mass = np.repeat(2 * self.area * self.air[:, 0] / a['segment_mass'], 3)
+        per_mass = np.repeat(2 * self.area * self.air[:, 0] / self.root[:, 0] ** 2, 3)
         self.damping = self.columns**2 @ per_mass
         self.change, self.weight = np.zeros((self.m, self.m)), np.zeros(self.m)
         self.next, self.allowed, self.n_bounded = 0, np.inf, 0
 
     def places(self, x):
-        """Middles times the roots of the masses, (3 n,), and directions, (n, 3)."""
+        """Points times the roots of their masses, (6 n,), and directions, (2 n, 3)."""
         starts, orientations = self.placed(x)
-        along = np.array([rotated(q, np.array([1.0, 0, 0])) for q in orientations])
-        return (self.root * (starts + self.half_length * along)).ravel(), along
+        along = np.tile([rotated(q, np.array([1.0, 0, 0])) for q in orientations], (2, 1))
+        points = np.tile(starts, (2, 1)) + self.from_start * along
+        return (self.root * points).ravel(), along
 
     def column(self, direction, x, *, both=False):
         amount = 1e-5 / np.abs(direction).max()

@@ -96,18 +96,23 @@ def test_none_of_its_coordinates_is_lost_to_a_fast_one(tree):
     assert len(reductions.modes(slow + 10).circular) == slow
 
 
+def ends(sim, eta):
+    """Find the ends of the segments at coordinates, (2, n, 3)."""
+    model = sim.models[0]
+    return np.array(ends_of_poses(sim.place_rotations(model.shapes @ eta), model.tree.length))
+
+
 def middles(sim, eta):
     """Middles of the segments at coordinates, (n, 3)."""
-    model = sim.models[0]
-    ends = ends_of_poses(sim.place_rotations(model.shapes @ eta), model.tree.length)
-    return 0.5 * (ends[0] + ends[1])
+    return ends(sim, eta).mean(axis=0)
 
 
 def energy(sim):
     """Energy of motion, strain and weight [J], by the places of the segments."""
     model, (eta, rate, _) = sim.models[0], sim.banks[0].oscillators.swing
     mass, h = model.segment_mass[:, None], 1e-4
-    velocity = (middles(sim, eta + h * rate) - middles(sim, eta - h * rate)) / (2.0 * h)
+    base, tip = (ends(sim, eta + h * rate) - ends(sim, eta - h * rate)) / (2.0 * h)
+    of_rods = np.sum(mass * (base**2 + base * tip + tip**2)) / 3.0
     weight = -mass * [0.0, 0.0, -model.settings.gravity]
     at_rest, gradient = middles(sim, 0.0 * eta), []
     for k, unit in enumerate(np.eye(len(eta))):
@@ -117,7 +122,7 @@ def energy(sim):
     # The stiffness has the second derivative of the weight's potential at rest.
     linear = np.array(gradient) @ eta - 0.5 * eta @ model.weight_slopes @ eta
     beyond = np.sum(weight * (middles(sim, eta) - at_rest)) - linear
-    return 0.5 * np.sum(mass * velocity**2) + 0.5 * model.stiffness @ eta**2 + beyond
+    return 0.5 * of_rods + 0.5 * model.stiffness @ eta**2 + beyond
 
 
 def test_without_wind_and_damping_the_energy_never_grows():

@@ -126,7 +126,8 @@ class TreeReducer:
 
         Branches that rotate far are cut into key segments.
         """
-        cut = cut_tree(self._tree, pieces_by_turn(self._tree, self.turns))
+        pieces = pieces_by_turn(self._tree, self.turns, is_limp=self.is_limp)
+        cut = cut_tree(self._tree, pieces)
         is_cut = cut.tree.n_branches > self._tree.n_branches
         beams = self._beams_of(cut) if is_cut else self._beams
         enriched = beams.enriched(self._settings.enrich)

@@ -44,8 +44,11 @@ some 0.25.
 _GALE = 20.0
 """Wind of `Responses.in_gale` [m/s]."""
 
-_CANDIDATES = 120
-"""Number of natural modes by which responses to gusts are computed."""
+_CANDIDATES, _LIMP_CANDIDATES = 120, 300
+"""
+Number of natural modes by which responses to gusts are computed; that of a limp tree, each of
+whose twigs moves in short waves of its own.
+"""
 
 
 class Responses(NamedTuple):
@@ -134,7 +137,8 @@ class TreeReductions:
     def _candidates(self) -> Modes:
         """Return the natural modes by which responses to gusts are computed."""
         n = self.with_subtrees.reduction.n_coordinates
-        return self.natural_modes(None if n <= _CANDIDATES else _CANDIDATES)
+        most = _LIMP_CANDIDATES if self.is_limp else _CANDIDATES
+        return self.natural_modes(None if n <= most else most)
 
     def _tips_moved(self, rotations: Floats) -> Floats:
         """Find the motion of the tips by key rotations, (any, c)."""

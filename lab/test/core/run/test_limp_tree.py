@@ -135,6 +135,17 @@ def test_it_moves_in_storms_as_the_truth_does(kind, speed):
     assert one.clamped < 5
 
 
+@pytest.mark.long
+@pytest.mark.parametrize('kind', ['willow 301', 'birch 301'])
+def test_hanging_twigs_move_in_a_storm_as_the_truth_does(kind):
+    """They moved too smoothly in three pieces a twig."""
+    one = tried(kind, '25', 'default', FINE)
+    print(one)
+    assert one.error < 0.2
+    assert 0.68 < one.roughness < 1.2
+    assert one.clamped == 0
+
+
 @pytest.mark.parametrize('kind', ['birch', 'whips'])
 def test_no_twig_outruns_a_storm_that_comes_at_once(kind):
     tree, wind = kind_called(kind), wind_called('80', 0.5)

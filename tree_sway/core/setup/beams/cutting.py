@@ -24,8 +24,11 @@ _TURN = np.deg2rad(15.0)
 _BOW = np.deg2rad(15.0)
 """Largest angle between the ends of one key segment at rest in [rad]."""
 
-_MOST_PIECES = 3
-"""Largest number of pieces of a branch that rotates far; more add little."""
+_MOST_PIECES, _MOST_LIMP_PIECES = 3, 4
+"""
+Largest number of pieces of a branch that rotates far; more add little. That of a limp tree, whose
+twigs move in short waves in storms: with 6, its energy grows without damping.
+"""
 
 CARRIED, _MOST_CARRYING = 6, 6
 """
@@ -65,7 +68,7 @@ def whole_tree(tree: Tree) -> CutTree:
     return CutTree(tree, np.arange(b), np.arange(tree.n_segments), np.ones(b))
 
 
-def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
+def pieces_by_turn(tree: Tree, turn: Floats, *, is_limp: bool = False) -> Ints:
     """
     Count key segments of branches, (b,), by rotation [rad], (b,), curvature and children.
 
@@ -76,7 +79,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     cosine = np.einsum('bk,bk->b', base, tip)
     bow = np.arccos(np.clip(cosine, -1.0, 1.0))
     for_turn = np.nan_to_num(np.maximum(turn / _TURN, bow / _BOW), nan=1.0)
-    for_turn = np.minimum(for_turn, _MOST_PIECES)
+    for_turn = np.minimum(for_turn, _MOST_LIMP_PIECES if is_limp else _MOST_PIECES)
     n_children = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches)
     for_children = np.minimum(n_children / CARRIED, _MOST_CARRYING)
     wanted = np.ceil(np.maximum(for_turn, for_children)).astype(np.int64)
