@@ -68,7 +68,8 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         table = table_of_cells([*table.columns, 'id'], rows, str(path), table.numbers)
     number = names.get('id', names.get('cylid', 'id'))
     roots = [0, -1] if table.strict([number]).min(initial=1.0) else [-1, 0]
-    above = names.get('parent', names.get('parentid', 'parent'))
+    missing = 'parent_ID' if 'cylid' in names else 'parentID'
+    above = names.get('parent', names.get('parentid', missing))
     labels, parent = table.family(number, above, roots, 'cylinder')
     continues = None
     if 'branch' in names:
