@@ -170,7 +170,7 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
 def _is_fixed(known: NDArray[np.bool_], x: Floats, y: Floats, far: float) -> NDArray[np.bool_]:
     """Whether each place is not 0, 0, as phones write it without a fix, where most are far."""
     away = np.abs(x) + np.abs(y)
-    are_far = known.any() and float(np.median(away[known])) > far
+    are_far = 2 * np.count_nonzero(away[known] > far) > np.count_nonzero(known)
     return (away != 0.0) | (not are_far)
 
 
