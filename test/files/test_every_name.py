@@ -206,8 +206,8 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'yyyymmdd': '20260301', 'hh': '{k}', 'minute': '0', 'hr': '{k}', 'hour': '{k}',
         'horamin': '{k}00', 'yy': '2026', 'yyyy': '2026', 'year': '2026', 'vuosi': '2026',
         'mm': '3', 'month': '3', 'mo': '3', 'kuukausi': '3', 'kk': '3', 'dd': '1', 'day': '1',
-        'dy': '1', 'paeivae': '1', 'pv': '1', 'date': '2026-03-01', 'datum': '2026-03-01', 'fecha': '2026-03-01',
-        'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
+        'dy': '1', 'paeivae': '1', 'pv': '1', 'date': '2026-03-01', 'datum': '2026-03-01',
+        'fecha': '2026-03-01', 'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
         'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]

@@ -305,3 +305,25 @@ def test_what_the_user_can_mend(
     source.write_text(INVENTORY)
     assert cli.main(['risk', str(source), *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_the_picture_names_its_colours_and_winds_that_were_not_computed() -> None:
+    pytest.importorskip('matplotlib')
+    rows: list[Row] = [
+        {
+            'name': f'tree{number}', 'species': 'oak', 'class': number, 'assumed': assumed,
+            'critical_wind_10m [m/s]': wind, 'low_80 [m/s]': 0.7 * wind, 'high_80 [m/s]': 2 * wind,
+        }
+        for number, wind, assumed in (
+            (1, 20.0, 'grown crown'), (3, 40.0, 'height by stem'),
+            (5, 60.0, 'carried on from slower winds; grown crown'),
+        )
+    ]  # fmt: skip
+    axes = risk_command.risk_figure(rows, Climate(22.5)).axes[0]
+    said = [each.get_text() for each in axes.get_legend().get_texts()]
+    assert said[:3] == ['class 1 falls first', 'class 3', 'class 5 falls last']
+    assert said[3:] == ['beyond the winds that were computed']
+    circles = axes.collections[1].get_facecolors()
+    assert [bool((each[:3] == 1.0).all()) for each in circles] == [False, False, True]
+    near = risk_command.risk_figure(rows[:2], Climate(22.5)).axes[0]
+    assert len(near.get_legend().get_texts()) == 2

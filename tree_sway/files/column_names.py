@@ -71,7 +71,8 @@ def folded(text: str) -> str:
 
 def folded_unit(text: str) -> str:
     """Return a unit in lower case without spaces, with one sign for each of its parts."""
-    unit = unicodedata.normalize('NFKC', text.strip().lower().replace('º', '°').replace('ø', '°'))
+    unit = text.strip().lower().replace('º', '°').replace('ø', '°')
+    unit = '°' if unit == '*' else unicodedata.normalize('NFKC', unit)  # HOBOlink has a star
     return re.sub(r'[\s._·*^]|wmounit:', '', unit).replace('μ', 'u').replace('−', '-')
 
 

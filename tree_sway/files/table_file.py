@@ -180,9 +180,11 @@ class TextTable:
 
     def refuse_several(self) -> None:
         """Refuse rows of several instruments, told by a column that names them."""
+        size = len(self.columns)
         for index, name in enumerate(self.columns):
             if folded(name_and_unit(name, '')[0]) in SENDERS[:-1]:
-                found = sorted({*self.cells(index, range(len(self.texts)))} - {'', name})
+                rows = [row for row in map(self.split, self.texts) if len(row) == size]
+                found = sorted({row[index] for row in rows} - {'', name})
                 if len(found) > 1:
                     what = f'rows of {len(found)} instruments: {", ".join(found[:4])}'
                     raise self.error(what, cure='write a table for each')

@@ -37,6 +37,7 @@ Row = dict[str, Any]
 
 CRITICAL = 'critical_wind_10m [m/s]'
 
+_CARRIED_ON = 'carried on from slower winds'
 _FASTEST = 80.0
 """Critical wind above which trees are not told apart [m/s]; no storm has such a mean wind."""
 _MOST_KINDS = 64
@@ -192,6 +193,11 @@ def _row(work: RiskWork, row: int, result: KindResult) -> Row:
     return found | {'assumed': '; '.join(_assumed(inventory, row, result, critical))}
 
 
+def is_beyond(row: Row) -> bool:
+    """Whether the wind of a row is above those that were computed, and only estimated."""
+    return any(each in row['assumed'] for each in (_CARRIED_ON, 'above '))
+
+
 def _calm(curves: SeasonCurves, result: KindResult) -> float:
     """Wind of the season over that of the year [-]: leaves that fall meet the summer's."""
     return SUMMER if curves.in_leaf and len(result.seasons) > 1 else 1.0
@@ -252,7 +258,7 @@ def _assumed(
     elif critical is not None:
         fastest = max(float(each.stem.speed[-1]) for each in result.seasons)
         if critical > fastest * result.exposure.at_ten_metres:
-            said.append('carried on from slower winds')
+            said.append(_CARRIED_ON)
     if not result.exposure.is_alone and not result.error:
         said.append(f'trees {result.exposure.scaled(inventory.height[row]).spacing:.2g} m apart')
     shelter = 'no shelter' if result.exposure.is_alone else 'as high as its neighbours'

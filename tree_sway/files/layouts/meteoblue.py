@@ -10,16 +10,13 @@ Above the row ``timestamp,...`` stand rows of which one, ``unit``, has the unit 
 from __future__ import annotations
 
 from collections.abc import Sequence
+import re
 
-from tree_sway.files.cell_table import cell_at, numbered, table_of_lines
 from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import TextTable
 
-_QUANTITIES = {
-    'wind speed': ' Wind Speed [10 m]',
-    'wind direction': ' Wind Direction [10 m]',
-    'gust': ' Wind Gust',
-}
+_PLACE = re.compile(r'(?<=,)[^,]* (Wind Speed|Wind Direction|Wind Gust)(?: \[10 m\])?(?=,|$)')
 _HEAD = 20
 
 
@@ -37,24 +34,9 @@ def _is_meteoblue(lines: Sequence[str]) -> bool:
 
 def _read(lines: list[str], source: str) -> TextTable:
     header = _header(lines) or 0
-    names = lines[header].split(',')
-    above = [line.split(',') for line in lines[:header] if line.startswith('unit,')]
-    units = above[0] if above else []
-    places = [0]
-    columns = ['time']
-    for quantity, ending in _QUANTITIES.items():
-        found = [place for place, name in enumerate(names) if name.endswith(ending)]
-        places += found[:1]
-        columns += [quantity] * len(found[:1])
-    rows = []
-    for number, line in numbered(lines, header + 1):
-        cells = line.split(',')
-        if len(cells) == len(names):
-            row = [cell_at(cells, place) for place in places]
-            rows.append((number, row))
-    found_units = [cell_at(units, place) for place in places]
-    found_units[0] = ''  # of the time, which has the word itself
-    return table_of_lines(columns, rows, source, found_units)
+    above = [line if line.startswith('unit,') else '' for line in lines[:header]]
+    names = _PLACE.sub(r'\1', lines[header])
+    return PLAIN.read([*above, names, *lines[header + 1 :]], source)
 
 
 METEOBLUE = Layout('meteoblue', _is_meteoblue, _read)

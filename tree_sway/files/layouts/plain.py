@@ -116,10 +116,9 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
         if any(map(_DIGIT.match, cells)):
             break
         words.append([_unit_below(cell) for cell in cells])
-    above = [
-        cells for line in table.above if len(cells := table.split(line)) == len(table.columns)
-    ]
-    rows = [cells for cells in (*words, *above) if _are_units(table, cells)]
+    split = map(table.split, table.above)
+    above = [[*row] for row in split if len(row) == len(table.columns)]
+    rows = [row for row in (*words, *above) if _are_units(table, row)]
     if not rows:
         return table
     below = len(words) if rows[0] in words else 0

@@ -12,6 +12,7 @@ import math
 from pathlib import Path
 import sys
 import time
+from typing import TYPE_CHECKING
 
 from tree_sway.commands import bar, refuse_overwriting, RowFile
 from tree_sway.core.checks import within
@@ -20,11 +21,14 @@ from tree_sway.files import path_of, read_head, refuse_unwritable
 from tree_sway.files.scenes import inventory_of, inventory_table
 from tree_sway.forest.climate import Climate, climate_of
 from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
-from tree_sway.forest.risk import add_classes, CRITICAL, risk_rows, risk_work, Row
+from tree_sway.forest.risk import add_classes, CRITICAL, is_beyond, risk_rows, risk_work, Row
 from tree_sway.forest.runner import cores
 from tree_sway.forest.table import write_table
 from tree_sway.pictures import new_figure, save_figure
 from tree_sway.simulation.commands import add_exposure_arguments, refuse_spacing_in_the_open
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _LEFT_OUT = (
     'rot, wounds and forks, wet or shallow soil and pruning are not included; '
@@ -106,6 +110,9 @@ def run(arguments: argparse.Namespace) -> int:
     picture = _drawn(rows, climate, output)
     n_failed = sum(row[CRITICAL] is None for row in rows)
     failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
+    n_beyond = sum(row[CRITICAL] is not None and is_beyond(row) for row in rows)
+    if n_beyond:
+        failed += f', {n_beyond} beyond the winds that were computed (column assumed)'
     took = time.monotonic() - began
     print(f'{output}{picture}: {len(rows)} trees{failed} in {took:.1f} s; climate: {climate}')
     print(_ERRS)
@@ -113,10 +120,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _drawn(rows: list[Row], climate: Climate, table: Path) -> str:
-    """Draw the critical winds of the trees with their bands beside the table; name the file."""
+    """Draw the trees that have a critical wind beside the table, and name the file."""
     drawn = sorted((row for row in rows if row[CRITICAL] is not None), key=lambda r: r[CRITICAL])
     if not drawn or find_spec('matplotlib') is None:
         return ''
+    return f', {save_figure(risk_figure(drawn, climate), table.with_suffix(".png"))}'
+
+
+def risk_figure(drawn: list[Row], climate: Climate) -> Figure:
+    """Return a figure of critical winds with their bands, and a colour for each class."""
     figure = new_figure(8.0, min(max(0.25 * len(drawn), 1.0), 8.0) + 1.5)
     axes = figure.add_subplot()
     low, middle, high = (
@@ -125,7 +137,16 @@ def _drawn(rows: list[Row], climate: Climate, table: Path) -> str:
     places = range(len(drawn))
     colors = [_COLORS[row['class'] - 1] for row in drawn]
     axes.hlines(places, low, high, colors=colors)
-    axes.scatter(middle, places, c=colors, s=12.0)
+    beyond = [is_beyond(row) for row in drawn]
+    faces = ['white' if far else color for far, color in zip(beyond, colors, strict=True)]
+    axes.scatter(middle, places, c=faces, edgecolors=colors, s=16.0)
+    for number in sorted({row['class'] for row in drawn}):
+        what = {1: 'falls first', len(_COLORS): 'falls last'}.get(number, '')
+        axes.plot([], [], 'o', color=_COLORS[number - 1], label=f'class {number} {what}'.strip())
+    if any(beyond):
+        label = 'beyond the winds that were computed'
+        axes.plot([], [], 'o', mfc='white', mec='black', label=label)
+    axes.legend(loc='lower right', fontsize='small')
     names = [f'{row["name"]}, {row["species"]}' for row in drawn] if len(drawn) <= _NAMED else []
     axes.set_yticks(places[: len(names)], names)
     axes.set(
@@ -135,7 +156,7 @@ def _drawn(rows: list[Row], climate: Climate, table: Path) -> str:
         axes.axvline(climate.speed, color='black', lw=0.8)
     axes.set_title(f'{"black: " * (climate.shape is None)}{climate}', fontsize='medium')
     figure.tight_layout()
-    return f', {save_figure(figure, table.with_suffix(".png"))}'
+    return figure
 
 
 def _written(output: Path, results: Iterator[Row], n_trees: int) -> list[Row]:

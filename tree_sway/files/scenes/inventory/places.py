@@ -9,6 +9,7 @@ import math
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
@@ -151,7 +152,7 @@ def _of_geometries(columns: InventoryColumns, index: int) -> Places:
 def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) -> Places:
     """Turn degrees into metres east and north of the first tree, on a sphere."""
     is_known = (np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0)
-    is_known &= (latitude != 0.0) | (longitude != 0.0)  # what phones write without a fix
+    is_known &= _is_fixed(is_known, latitude, longitude, 1.0)
     if not is_known.any():
         nowhere = np.full(len(latitude), np.nan)
         return Places(nowhere, nowhere)
@@ -166,11 +167,17 @@ def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) 
     return Places(np.where(is_known, x, np.nan), np.where(is_known, y, np.nan), is_in_states)
 
 
+def _is_fixed(known: NDArray[np.bool_], x: Floats, y: Floats, far: float) -> NDArray[np.bool_]:
+    """Whether each place is not 0, 0, as phones write it without a fix, where most are far."""
+    away = np.abs(x) + np.abs(y)
+    are_far = 2 * np.count_nonzero(away[known] > far) > np.count_nonzero(known)
+    return (away != 0.0) | (not are_far)
+
+
 def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
     """Move places on a map by whole metres to near the origin, for single precision."""
     is_known = np.isfinite(x) & np.isfinite(y)
-    if is_known.any() and np.median(np.abs(x[is_known]) + np.abs(y[is_known])) > _FAR:
-        is_known &= (x != 0.0) | (y != 0.0)
+    is_known &= _is_fixed(is_known, x, y, _FAR)
     x = np.where(is_known, x, np.nan)
     y = np.where(is_known, y, np.nan)
     farthest = np.nanmax(np.abs([x, y]), initial=0.0)

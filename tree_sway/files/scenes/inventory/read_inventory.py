@@ -185,8 +185,10 @@ def _optional(columns: InventoryColumns, quantity: str) -> Floats:
 def _why_no_place(table: TextTable, row: int) -> str:
     names = ('x', 'y', 'latitude', 'longitude', 'place')
     places = [column.index for name in names if (column := table.find(name))]
-    cells = [f"{table.columns[each]} is '{table.cells(each, [row])[0][:40]}'" for each in places]
-    return f'{" and ".join(cells)}, no place'
+    cells = {each: table.cells(each, [row])[0][:40] for each in places}
+    wrong = [each for each, text in cells.items() if not any(map(str.isdigit, text))]
+    told = [f"{table.columns[each]} is '{cells[each]}'" for each in wrong[:1] or places]
+    return f'{" and ".join(told)}, no place'
 
 
 def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.files.table_file import TextTable
 
 
 @dataclass(slots=True)
@@ -31,9 +30,3 @@ class Cylinders:
     labels: list[str]
     name: str = ''
     notes: tuple[str, ...] = ()
-
-
-def cylinder_axes(table: TextTable, radius: str) -> tuple[Floats, Floats, Floats]:
-    """Return starts, ends (n, 3) and diameters (n, 2) of a table with both ends and a radius."""
-    values = table.strict(['startX', 'startY', 'startZ', 'endX', 'endY', 'endZ', radius, radius])
-    return values[:, :3], values[:, 3:6], 2.0 * values[:, 6:]

@@ -12,6 +12,8 @@ length, that of its subtree, continues; without that column, the thickest.
 
 rTwig writes the models of other programs under names of its own, ``start.x`` or ``start_x``, and
 numbers from 1, the root's parent 0. Without an ``id`` the number is that of the row.
+
+Names are compared by their letters and digits alone.
 """
 
 from __future__ import annotations
@@ -20,39 +22,16 @@ from pathlib import Path
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree import first_of_each
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
-from tree_sway.files.trees.cylinders.cylinders import cylinder_axes, Cylinders
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.tree_options import FITTED
-
-
-def _read_archi(path: Path) -> tuple[Cylinders, ...]:
-    """Cylinders of an aRchi table."""
-    table = parse_table(read_lines(path), str(path))
-    labels, parent = table.family('cyl_ID', 'parent_ID', [0, -1], 'cylinder')
-    number, after = table.strict(['cyl_ID', 'extension_ID']).T
-    extension = table.whole(after, 'extension_ID')
-    continues = (parent >= 0) & (extension[parent] == number)
-    return (Cylinders(*cylinder_axes(table, 'radius_cyl'), parent, continues, labels),)
-
-
-def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
-    """Cylinders of a SimpleForest table."""
-    table = parse_table(read_lines(path), str(path))
-    first = table.strict(['ID'])[:, 0].min(initial=1.0)
-    labels, parent = table.family('ID', 'parentID', [-1, 0] if first else [-1], 'cylinder')
-    columns = {column.lower() for column in table.columns}
-    size = 'growthLength' if 'growthlength' in columns else 'radius'
-    order, growth = table.strict(['branchOrder', size]).T
-    rivals = np.flatnonzero((parent >= 0) & (order == order[parent]))
-    continuations = first_of_each(parent, rivals, -growth[rivals], rivals)
-    continues = np.isin(np.arange(len(parent)), continuations)
-    return (Cylinders(*cylinder_axes(table, 'radius'), parent, continues, labels),)
 
 
 def _names(line: str) -> dict[str, str]:
@@ -68,37 +47,51 @@ def _is_named(head: str) -> bool:
     return ends and {'startx', 'starty', 'startz', 'radius', 'parent'} <= names.keys()
 
 
-def _read_named(path: Path) -> tuple[Cylinders, ...]:
-    """Cylinders of a table that names its columns as rTwig does."""
+def _read(path: Path) -> tuple[Cylinders, ...]:
+    """Cylinders of a table."""
     table = parse_table(read_lines(path), str(path))
     names = {own: each for column in table.columns for own, each in _names(column).items()}
 
     def columns(word: str) -> Floats:
         return table.strict([names.get(f'{word}{axis}', word) for axis in 'xyz'])
 
-    start, radius = columns('start'), table.strict([names['radius']])[:, 0]
-    if 'endx' in names:
-        end = columns('end')
-    else:
-        end = start + table.strict([names.get('length', 'length')]) * columns('axis')
-    if 'id' not in names:
+    def column(*words: str) -> Floats:
+        found = (names[word] for word in words if word in names)
+        return table.strict([next(found, words[0])])[:, 0]
+
+    start, radius = columns('start'), column('radius', 'radiuscyl')
+    end = (
+        columns('end') if 'endx' in names else start + column('length')[:, None] * columns('axis')
+    )
+    if not {'id', 'cylid'} & names.keys():
         rows = [[*table.split(text), str(row)] for row, text in enumerate(table.texts, start=1)]
         table = table_of_cells([*table.columns, 'id'], rows, str(path), table.numbers)
-    labels, parent = table.family(names.get('id', 'id'), names['parent'], [0, -1], 'cylinder')
+    number = names.get('id', names.get('cylid', 'id'))
+    roots = [0, -1] if table.strict([number]).min(initial=1.0) else [-1, 0]
+    missing = 'parent_ID' if 'cylid' in names else 'parentID'
+    above = names.get('parent', names.get('parentid', missing))
+    labels, parent = table.family(number, above, roots, 'cylinder')
     continues = None
     if 'branch' in names:
-        branch = table.strict([names['branch']])[:, 0]
+        branch = column('branch')
         continues = (parent >= 0) & (branch == branch[parent])
+    elif 'extensionid' in names:
+        after = table.whole(column('extensionid'), names['extensionid'])
+        continues = (parent >= 0) & (after[parent] == table.strict([number])[:, 0])
+    elif 'branchorder' in names:
+        continues = _of_one_order(parent, column('branchorder'), column('growthlength', 'radius'))
     diameter = np.stack([2.0 * radius, 2.0 * radius], axis=1)
     return (Cylinders(start, end, diameter, parent, continues, labels),)
 
 
-ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi, FITTED)
-SIMPLEFOREST = FileFormat(
-    'simpleforest',
-    (),
-    has_columns('ID', 'parentID', 'startX', 'branchOrder'),
-    _read_simpleforest,
-    FITTED,
-)
-NAMED = FileFormat('rtwig', (), _is_named, _read_named, FITTED)
+def _of_one_order(parent: Ints, order: Floats, size: Floats) -> NDArray[np.bool_]:
+    """Whether each cylinder is the largest of those of its parent's order upon it."""
+    rivals = np.flatnonzero((parent >= 0) & (order == order[parent]))
+    found = first_of_each(parent, rivals, -size[rivals], rivals)
+    return np.isin(np.arange(len(parent)), found)
+
+
+ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read, FITTED)
+_OF_FOREST = has_columns('ID', 'parentID', 'startX', 'branchOrder')
+SIMPLEFOREST = FileFormat('simpleforest', (), _OF_FOREST, _read, FITTED)
+NAMED = FileFormat('rtwig', (), _is_named, _read, FITTED)
