@@ -281,6 +281,18 @@ void do_parts(const sway_stand &stand, size_t room, size_t count, Part part, voi
     part(work, 0, 0, count);
 }
 
+// Number of trees times segments of the largest beyond which a stand has several threads, and the
+// number of them beyond which memory is the limit.
+constexpr int64_t LARGE = 100000, MOST_THREADS = 8;
+
+size_t rooms_for(const sway_model *const *models, size_t n_models, size_t n_trees) {
+  int64_t largest = 0;
+  for (size_t i = 0; i < n_models; i++) raise_to(largest, models[i]->sizes.segments);
+  if (ON_TABLES || largest * int64_t(n_trees) <= LARGE) return 1;
+  const size_t granted = processors();
+  return granted < MOST_THREADS ? granted : MOST_THREADS;
+}
+
 }  // namespace
 
 extern "C" {
@@ -301,7 +313,7 @@ sway_stand *sway_stand_open(const sway_model *const *models, size_t n_models,
     stand->frame = &frame_of_machine();
     stand->n_models = n_models;
     stand->n_trees = n_trees;
-    stand->n_rooms = rooms < 1 ? 1 : rooms;
+    stand->n_rooms = rooms ? rooms : rooms_for(models, n_models, n_trees);
     if (open(*stand, models, trees)) return stand;
   }
   sway_stand_close(stand);

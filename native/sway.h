@@ -85,7 +85,8 @@ SWAY_API void sway_model_sizes(const sway_model *model, sway_sizes *sizes);
 #define SWAY_EVERY_ROOM SIZE_MAX
 
 /* Make a stand at rest. Models must outlive it. `rooms` is the number of threads that may work
- * at once. Returns NULL, with `error`, for a tree whose numbers are not finite, whose scale is not
+ * at once; 0 is one for each processor that the process may use, up to eight, in a stand of some
+ * 100,000 segments or more, and 1 in a smaller one. Returns NULL, with `error`, for a tree whose numbers are not finite, whose scale is not
  * above 0 or whose model does not exist, or where memory is short. */
 SWAY_API sway_stand *sway_stand_open(const sway_model *const *models, size_t n_models,
                                      const sway_tree *trees, size_t n_trees, size_t rooms,

@@ -7,6 +7,7 @@
 #include <windows.h>
 #else
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <unistd.h>
 #endif
@@ -142,6 +143,18 @@ void start_all(Threads &all) {
 }  // namespace
 
 namespace sway {
+
+size_t processors() {
+#if defined(_WIN32)
+  return GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+#elif defined(__linux__)
+  cpu_set_t own;
+  return sched_getaffinity(0, sizeof own, &own) ? 1 : CPU_COUNT(&own);
+#else
+  const long count = sysconf(_SC_NPROCESSORS_ONLN);
+  return count > 0 ? count : 1;
+#endif
+}
 
 Threads *open_threads(Memory &memory, size_t rooms) {
   Threads *all = memory.take<Threads>(1);

@@ -13,6 +13,9 @@ struct Threads;
 // Does the work from a number on, in a room of its own.
 typedef void (*Part)(void *work, size_t room, size_t first, size_t count);
 
+// Number of processors that this process may use.
+size_t processors();
+
 // Take what `rooms` threads need and start all but one, the caller. Null where memory is short.
 Threads *open_threads(Memory &memory, size_t rooms);
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import ctypes
-import os
 from typing import NamedTuple
 
 import numpy as np
@@ -24,13 +23,6 @@ _TREE = np.dtype(
 
 _EVERY_ROOM = ctypes.c_size_t(-1).value
 """``SWAY_EVERY_ROOM`` of the header."""
-
-_LARGE = 100_000
-"""Trees times segments of the largest beyond which a stand has several threads."""
-
-_MOST_THREADS = 8
-"""Threads beyond which the memory is the limit."""
-
 
 class States(NamedTuple):
     """States of the trees of a stand, views of its memory; M is the width of a row."""
@@ -104,11 +96,8 @@ class NativeStand:
         trees['speed'] = speeds
         handles = (ctypes.c_void_p * len(models))(*(each.opened.handle for each in models))
         error = ctypes.create_string_buffer(_ROOM)
-        if threads is None:
-            largest = max((each.sizes.segments for each in models), default=0)
-            threads = _granted() if largest * len(trees) > _LARGE else 1
         handle = LIBRARY.sway_stand_open(
-            handles, len(models), address(trees), len(trees), threads, error, _ROOM
+            handles, len(models), address(trees), len(trees), threads or 0, error, _ROOM
         )
         if not handle:
             raise ParameterError(error.value.decode(), where='trees')
@@ -197,10 +186,3 @@ class NativeStand:
         """Place a tree by key rotations [rad], (N,), in a pose block of its own, (n, 7)."""
         keys_at = self._keys_at.of(keys)
         LIBRARY.sway_place_keys(self._handle, 0, tree, keys_at, self._poses_at.of(out))
-
-
-def _granted() -> int:
-    """Return the number of threads of a large stand."""
-    of_process = getattr(os, 'sched_getaffinity', None)
-    count = len(of_process(0)) if of_process else os.cpu_count() or 1
-    return min(count, _MOST_THREADS)
