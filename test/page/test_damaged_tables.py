@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
-from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
+from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402

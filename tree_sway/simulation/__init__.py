@@ -8,7 +8,7 @@ A tree in a wind in one call, and what its sway means for its strength.
 stands: in the open, at an edge, inside a stand. `StrengthUse` is the largest share of its strength
 that the tree used, of the wood by its strain and of the roots by the moment at the base, with the
 band of trees of its kind; `critical_wind` is the mean wind at which that share reaches one. It is
-no verdict on a tree's safety.
+no verdict on a tree's safety. `wind_at` is the wind at any place of a running scene.
 """
 
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tree_sway.simulation.exposure import EXPOSURES as EXPOSURES
     from tree_sway.simulation.exposure import STATION_HEIGHT as STATION_HEIGHT
     from tree_sway.simulation.interpolated import interpolated_means as interpolated_means
+    from tree_sway.simulation.local_wind import wind_at as wind_at
     from tree_sway.simulation.rig import PlacedMotion as PlacedMotion
     from tree_sway.simulation.rig import refuse_too_many_steps as refuse_too_many_steps
     from tree_sway.simulation.rig import Rig as Rig

@@ -6,15 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.stream.protocol import Description, Frame, PAUSED, RESTARTED
-
-if TYPE_CHECKING:
-    from tree_sway.core.scene import ReceivedScene
+from tree_sway.stream.received_scene import ReceivedScene
 
 STEP = 1.0 / 60.0
 """Time step of a scene that is solved by its wind in [s]."""

@@ -17,7 +17,7 @@ import hashlib
 import json
 import math
 import struct
-from typing import Any, NamedTuple, TYPE_CHECKING
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,9 +27,7 @@ from tree_sway.core.model import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array, check_description
 from tree_sway.stream.check_tables import check_tables
-
-if TYPE_CHECKING:
-    from tree_sway.core.scene import ReceivedScene
+from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene
 
 _VERSION = 2
 _FRAME_VERSION = 1
@@ -184,9 +182,6 @@ class Tables:
 
         Raises a `FormatError` for tables of another description, and the errors of `check_tables`.
         """
-        # Here, as it loads the compiler, which drawing does not need.
-        from tree_sway.core.scene import ReceivedKind, ReceivedScene
-
         header = self.header
         with _reading('tables'):
             if header['description'] != description.identity:

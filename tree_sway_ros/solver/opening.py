@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 import math
 
-from tree_sway.core.scene import Scene, shard_of
+from tree_sway.core.scene import Scene
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import LEAVES
 from tree_sway.core.species import species_named
@@ -15,6 +15,7 @@ from tree_sway.core.wind import WindProfile
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees import open_scene
 from tree_sway_ros.parameters.declaration import ParameterValues
+from tree_sway_ros.solver.shard import shard_of
 
 
 def scene_of(values: ParameterValues) -> Scene:

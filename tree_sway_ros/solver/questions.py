@@ -8,8 +8,9 @@ from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
 
-from tree_sway.core.scene import Simulator, wind_at
+from tree_sway.core.scene import Simulator
 from tree_sway.errors import ParameterError
+from tree_sway.simulation import wind_at
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND_AT, WIND_THERE
 from tree_sway_ros.reports.refusals import Refusals

@@ -7,9 +7,7 @@ Trees that stand somewhere, in one wind.
 makes their `Simulator`: a `SwaySimulator` of one tree, a `SceneSimulator` of several, whose trees
 of one kind share a table and step in one native call (`sharing`, `shared_tables`). `Run` is the
 runtime that nodes, page and `simulate` have in common: the grid of time, gate and mean of the
-wind, requests between steps. `ReceivedScene` is the same scene at a receiver, solved from an
-exported table (`table_export`); `shard_of` divides a scene among solvers; `wind_at` is the wind at
-any place.
+wind, requests between steps. `exported_table` is the table of a tree for receivers that solve it.
 
 Nothing here draws, publishes or reads files.
 """
@@ -22,7 +20,6 @@ if TYPE_CHECKING:
     from tree_sway.core.scene.demand import adaptive_among as adaptive_among
     from tree_sway.core.scene.demand import set_cost_scale as set_cost_scale
     from tree_sway.core.scene.demand import set_demand as set_demand
-    from tree_sway.core.scene.local_wind import wind_at as wind_at
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.make import simulator_of as simulator_of
     from tree_sway.core.scene.make import solved as solved
@@ -30,13 +27,12 @@ if TYPE_CHECKING:
     from tree_sway.core.scene.placed_tree import LARGEST as LARGEST
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
     from tree_sway.core.scene.placed_tree import SMALLEST as SMALLEST
-    from tree_sway.core.scene.received_scene import ReceivedKind as ReceivedKind
-    from tree_sway.core.scene.received_scene import ReceivedScene as ReceivedScene
+    from tree_sway.core.scene.placement_records import own_step as own_step
     from tree_sway.core.scene.run import Run as Run
     from tree_sway.core.scene.scene import Scene as Scene
     from tree_sway.core.scene.scene_simulator import SceneSimulator as SceneSimulator
     from tree_sway.core.scene.scene_simulator import Simulator as Simulator
-    from tree_sway.core.scene.shard import shard_of as shard_of
+    from tree_sway.core.scene.table_export import arrays_of_table as arrays_of_table
     from tree_sway.core.scene.table_export import exported_table as exported_table
     from tree_sway.core.scene.table_export import rounded as rounded
 else:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene import Scene
 from tree_sway.errors import ParameterError
 
 

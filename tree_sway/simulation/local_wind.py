@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene import Simulator
 from tree_sway.errors import ParameterError
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.shard import shard_of
+from tree_sway_ros.solver.shard import shard_of
 from tree_sway.errors import ParameterError
 
 
