@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
-from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
@@ -26,6 +25,7 @@ from tree_sway.stream.protocol import (  # noqa: E402
     TABLES,
     Tables,
 )
+from tree_sway.stream.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
 from tree_sway.stream.scene_state import SceneState  # noqa: E402
 
 HERE = Path(__file__).parent

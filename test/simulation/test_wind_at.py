@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.simulation.local_wind import wind_at
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -15,6 +14,7 @@ from tree_sway.core.species.species import species_named
 from tree_sway.core.wind.gusts.gust_travel import GustHistory
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.local_wind import wind_at
 
 DT = 1.0 / 60.0
 

@@ -11,8 +11,8 @@ import pytest
 
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway_ros.solver.shard import shard_of
 from tree_sway.errors import ParameterError
+from tree_sway_ros.solver.shard import shard_of
 
 
 @pytest.fixture
