@@ -111,7 +111,7 @@ REFUSED = [
     ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,null,128]}', 'ob is'),
     ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,2.0,361]}', 'direction is 361'),
     ('Modbus', b'\x00', '0 registers of 4'),
-    ('Modbus', b'\xff\xff' * 4, 'speed is -0.1'),
+    ('Modbus', b'\xff\xff' * 4, 'no speed: the register is -1'),
     ('JSON', b'{"a": {"b": "calm"}}', "speed is 'calm'"),
     ('JSON', b'{"a": {"c": 5}}', None),
     ('JSON', b'<html>login</html>', None),

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -98,10 +97,12 @@ class SwayRecord(Drawn):
 
     def to_dataframe(self) -> Any:
         """Return the columns as a data frame of pandas; a `MissingDependencyError` without it."""
-        if find_spec('pandas') is None:
-            what = "No module named 'pandas'"
-            raise MissingDependencyError(what, cure='install it: pip install pandas')
-        return import_module('pandas').DataFrame(self.columns())
+        try:
+            pandas = import_module('pandas')
+        except ModuleNotFoundError as error:
+            cure = 'install it: pip install pandas'
+            raise MissingDependencyError(str(error), cure=cure) from error
+        return pandas.DataFrame(self.columns())
 
     def to_csv(self) -> str:
         """Return the record as comma-separated values under one line of names and units."""

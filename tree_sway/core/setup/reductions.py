@@ -44,7 +44,7 @@ some 0.25.
 _GALE = 20.0
 """Wind of `Responses.in_gale` [m/s]."""
 
-_CANDIDATES, _LIMP_CANDIDATES = 120, 300
+_CANDIDATES, _LIMP_CANDIDATES = 120, 400
 """
 Number of natural modes by which responses to gusts are computed; that of a limp tree, each of
 whose twigs moves in short waves of its own.

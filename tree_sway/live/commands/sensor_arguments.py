@@ -38,8 +38,8 @@ def add_sensor_argument(parser: argparse.ArgumentParser, *others: str) -> None:
 
 
 def say(text: str) -> None:
-    """Print a line of news of a source."""
-    print(f'sensor: {text}', file=sys.stderr, flush=True)
+    """Print a line of news of a source, in one write: threads of sources print as well."""
+    print(f'sensor: {text}\n', end='', file=sys.stderr, flush=True)
 
 
 @contextmanager
