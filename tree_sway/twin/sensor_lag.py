@@ -22,9 +22,9 @@ to tell more than they can. Of the root coherence g(f) that the law of gusts giv
 differ by 2 g^2 / (1 - g^2) (1 - cos 2 pi f t) in the mean of the logarithm of their likelihood, a
 sum over f > 0, as gusts along the wind lean a tree most. A lag is told only where that is enough.
 
-A noise that were the same for all lags, as in a generalised correlation (Knapp & Carter 1976, IEEE
-Transactions on Acoustics, Speech, and Signal Processing 24, 320-327), is that of the likeliest one,
-and the others seem too unlikely.
+A noise that were the same for all lags, as in a generalised correlation (Knapp & Carter 1976,
+IEEE Transactions on Acoustics, Speech, and Signal Processing 24, 320-327), is that of the
+likeliest one, and the others seem too unlikely.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ class _ByLaw(NamedTuple):
     hertz: Floats
 
     def can_differ(self, lag: float) -> float:
-        """Logarithm of the likelihood of a lag [s] over that of none, where it is the right one."""
+        """Logarithm of the likelihood of a lag [s] over that of none, where it is right."""
         return float(2.0 * self.common @ (1.0 - np.cos(2.0 * np.pi * self.hertz * lag)))
 
     @property
