@@ -184,8 +184,8 @@ class _ByLaw(NamedTuple):
     @property
     def error(self) -> float:
         """Least standard deviation of a lag [s]."""
-        told = 2.0 * self.common @ np.square(2.0 * np.pi * self.hertz)
-        return float(max(told, 1e-300) ** -0.5)
+        told = float(2.0 * self.common @ np.square(2.0 * np.pi * self.hertz))
+        return max(told, 1e-300) ** -0.5
 
 
 def sensor_lag(
