@@ -17,11 +17,17 @@ from tree_sway.twin.sensor_track import NO_LAG, OtherSensor, SensorTrack
 DT, F1, LOSS = 1.0 / 20.0, 1.2, 10.0
 
 
-def noise(seconds: float, rng: np.random.Generator, loss: float = LOSS) -> tuple[Floats, Floats]:
-    """Draw slow gusts to east and north, and gusts that share ``exp(-loss f)`` of them, (n, 2)."""
+def noise(
+    seconds: float, rng: np.random.Generator, loss: float = LOSS, across: float = 1.0
+) -> tuple[Floats, Floats]:
+    """
+    Draw slow gusts to east and north, and gusts that share ``exp(-loss f)`` of them, (n, 2).
+
+    ``across`` is the size of those to the north, across the wind.
+    """
     n = round(seconds / DT)
     frequency = np.fft.rfftfreq(n, DT)[:, None]
-    lines = rng.normal(size=(2, len(frequency), 2, 2)) @ [1.0, 1j]
+    lines = rng.normal(size=(2, len(frequency), 2, 2)) @ [1.0, 1j] * [1.0, across]
     lines /= (1.0 + 6.0 * frequency * 8.0) ** (5.0 / 6.0)
     shared = np.exp(-loss * frequency)
     other = shared * lines[0] + np.sqrt(1.0 - shared**2) * lines[1]
@@ -64,6 +70,37 @@ def test_a_right_sensor_is_not_told_to_be_late() -> None:
     assert not any(each.is_sure or each.is_by_chance for each in found)
     within = [abs(each.seconds) < 2.0 * each.error for each in found]
     assert np.mean(within) > 0.85
+
+
+def in_gusts(late: float, seconds: float, loss: float, shared: float, seed: int) -> SensorLag:
+    """Find the lag in gusts along the wind, of which the law says how many are shared."""
+
+    def later(hertz: Floats) -> Complexes:
+        return np.exp(-shared * hertz).astype(np.complex128)
+
+    model, sensed = noise(seconds + 10.0, np.random.default_rng(seed), loss, 0.25)
+    shift = round(late / DT)
+    moved = sensed[100 - shift : -100 - shift]
+    return sensor_lag(moved, model[100:-100], F1, DT, later=later)
+
+
+def test_a_lag_is_told_as_surely_as_the_shared_gusts_tell_it() -> None:
+    """A mast 12 m aside of the wind of 7 m/s shares ``exp(-17 f)``, one upwind ``exp(-5 f)``."""
+    aside = [in_gusts(0.0, 160.0, 17.0, 17.0, seed) for seed in range(400)]
+    assert np.mean([each.is_sure for each in aside]) < 0.02
+    error = np.std([each.seconds for each in aside])
+    assert np.median([each.error for each in aside]) == pytest.approx(error, rel=0.4)
+    upwind = [in_gusts(late, 160.0, 5.0, 5.0, seed) for late in (-1.5, 1.5) for seed in range(50)]
+    assert np.mean([each.is_sure for each in upwind]) > 0.8
+    known = [in_gusts(2.0, 600.0, 17.0, 17.0, seed) for seed in range(50)]
+    assert np.mean([each.is_sure for each in known]) > 0.5
+
+
+def test_little_in_common_is_not_nothing_where_the_law_expects_no_more() -> None:
+    aside = [in_gusts(0.0, 200.0, 25.0, 25.0, seed) for seed in range(100)]
+    assert not any(each.is_by_chance for each in aside)
+    alien = [in_gusts(0.0, 600.0, 1e9, 17.0, seed) for seed in range(50)]
+    assert np.mean([each.is_by_chance for each in alien]) > 0.7
 
 
 def test_a_sensor_is_turned_by_what_it_is_turned_from_the_model() -> None:

@@ -85,7 +85,7 @@ class LateWind:
 
     @property
     def later(self) -> Callable[[Floats], Complexes] | None:
-        """Phases of gusts over those of the expected wind in the present one (`FarWind.later`)."""
+        """Gusts that crown and anemometer share in the present wind (`FarWind.later`)."""
         return None if self._far is None else partial(self._far.later, mean=self._far.mean)
 
     def lag_at(self, reach: tuple[float, float]) -> tuple[float, float]:

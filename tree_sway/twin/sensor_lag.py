@@ -15,9 +15,16 @@ lags the likeliest one has the largest (Whittle 1953, Arkiv för Matematik 2, 42
 
     L(t) = -sum ln S + |n|^2 / S
 
-less that of a motion that has nothing of the model's. A noise that were the same for all lags, as
-in a generalised correlation (Knapp & Carter 1976, IEEE Transactions on Acoustics, Speech, and
-Signal Processing 24, 320-327), is that of the likeliest one, and the others seem too unlikely.
+less that of a motion that has nothing of the model's.
+
+Across the wind gusts lose what they have in common soon, and the few slow ones that are left seem
+to tell more than they can. Of the root coherence g(f) that the law of gusts gives, lags t and 0
+differ by 2 g^2 / (1 - g^2) (1 - cos 2 pi f t) in the mean of the logarithm of their likelihood, a
+sum over f > 0, as gusts along the wind lean a tree most. A lag is told only where that is enough.
+
+A noise that were the same for all lags, as in a generalised correlation (Knapp & Carter 1976,
+IEEE Transactions on Acoustics, Speech, and Signal Processing 24, 320-327), is that of the
+likeliest one, and the others seem too unlikely.
 """
 
 from __future__ import annotations
@@ -40,6 +47,9 @@ _CHANCE, _LONG = 8.0, 180.0
 Evidence that 3 of 100 motions without anything in common have, and time [s] from which less of it
 tells them: a tree 12 m away from its anemometer has 15 to 60 by then.
 """
+
+_EXPECTED = 3.0
+"""Least evidence that shared gusts have in the mean, over that of chance, where less tells [-]."""
 
 _LOSSES = (2.0, 5.0, 10.0, 20.0, 40.0)
 """Values of a in [s]: an anemometer 12 m away loses 11 s in 7 m/s."""
@@ -91,6 +101,8 @@ class SensorLag(NamedTuple):
         Number of lines of the spectra that were compared.
     told
         Sum over them of what the model tells over what it does not [-].
+    can_differ, expected
+        Means of ``over_none`` and of ``evidence`` by the law of gusts, infinite without one.
 
     """
 
@@ -103,6 +115,8 @@ class SensorLag(NamedTuple):
     n_lines: int = 0
     told: float = 0.0
     for_own: float = 0.0
+    can_differ: float = np.inf
+    expected: float = np.inf
 
     @property
     def turn_error(self) -> float:
@@ -117,14 +131,15 @@ class SensorLag(NamedTuple):
     @property
     def is_by_chance(self) -> bool:
         """Whether the motion has nothing of the model's, long enough for that to be known."""
-        return self.evidence < _CHANCE and self.motion >= _LONG
+        is_long = self.motion >= _LONG and self.expected > _EXPECTED * _CHANCE
+        return self.evidence < _CHANCE and is_long
 
     @property
     def is_sure(self) -> bool:
         """Whether the lag is believed."""
         is_beyond_chance = self.evidence > _CHANCE and self.n_lines >= _MANY
         least = _SURE + _OF_FEW / max(self.n_lines, 1)
-        return self.over_none > least and is_beyond_chance
+        return self.over_none > least and is_beyond_chance and self.can_differ > _SURE
 
     @property
     def is_doubtful(self) -> bool:
@@ -147,6 +162,32 @@ class SensorLag(NamedTuple):
         return f'its motion comes {abs(self.seconds):.1f} s (+- {self.error:.1f}) {side}'
 
 
+class _ByLaw(NamedTuple):
+    """
+    What gusts of slow frequencies [Hz] tell in the mean, by what model and tree share of them.
+
+    ``common`` is the power that they share over that which they do not, (f,).
+    """
+
+    common: Floats
+    hertz: Floats
+
+    def can_differ(self, lag: float) -> float:
+        """Logarithm of the likelihood of a lag [s] over that of none, where it is right."""
+        return float(2.0 * self.common @ (1.0 - np.cos(2.0 * np.pi * self.hertz * lag)))
+
+    @property
+    def expected(self) -> float:
+        """Evidence of a motion in the same gusts."""
+        return float(2.0 * np.log1p(self.common).sum())
+
+    @property
+    def error(self) -> float:
+        """Least standard deviation of a lag [s]."""
+        told = float(2.0 * self.common @ np.square(2.0 * np.pi * self.hertz))
+        return max(told, 1e-300) ** -0.5
+
+
 def sensor_lag(
     sensed: Floats,
     model: Floats,
@@ -165,8 +206,8 @@ def sensor_lag(
     Motions are to east and north at equal steps of dt [s], (n, 2). One that is too short tells
     nothing. Lags are looked for up to the longest [s] from the one ``about`` which a right sensor
     is [s]; those up to ``none`` [s] beyond those of the wind are none. ``left_for`` is the lag for
-    which it was left [s], None if it was not. ``later`` gives the phases of gusts at frequencies
-    [Hz] over those that the model has of them.
+    which it was left [s], None if it was not. ``later`` gives the gusts that model and tree
+    share at frequencies [Hz], root coherence and phase over that which the model has of them.
     """
     block = max(round(1.0 / (_PER_SECOND * dt)), 1)
     count = len(sensed) // block
@@ -180,9 +221,11 @@ def sensor_lag(
     bins = np.concatenate([slow, -slow])
     hertz = bins / period
     y, x = (each[bins] for each in lines)
+    shared = np.ones(len(slow), dtype=np.complex128)
     if later is not None:
-        turned = later(hertz[: len(slow)])
-        x = x * np.concatenate([turned, turned.conj()])
+        shared = later(hertz[: len(slow)])
+        x = x * np.exp(1j * np.angle(np.concatenate([shared, shared.conj()])))
+    by_law = _by_law(shared, hertz[: len(slow)])
     most = round(min(longest, period / _OVER) / _STEP)
     lags = _STEP * np.arange(-most, most + 1)
     back = np.exp(-2j * np.pi * hertz * (about + lags[:, None]))
@@ -199,7 +242,7 @@ def sensor_lag(
         for_own = own - likelihood[np.argmin(np.abs(lags - left_for))]
     return SensorLag(
         float(lags[at]),
-        float(0.5 * (near[-1] - near[0]) + _STEP),
+        max(float(0.5 * (near[-1] - near[0]) + _STEP), by_law.error),
         float(likelihood[at]),
         float(likelihood[at] - own),
         period,
@@ -207,7 +250,15 @@ def sensor_lag(
         len(bins),
         float((np.square(np.abs(gain[at] * told)) / noise[at]).sum()),
         float(for_own),
+        by_law.can_differ(float(lags[at])),
+        by_law.expected,
     )
+
+
+def _by_law(shared: Complexes, hertz: Floats) -> _ByLaw:
+    """Tell what gusts tell by their root coherence, (f,), at frequencies [Hz]."""
+    power = np.minimum(np.square(np.abs(shared)), 1.0 - 1e-9)
+    return _ByLaw(power / (1.0 - power), hertz)
 
 
 def _lines(rows: Floats, block: int) -> Complexes:

@@ -121,8 +121,8 @@ class LagRange(NamedTuple):
     ``about`` and ``none`` are the lag of a sensor that gusts have on their way through the crown,
     and how far from it they may be [s]; ``is_told`` is whether the way of the wind is known: what
     is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
-    last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the phases
-    of gusts over those of the model (`sensor_lag`), ``others`` are further sensors of the tree.
+    last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the gusts
+    that it shares with its model (`sensor_lag`), ``others`` are further sensors of the tree.
     """
 
     earliest: int

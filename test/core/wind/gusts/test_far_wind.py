@@ -110,3 +110,13 @@ def test_the_delay_that_the_expected_wind_lacks_is_known() -> None:
     # As it is, the expected wind has not this delay.
     of_line = np.abs(np.angle(lines[1][slow] * travel.conj()))
     assert of_line.max() > 3.0 * np.abs(np.angle(delayed * travel.conj())).max() > 0.0
+
+
+def test_gusts_are_shared_along_the_wind_more_than_across_it() -> None:
+    hertz, mean = np.array([0.01, 0.05, 0.1]), (7.0, 0.0)
+    along, across, unknown = (
+        np.abs(far(12.0, bearing=bearing).later(hertz, mean)) for bearing in (UPWIND, 0.0, None)
+    )
+    assert (np.log(across) < 2.0 * np.log(along)).all()
+    assert (unknown <= across + 1e-9).all()
+    assert unknown == pytest.approx(across, rel=0.2)

@@ -165,7 +165,7 @@ class FarWind:
 
     def later(self, hertz: Floats, mean: tuple[float, float]) -> Complexes:
         """
-        Phases of the gusts that a crown shares with its anemometer, over those that are expected.
+        Gusts that a crown shares with its anemometer, over the phases of those that are expected.
 
         Parameters
         ----------
@@ -177,19 +177,25 @@ class FarWind:
         Returns
         -------
         Complexes
-            Numbers of size 1, (f,): travel has one delay for all gusts, the low-passes have less
-            the faster these are.
+            Numbers of the size of the root coherence, (f,): travel has one delay for all gusts,
+            the low-passes have less the faster these are. Without a bearing the size is that of
+            an anemometer across the wind, the least.
 
         """
         wavenumbers = hertz / max(math.hypot(*mean), 1.0)
+        distance, bearing = self._mast
         angle = math.atan2(mean[1], mean[0])
-        (true,) = _coherences(self._places, *self._mast, wavenumbers, [angle])
+        (true,) = _coherences(self._places, distance, bearing, wavenumbers, [angle])
         n_directions = len(self._weights)
         nearest = round(angle * n_directions / (2.0 * np.pi)) % n_directions
         stages = _low_passes(wavenumbers)
         expected = stages @ self._weights[nearest].T @ self._share
         turn = true @ self._share * expected.conj()
-        return np.asarray(turn / np.maximum(np.abs(turn), 1e-300))
+        if bearing is None:
+            away = _DECAYS.max() * np.hypot(distance, self._places[:, 2])
+            true = np.exp(-wavenumbers[:, None] * away)
+        shared = np.abs(true @ self._share)
+        return np.asarray(shared * turn / np.maximum(np.abs(turn), 1e-300))
 
     @property
     def mean(self) -> tuple[float, float]:
