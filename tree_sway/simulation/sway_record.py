@@ -100,8 +100,8 @@ class SwayRecord(Drawn):
         try:
             pandas = import_module('pandas')
         except ModuleNotFoundError as error:
-            cure = 'install it: pip install pandas'
-            raise MissingDependencyError(str(error), cure=cure) from error
+            what = "No module named 'pandas'"
+            raise MissingDependencyError(what, cure='install it: pip install pandas') from error
         return pandas.DataFrame(self.columns())
 
     def to_csv(self) -> str:
