@@ -17,7 +17,7 @@ import math
 import numpy as np
 from scipy.signal import csd
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Complexes, Floats
 
 _BANDS = np.array([0.4, 0.6, 0.8, 1.0, 1.25, 1.55, 1.95, 2.5])
 """Edges of bands over the first frequency, each of which has a lever of its own."""
@@ -57,13 +57,15 @@ def other_lever(moved: Floats, model: Floats, frequency: float, dt: float, pull:
     length = round(_PERIODS / (frequency * dt))
     if len(moved) < _LEAST_LENGTH * length:
         return ''
-    found = [_levers(each, frequency, dt, length, pull) for each in (moved, model)]
-    levers, (power, _), likeness = (np.array(each) for each in zip(*found, strict=True))
-    is_told = (likeness.min(axis=0) > _ALIKE) & (levers.min(axis=0) > _LEAST)
+    own, power, own_coherence = _levers(moved, frequency, dt, length, pull)
+    of_model, _, coherence = _levers(model, frequency, dt, length, pull)
+    is_alike = np.minimum(own_coherence, coherence) > _ALIKE
+    is_told = is_alike & (np.minimum(own, of_model) > _LEAST)
     told = np.where(is_told, power, 0.0)
     if not told.sum() > _MOST_OF * power.sum():  # nor where one is not measured
         return ''
-    here, there = np.exp(np.log(np.maximum(levers, _LEAST)) @ told / told.sum()).tolist()
+    levers = np.maximum([own, of_model], _LEAST)
+    here, there = np.exp(np.log(levers) @ told / told.sum()).tolist()
     if abs(math.log(here / there)) < _OTHER:
         return ''
     return (
@@ -76,15 +78,22 @@ def _levers(
     motion: Floats, frequency: float, dt: float, length: int, pull: float
 ) -> tuple[Floats, Floats, Floats]:
     """Lever [m], power of the rate, and coherence with the acceleration in each band, (b,)."""
-    felt, turned = motion[:, :2].T, np.stack([motion[:, 4], -motion[:, 3]])
-    pairs = (felt, felt), (turned, turned), (turned, felt)
-    spectra = [csd(*each, 1.0 / dt, nperseg=length)[1].sum(axis=0) for each in pairs]
+    felt = motion[:, :2].T
+    turned = np.stack([motion[:, 4], -motion[:, 3]])  # the rate that leans along x, along y
+
+    def spectrum(one: Floats, other: Floats) -> Complexes:
+        return np.asarray(csd(one, other, 1.0 / dt, nperseg=length)[1].sum(axis=0))
+
     hertz = np.fft.rfftfreq(length, dt)
-    own, power, shared = spectra[0].real, spectra[1].real, spectra[2].imag
     circular = 2.0 * math.pi * np.maximum(hertz, hertz[1])
-    moment = (shared - pull / circular * power) / circular
+    of_rate = spectrum(turned, turned).real
+    shared = spectrum(turned, felt).imag  # (w l + g / w) |r|^2
+    moment = (shared - pull / circular * of_rate) / circular  # l |r|^2
     edges = np.minimum(np.searchsorted(hertz, _BANDS * frequency), len(hertz) - 1)
-    series = np.stack([own, power, shared, moment])
-    own, power, shared, moment = np.add.reduceat(series, edges, axis=1)[:, :-1]
-    power = np.maximum(power, 1e-300)
-    return moment / power, power, shared / np.sqrt(own * power)
+
+    def in_bands(series: Floats) -> Floats:
+        return np.add.reduceat(series, edges)[:-1]
+
+    power = np.maximum(in_bands(of_rate), 1e-300)
+    coherence = in_bands(shared) / np.sqrt(in_bands(spectrum(felt, felt).real) * power)
+    return in_bands(moment) / power, power, coherence
