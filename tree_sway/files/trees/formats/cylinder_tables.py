@@ -59,10 +59,12 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         found = (names[word] for word in words if word in names)
         return table.strict([next(found, words[0])])[:, 0]
 
-    start, radius = columns('start'), column('radius', 'radiuscyl')
-    end = (
-        columns('end') if 'endx' in names else start + column('length')[:, None] * columns('axis')
-    )
+    start = columns('start')
+    radius = column('radius', 'radiuscyl')
+    if 'endx' in names:
+        end = columns('end')
+    else:
+        end = start + column('length')[:, None] * columns('axis')
     if not {'id', 'cylid'} & names.keys():
         rows = [[*table.split(text), str(row)] for row, text in enumerate(table.texts, start=1)]
         table = table_of_cells([*table.columns, 'id'], rows, str(path), table.numbers)
@@ -71,16 +73,18 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     missing = 'parent_ID' if 'cylid' in names else 'parentID'
     above = names.get('parent', names.get('parentid', missing))
     labels, parent = table.family(number, above, roots, 'cylinder')
+    has_parent = parent >= 0
     continues = None
     if 'branch' in names:
         branch = column('branch')
-        continues = (parent >= 0) & (branch == branch[parent])
+        continues = has_parent & (branch == branch[parent])
     elif 'extensionid' in names:
+        own = table.strict([number])[:, 0]
         after = table.whole(column('extensionid'), names['extensionid'])
-        continues = (parent >= 0) & (after[parent] == table.strict([number])[:, 0])
+        continues = has_parent & (after[parent] == own)
     elif 'branchorder' in names:
         continues = _of_one_order(parent, column('branchorder'), column('growthlength', 'radius'))
-    diameter = np.stack([2.0 * radius, 2.0 * radius], axis=1)
+    diameter = 2.0 * np.stack([radius, radius], axis=1)
     return (Cylinders(start, end, diameter, parent, continues, labels),)
 
 
