@@ -29,7 +29,10 @@ FULL = _of_annex('full', 'tree_sway_lab')
 OBSERVED = _of_annex('observed', 'tree_sway.twin')
 """A tree that follows sensors, where that annex is."""
 
-MODELS = ['auto', 'branch', *FULL]
+AUTO = _of_annex('auto', 'tree_sway.fidelity')
+"""As few coordinates as suffice, where that annex is."""
+
+MODELS = [*AUTO, 'branch', *FULL]
 """Models with a name."""
 
 

@@ -17,9 +17,6 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
-    from tree_sway.core.scene.demand import adaptive_among as adaptive_among
-    from tree_sway.core.scene.demand import set_cost_scale as set_cost_scale
-    from tree_sway.core.scene.demand import set_demand as set_demand
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.make import simulator_of as simulator_of
     from tree_sway.core.scene.make import solved as solved

@@ -6,8 +6,7 @@ The wind from a sensor to the trees.
 In the order of a sample: `WindConvention` (unit, sign, turn of the mast), `WindGate` (what no wind
 does is refused and counted), `WindIntake` (both, then the force plane), `WindAverage` (the mean of
 the curve through the samples over a step), `WindProfile` (height), `GustHistory` (gusts travel to
-a tree) and `CrownWind` (and from limb to limb). `ClimateTracker` keeps mean and spectrum of what
-has blown, for who chooses or filters by them. Speeds are in [m/s], the way the air goes, east,
+a tree) and `CrownWind` (and from limb to limb). Speeds are in [m/s], the way the air goes, east,
 north, up; times in [ns] where they are stamps, else in [s].
 
 Simulated winds are in `simulated`; formats of files and instruments are in other houses.
@@ -20,8 +19,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.wind.averaging import LONGEST_HOLD as LONGEST_HOLD
     from tree_sway.core.wind.averaging import WindAverage as WindAverage
-    from tree_sway.core.wind.climate import ClimateTracker as ClimateTracker
-    from tree_sway.core.wind.climate import WindClimate as WindClimate
     from tree_sway.core.wind.convention import velocity_of_bearing as velocity_of_bearing
     from tree_sway.core.wind.convention import WindConvention as WindConvention
     from tree_sway.core.wind.gate import GateCounts as GateCounts
