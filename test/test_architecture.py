@@ -43,7 +43,7 @@ STOREYS = {
 }  # fmt: skip
 #: Rooms with a face of their own.
 WINGS = {
-    'core.wind.gusts', 'core.wind.simulated', 'files.export', 'files.models', 'files.motion',
+    'core.wind.gusts', 'simulation.wind', 'files.export', 'files.models', 'files.motion',
     'files.recording', 'files.scenes', 'files.trees', 'files.wind', 'twin.camera',
 }  # fmt: skip
 LARGEST_FACE = 25

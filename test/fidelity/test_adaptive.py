@@ -11,7 +11,7 @@ import pytest
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError, StateError
 from tree_sway.fidelity.adaptive import LEAVE_IN, REVIEW
 from tree_sway.fidelity.climate import WindClimate

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.fidelity.climate import ClimateTracker, WindClimate
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 
 
 def _of_annex(model, module):

@@ -19,7 +19,7 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.averaging import WindAverage
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError, StateError, TreeError
 from tree_sway.growth.growing import grow
 

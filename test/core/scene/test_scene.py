@@ -18,7 +18,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 from tree_sway.errors import ParameterError, TreeError
 
 DT = 1.0 / 60.0

@@ -20,7 +20,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
 from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
 from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0

@@ -9,7 +9,9 @@ the curve through the samples over a step), `WindProfile` (height), `GustHistory
 a tree) and `CrownWind` (and from limb to limb). Speeds are in [m/s], the way the air goes, east,
 north, up; times in [ns] where they are stamps, else in [s].
 
-Simulated winds are in `simulated`; formats of files and instruments are in other houses.
+`simulate_turbulence` draws a record from Kaimal's spectra (IEC 61400-1:2005, annex B.2); the same
+seed gives the same wind on every machine. Gusts in space are in `gusts`; formats of files and
+instruments are in other houses.
 """
 
 from typing import TYPE_CHECKING
@@ -31,5 +33,12 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.limits import is_wind as is_wind
     from tree_sway.core.wind.limits import shorter_than as shorter_than
     from tree_sway.core.wind.sensor_timing import SensorTiming as SensorTiming
+    from tree_sway.core.wind.turbulence import along_bearing as along_bearing
+    from tree_sway.core.wind.turbulence import REFERENCE_INTENSITY as REFERENCE_INTENSITY
+    from tree_sway.core.wind.turbulence import SCALE_RATIOS as SCALE_RATIOS
+    from tree_sway.core.wind.turbulence import SHORTEST_PERIOD as SHORTEST_PERIOD
+    from tree_sway.core.wind.turbulence import simulate_turbulence as simulate_turbulence
+    from tree_sway.core.wind.turbulence import Turbulence as Turbulence
+    from tree_sway.core.wind.turbulence import turbulence_scale as turbulence_scale
 else:
     __getattr__, __dir__, __all__ = face(__name__)
