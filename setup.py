@@ -360,6 +360,7 @@ setup(
             f'forest = {LIBRARY}.forest.commands.on_the_page:RiskOnThePage',
             f'twin = {LIBRARY}.twin.commands.on_the_page:SensorsOnThePage',
         ],
+        'tree_sway.choosers': [f'auto = {LIBRARY}.fidelity:AdaptiveSimulator'],
         'tree_sway.pictures': [
             f'{kind} = {LIBRARY}.pictures.figures:{function}' for kind, function in DRAWN.items()
         ],

@@ -63,7 +63,7 @@ def test_a_simulator_loads_few_modules_and_no_laboratory() -> None:
     loaded = in_a_fresh_interpreter(program).split()
     assert 'tree_sway.core.run.simulator' in loaded
     assert len(loaded) <= 35, ' '.join(loaded)
-    for room in ('forest', 'files', 'commands', 'growth', 'core.fidelity'):
+    for room in ('forest', 'files', 'commands', 'growth', 'fidelity'):
         assert not [name for name in loaded if name.startswith(f'tree_sway.{room}.')]
 
 

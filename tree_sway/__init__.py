@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from tree_sway.core.species import species_named as species_named
     from tree_sway.core.tree import Tree as Tree
     from tree_sway.core.tree import tree_from_segments as tree_from_segments
+    from tree_sway.core.wind import simulate_turbulence as simulate_turbulence
     from tree_sway.core.wind import WindAverage as WindAverage
-    from tree_sway.core.wind.simulated import simulate_turbulence as simulate_turbulence
     from tree_sway.errors import TreeSwayError as TreeSwayError
     from tree_sway.files.export import write_tree as write_tree
     from tree_sway.files.models import read_model as read_model

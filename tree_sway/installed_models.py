@@ -1,11 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Models of installed packages, by the entry point group `tree_sway.models`.
+Models of installed packages and annexes, by entry points.
 
-An entry point names a function ``make(model, branches)`` that returns the `Oscillators` of
-a tree, from its `SwayModel` on all coordinates and the records of its branches. The reference
-model ``full`` comes so, from the laboratory.
+One of the group `tree_sway.models` names a function ``make(model, branches)`` that returns the
+`Oscillators` of a tree, from its `SwayModel` on all coordinates and the records of its branches.
+The reference model ``full`` comes so, from the laboratory. One of the group `tree_sway.choosers`
+names a class of simulators that choose among the coordinates of a `SwayModel` while they run: the
+model ``auto``.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from typing import Any
 from tree_sway.errors import MissingDependencyError
 
 GROUP = 'tree_sway.models'
+CHOOSERS = 'tree_sway.choosers'
 LABORATORY = 'tree_sway_lab'
 
 
@@ -33,6 +36,18 @@ def maker_of(model: str) -> Callable[..., Any]:
     refuse_missing_model(model)
     make: Callable[..., Any] = installed_models()[model].load()
     return make
+
+
+def chooser_of(model: str) -> Callable[..., Any]:
+    """Return the class of the simulators of a model that chooses; refuse one that is missing."""
+    for point in entry_points(group=CHOOSERS, name=model):
+        chooser: Callable[..., Any] = point.load()
+        return chooser
+    raise MissingDependencyError(
+        f"model '{model}' is not installed",
+        where='model',
+        cure='install tree_sway_ros again, or give a number of coordinates',
+    )
 
 
 def refuse_missing_model(model: str) -> None:

@@ -12,7 +12,7 @@ from tree_sway_lab.resegment import MOST_SEGMENTS, resegment
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.builtin import builtin_tree
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulators import MODELS, OBSERVED, swaying
+from simulators import AUTO, MODELS, OBSERVED, swaying
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.settings import Settings
@@ -71,9 +71,10 @@ def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
         assert sim.state().values.tobytes() == before.values.tobytes()
 
 
-def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
+@pytest.mark.parametrize('model', AUTO)
+def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork, model):
     tree = fork()
-    sim = make_simulator(tree, species_named(tree.species), model='auto')
+    sim = make_simulator(tree, species_named(tree.species), model=model)
     for state in (replace(sim.state(), model='99'), replace(sim.state(), digest='0' * 16)):
         with pytest.raises(StateError, match=r'a state of (model|settings)'):
             sim.set_state(state)

@@ -68,14 +68,14 @@ CHANGES = {
         "from tree_sway.growth import forms; print('elm' in str(vars(forms)))", 'True',
     ),
     'turbulence': (
-        'tree_sway/core/wind/simulated/turbulence.py',
+        'tree_sway/core/wind/turbulence.py',
         'REFERENCE_INTENSITY = 0.14', 'REFERENCE_INTENSITY = 0.16',
-        'from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY as i; print(i)',
+        'from tree_sway.core.wind.turbulence import REFERENCE_INTENSITY as i; print(i)',
         '0.16',
     ),
     'fault': (
-        'tree_sway/core/wind/simulated/sensor_faults.py', '_SPIKE = 20.0', '_SPIKE = 30.0',
-        'from tree_sway.core.wind.simulated.sensor_faults import SensorFaults;'
+        'tree_sway/simulation/wind/sensor_faults.py', '_SPIKE = 20.0', '_SPIKE = 30.0',
+        'from tree_sway.simulation.wind.sensor_faults import SensorFaults;'
         "faults = SensorFaults('spike', every=1.0, duration=0.5);"
         'print(*(float(each.vector[0]) for each in faults.sent(1.0, 0, [0.0, 0.0, 0.0])))',
         '30.0',

@@ -18,12 +18,12 @@ from tree_sway.commands import cli
 from tree_sway.core.drag import load_spreads
 from tree_sway.core.settings import USUAL
 from tree_sway.core.species.species import ROOT_MOMENT, species_named
-from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.files.scenes import classes as kind_classes
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
 from tree_sway.page import page_client, server
 from tree_sway.simulation import strength_band
+from tree_sway.simulation.wind.about_means import LEAST_INTERVAL
 from tree_sway.stream import check_description, client, playout, protocol
 
 pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('test_pages.py'))))

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 
 
 def _of_annex(model, module):
@@ -29,7 +29,10 @@ FULL = _of_annex('full', 'tree_sway_lab')
 OBSERVED = _of_annex('observed', 'tree_sway.twin')
 """A tree that follows sensors, where that annex is."""
 
-MODELS = ['auto', 'branch', *FULL]
+AUTO = _of_annex('auto', 'tree_sway.fidelity')
+"""As few coordinates as suffice, where that annex is."""
+
+MODELS = [*AUTO, 'branch', *FULL]
 """Models with a name."""
 
 

@@ -10,8 +10,8 @@ from geometry_msgs.msg import Vector3Stamped  # noqa: E402, I100
 from rcl_interfaces.srv import SetParameters  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 
-from tree_sway.core.wind.simulated.anemometer import AnemometerModel  # noqa: E402
 from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway.simulation.wind.anemometer import AnemometerModel  # noqa: E402
 from tree_sway_ros.process.topics import WIND  # noqa: E402
 
 

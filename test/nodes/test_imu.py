@@ -19,7 +19,7 @@ from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.core.wind.intake import WindIntake  # noqa: E402
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402

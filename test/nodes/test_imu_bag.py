@@ -20,7 +20,7 @@ from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.core.tree.tree import tips_of_poses  # noqa: E402
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.motion.imu_bag import read_imu_bag  # noqa: E402
 from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402

@@ -20,7 +20,7 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.settings import Settings  # noqa: E402
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.page_client import MOST_IN_STATE, PageClient  # noqa: E402

@@ -18,7 +18,7 @@ from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees import open_tree
 from tree_sway.simulation.rig import Rig, simulate

@@ -12,7 +12,7 @@ import pytest
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.growth.growing import grow
 from tree_sway.simulation.rig import simulate
 from tree_sway.twin import members as members_module

@@ -24,7 +24,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
 from tree_sway.twin.later_work import Submit

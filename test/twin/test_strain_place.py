@@ -15,7 +15,7 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
 from tree_sway.simulation.wood_strain import WoodStrain

@@ -11,7 +11,7 @@ randomness without an ``rng`` argument. Read its houses in the order of the mech
 3. `setup`: a tree once becomes beams, matrices, modes, a table of loads.
 4. `model`: `SwayModel`, the arrays that all this found: the wall between set-up and run.
 5. `native`: the C++ of a step and a pose, called with checked arrays.
-6. `run`: one tree, step by step; `fidelity`: how many coordinates it needs.
+6. `run`: one tree, step by step.
 7. `scene`: trees that stand somewhere, in one wind, on one grid of time.
 
 `settings`, `tree_state`, `arrays`, `checks`, `rotation` and `random_source` are single modules,

@@ -14,8 +14,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.core.species import species_named
-from tree_sway.core.wind import FASTEST_WIND
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import FASTEST_WIND, simulate_turbulence
 from tree_sway.files.models import use_disk_cache
 from tree_sway.files.trees import open_tree, TreeFile
 from tree_sway.files.wind import read_wind, WindRecord

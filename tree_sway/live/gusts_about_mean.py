@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind import FASTEST_WIND
-from tree_sway.core.wind.simulated import Turbulence, usual_deviation, usual_gust
+from tree_sway.core.wind import FASTEST_WIND, Turbulence
+from tree_sway.simulation.wind import usual_deviation, usual_gust
 
 RATE = 10.0
 """Samples per second [Hz]."""

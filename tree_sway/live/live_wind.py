@@ -20,7 +20,6 @@ import time
 import numpy as np
 
 from tree_sway.core.wind import is_wind
-from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.files.wind import Velocity
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
@@ -28,6 +27,7 @@ from tree_sway.live.live_source import LiveSource
 from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.registry import OpenedSource
 from tree_sway.live.transports.transport import Message
+from tree_sway.simulation.wind import LEAST_INTERVAL
 
 Sample = tuple[float, Velocity]
 """Time [s] and wind east, north, up [m/s], the way the air goes."""

@@ -15,11 +15,12 @@ import logging
 import threading
 import time
 
-from tree_sway.core.scene import Run, SceneSimulator, set_demand, Simulator
+from tree_sway.core.scene import Run, SceneSimulator, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_keys
 from tree_sway.core.wind import FASTEST_WIND, WindGate, WindIntake
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.fidelity import set_demand
 from tree_sway.files.export import morphing_tree
 from tree_sway.growth import BUILTIN_TREES, stem_growth
 from tree_sway.live import LiveWind, MotionFeed

@@ -40,8 +40,7 @@ import numpy as np
 from tree_sway.core.checks import one_of, within
 from tree_sway.core.species import SPECIES, Species
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind import WindProfile
-from tree_sway.core.wind.simulated import SCALE_RATIOS, turbulence_scale
+from tree_sway.core.wind import SCALE_RATIOS, turbulence_scale, WindProfile
 
 _INTEGRAL_SCALE = float(SCALE_RATIOS[0])
 """Integral scale of the wind along itself over the turbulence scale [-]."""

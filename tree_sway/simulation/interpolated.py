@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.simulated import LEAST_INTERVAL
+from tree_sway.simulation.wind import LEAST_INTERVAL
 
 _SPACING = 10.0
 _MOST = 1_000_000

@@ -26,11 +26,11 @@ from tree_sway.core.wind import (
     FASTEST_WIND,
     LONGEST_HOLD,
     shorter_than,
+    simulate_turbulence,
     WindAverage,
     WindGate,
     WindIntake,
 )
-from tree_sway.core.wind.simulated import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.simulation.interpolated import interpolated_means
 from tree_sway.simulation.strength_use import StrengthGauge, StrengthUse

@@ -10,9 +10,9 @@ from typing import Protocol
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene import Run
-from tree_sway.core.wind.simulated import AnemometerModel
 from tree_sway.newest import Newest
 from tree_sway.simulation.interpolated import interpolated_means
+from tree_sway.simulation.wind import AnemometerModel
 
 _RATE = 20.0
 Sample = tuple[float, tuple[float, float, float]]

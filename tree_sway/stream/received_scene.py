@@ -20,9 +20,10 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native import bytes_of, NativeModel, NativeStand
 from tree_sway.core.oscillators import propagator
 from tree_sway.core.run import bent_too_far, ClampWatch, come_to_rest, fewer
-from tree_sway.core.scene import arrays_of_table, own_step
+from tree_sway.core.scene import own_step
 from tree_sway.core.wind.gusts import GustHistory
 from tree_sway.errors import ParameterError
+from tree_sway.stream.table_export import arrays_of_table
 
 _SLOWEST = 0.3
 """Smallest response to a rate within a time step, over that of the slowest coordinate."""

@@ -7,12 +7,13 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.run import TableOscillators
-from tree_sway.core.scene import exported_table, rounded, Simulator
+from tree_sway.core.scene import Simulator
 from tree_sway.core.settings import USUAL
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description, TABLES
 from tree_sway.stream.scene_kind import SceneKind
+from tree_sway.stream.table_export import exported_table, rounded
 
 
 def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.wind.simulated import AnemometerModel, SensorFaults
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.wind import AnemometerModel, SensorFaults
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND
 from tree_sway_ros.reports.diagnostics import OK, Status

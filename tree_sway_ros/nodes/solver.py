@@ -10,10 +10,11 @@ import time
 from typing import Any
 
 from tree_sway.core.run import Tuning
-from tree_sway.core.scene import Run, Scene, set_cost_scale, Simulator
+from tree_sway.core.scene import Run, Scene, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.wind import WindAverage, WindIntake
 from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
+from tree_sway.fidelity import adaptive_among, set_cost_scale
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
@@ -106,7 +107,8 @@ class SolverNode(TreeSwayNode):
         self._samples = SampleWait(self, self._lacking)
         self._tuned: dict[str, float] = {}
         self._demand = Demand(self, self._run, self.refusals)
-        set_cost_scale(self.simulator.simulators, self._run.warm_up())
+        choosing = adaptive_among(self.simulator.simulators)
+        set_cost_scale(choosing, self._run.warm_up(choosing))
         self._demand.set()
         self.simulator.reset()  # on the requested model
 

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 import time
 
-from tree_sway.core.scene import adaptive_among, Run, Simulator
+from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import GateCounts
+from tree_sway.fidelity import adaptive_among
 from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 from tree_sway_ros.timing.pacer import Pacer, Timing

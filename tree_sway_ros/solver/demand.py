@@ -7,7 +7,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from tree_sway.core.scene import Run, set_demand
+from tree_sway.core.scene import Run
+from tree_sway.fidelity import set_demand
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CAMERA
 from tree_sway_ros.reports.refusals import Refusals

@@ -23,7 +23,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.threads import one_thread
 from tree_sway.core.species.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 

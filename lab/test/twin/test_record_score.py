@@ -19,7 +19,7 @@ from tree_sway.commands.cli import main
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.motion.tree_record import RecordedSensor, TreeRecord, write_tree_record
 from tree_sway.growth.builtin import builtin_tree

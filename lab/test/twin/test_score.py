@@ -16,7 +16,7 @@ from tree_sway_lab.twin.sway_comparison import compare_sway
 from tree_sway.commands.cli import main
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.growth.builtin import builtin_tree
 from tree_sway.growth.growing import grow

@@ -18,7 +18,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.run import SwaySimulator, TableOscillators
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.measured import Measured

@@ -22,7 +22,7 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway_lab.battery.work_precision import flops_a_step
 from tree_sway_lab.methods import minimal_form, multiplier_form

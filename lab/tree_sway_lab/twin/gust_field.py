@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.wind.simulated import SCALE_RATIOS
+from tree_sway.core.wind import SCALE_RATIOS
 
 DECAYS = np.array([3.0, 10.0, 10.0])
 """Davenport's C along the wind, across it and up [-]."""

@@ -22,7 +22,7 @@ from tree_sway.core.scene import make_simulator
 from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.growth import grow
 from tree_sway.twin import place_on, SensorPlace, uncertainty_of, uncorrelated_draws
 from tree_sway_lab.kinds.kinds import kind_called

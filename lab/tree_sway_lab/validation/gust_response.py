@@ -21,7 +21,7 @@ from tree_sway.core.scene import PlacedTree
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import rooted
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.growth import grow
 from tree_sway.simulation import exposure_of, Rig
 from tree_sway.simulation.commands import turbulence_of

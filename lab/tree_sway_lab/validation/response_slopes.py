@@ -24,7 +24,7 @@ from scipy.signal import welch
 from tree_sway.core.arrays import Floats
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_named
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.growth import grow
 from tree_sway.simulation import Rig
 

@@ -15,7 +15,7 @@ import re
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway_lab.frame_means import frame_means
 

@@ -16,7 +16,7 @@ import pytest
 from tree_sway.core.model.sway_model import MEANINGS
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.preparation import prepare
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 
 HERE = Path(__file__).parent
 PAGE = (HERE.parents[2] / 'doc' / 'sway_model.md').read_text(encoding='utf-8')

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulators import FULL
+from simulators import AUTO, FULL
 
 from tree_sway.core.model.records import branch_layout, room_for_fields, ROOMS
 from tree_sway.core.run import assembly
@@ -133,7 +133,7 @@ def test_records_of_plain_branches_have_room_for_no_more(fork):
         assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
 
 
-@pytest.mark.parametrize('model', [60, 'auto', *FULL])
+@pytest.mark.parametrize('model', [60, *AUTO, *FULL])
 @pytest.mark.parametrize('seed', range(4))
 def test_a_scan_with_absurd_diameters_is_refused_or_stays_finite(fork, model, seed):
     rng, tree = np.random.default_rng(seed), fork()

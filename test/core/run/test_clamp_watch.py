@@ -7,8 +7,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from simulators import AUTO
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer, FEWEST, LONGEST_CLAMPED
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.run.simulator import SwaySimulator
@@ -30,6 +30,8 @@ def clamped(model):
 def clamped_simulator(tree, model):
     made = make_simulator(tree, model=model)
     if model == 'auto':
+        from tree_sway.fidelity import AdaptiveSimulator
+
         return AdaptiveSimulator(clamped(made.models[0]))
     return SwaySimulator(clamped(made.models[0]))
 
@@ -50,7 +52,7 @@ def test_numbers_end_at_the_fewest():
     assert fewer(2) == 2
 
 
-@pytest.mark.parametrize('model', [12, 'auto'])
+@pytest.mark.parametrize('model', [12, *AUTO])
 def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     sim = clamped_simulator(fork(), model)
     most = sim.banks[0].oscillators.shapes.shape[1]

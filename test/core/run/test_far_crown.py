@@ -17,7 +17,7 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.settings import Settings
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.builtin import builtin_tree
 

@@ -8,7 +8,7 @@ from drawn_trees import crown, Sketch, towards, UP, WOOD
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from simulators import FULL
+from simulators import AUTO, FULL
 
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring, Touch
@@ -82,7 +82,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
         np.testing.assert_allclose(force @ push.lever, by_differences, atol=1e-3 * largest)
 
 
-@pytest.mark.parametrize('model', [60, 'auto'])
+@pytest.mark.parametrize('model', [60, *AUTO])
 def test_the_foot_holds_the_force(tree, model):
     segment, force = outer_segment(tree), np.array([3.0, 1.0, -0.5])
     sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
@@ -242,7 +242,7 @@ def test_a_limb_gives_way_as_with_all_coordinates():
     assert max(errors) < 0.03
 
 
-@pytest.mark.parametrize('model', [20, 'auto', *FULL])
+@pytest.mark.parametrize('model', [20, *AUTO, *FULL])
 def test_a_spring_at_the_foot_of_the_stem_moves_nothing(tree, model):
     pulled, alone = (make_simulator(tree, WOOD, model=model, tolerance=1e-9) for _ in range(2))
     for number in range(120):

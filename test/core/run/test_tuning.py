@@ -7,7 +7,7 @@ from __future__ import annotations
 from drawn_trees import crown, WOOD
 import numpy as np
 import pytest
-from simulators import FULL
+from simulators import AUTO, FULL
 
 from tree_sway.core.run.tuning import GLIDE
 from tree_sway.core.scene.make import make_simulator
@@ -170,7 +170,7 @@ def test_weight_needs_a_tree_that_was_made_with_it(tree):
 
 @pytest.mark.parametrize(
     ('model', 'factor'),
-    [(12, 0.6), ('branch', 0.6), ('auto', 2.0)],
+    [(12, 0.6), ('branch', 0.6), *(pytest.param('auto', 2.0, marks=each.marks) for each in AUTO)],
 )
 def test_a_steady_wind_bends_a_tuned_tree_as_one_made_so(tree, model, factor):
     wood = WOOD.__class__(

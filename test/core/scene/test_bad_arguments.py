@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulators import FULL, MODELS, OBSERVED, swaying
+from simulators import AUTO, FULL, MODELS, OBSERVED, swaying
 
 from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.run.outcome import Outcome
@@ -19,12 +19,12 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.averaging import WindAverage
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError, StateError, TreeError
 from tree_sway.growth.growing import grow
 
 DT = 1.0 / 60.0
-KINDS = (0, 4, 'branch', 'auto', 'forest', *FULL, *OBSERVED)
+KINDS = (0, 4, 'branch', *AUTO, 'forest', *FULL, *OBSERVED)
 
 
 def simulator(tree, kind, **changes):
@@ -198,8 +198,6 @@ def test_what_is_no_number_is_named(fork, value):
         lambda: grow('oak', value, rng=5),
         lambda: simulate_turbulence(value, rate=10.0, duration=5.0, rng=5),
         lambda: simulate_turbulence(5.0, rate=value, duration=5.0, rng=5),
-        lambda: make_simulator(fork(), model='auto', tolerance=value),
-        lambda: make_simulator(fork(), model='auto', budget=value),
         lambda: Settings(gravity=value),
         lambda: Settings(max_wind=value),
         lambda: replace(place, x=value),

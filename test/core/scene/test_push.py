@@ -7,6 +7,7 @@ from __future__ import annotations
 from drawn_trees import crown, WOOD
 import numpy as np
 import pytest
+from simulators import AUTO, FULL
 
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring
 from tree_sway.core.scene.make import make_simulator
@@ -33,21 +34,21 @@ def resting(tree):
     return stand_of(tree)
 
 
-def stand_of(tree, scale=1.0, *, has_own=True):
-    """Return a stand whose first tree is turned and scaled; a last one has its own model."""
+def stand_of(tree, scale=1.0, own=None):
+    """Return a stand whose first tree is turned and scaled; a last one may have its own model."""
     trees = [
         PlacedTree('turned', tree, 10.0, 5.0, yaw=YAW, scale=scale, species=WOOD),
         PlacedTree('other', tree, 20.0, 5.0, species=WOOD),
     ]
-    if has_own:
-        trees.append(PlacedTree('own', tree, 30.0, 5.0, species=WOOD, model='auto'))
+    if own is not None:
+        trees.append(PlacedTree('own', tree, 30.0, 5.0, species=WOOD, model=own))
     return Scene(trees).simulator(Settings(model=20))
 
 
 @pytest.mark.parametrize('kind', ['force', 'spring'])
 @pytest.mark.parametrize('scale', [1.0, 1.3])
 def test_a_tree_of_a_stand_moves_as_it_would_alone(tree, scale, kind):
-    stand, alone = stand_of(tree, scale, has_own=False), make_simulator(tree, WOOD, model=20)
+    stand, alone = stand_of(tree, scale), make_simulator(tree, WOOD, model=20)
     segment, force, away = int(tree.branch_first[-2] + 2), np.array([3.0, 1.0, 0.5]), [0.3, 0.1, 0]
     rest, whole = alone.place()[segment, :3].copy(), stand.place()
     there = whole[segment, :3].copy()
@@ -76,8 +77,9 @@ def test_a_tree_of_a_stand_moves_as_it_would_alone(tree, scale, kind):
     np.testing.assert_array_equal(stand.place()[n : 2 * n], whole[n : 2 * n])
 
 
-def test_a_tree_on_a_model_of_its_own_is_pushed_too(tree):
-    stand = stand_of(tree)
+@pytest.mark.parametrize('own', [*AUTO, *FULL])
+def test_a_tree_on_a_model_of_its_own_is_pushed_too(tree, own):
+    stand = stand_of(tree, own=own)
     n, before = tree.n_segments, stand.place()
     for _ in range(60):
         stand.push(2 * n + 5, (20.0, 0.0, 0.0), 0.5)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from simulators import AUTO
 
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
@@ -17,7 +18,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 from tree_sway.errors import ParameterError, TreeError
 
 DT = 1.0 / 60.0
@@ -185,12 +186,13 @@ def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
     assert (first != second).any()
 
 
-def test_every_tree_finds_the_model_it_needs(fork, stem):
+@pytest.mark.parametrize('model', AUTO)
+def test_every_tree_finds_the_model_it_needs(fork, stem, model):
     trees = [
         PlacedTree('fork', fork()),
         PlacedTree('twig', stem(length=0.1, base=0.02, tip=0.01)),
     ]
-    forest = swaying(trees, model='auto', tolerance=1e-3)
+    forest = swaying(trees, model=model, tolerance=1e-3)
     chosen = [each.choice.name for each in forest.simulators]
     assert chosen[1] == '0'
     assert int(chosen[0]) > 3

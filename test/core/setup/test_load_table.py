@@ -4,13 +4,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 from drawn_trees import crooked, SETTINGS, weeping, WOOD
 import numpy as np
 import pytest
 
-from tree_sway.core.scene.table_export import arrays_of_table, exported_table
 from tree_sway.core.setup.load_table import _without_gain
 from tree_sway.core.setup.preparation import prepare
 
@@ -36,8 +33,6 @@ def test_no_motion_gains_energy_by_drag(tree):
     """Of every kind of tree in the suite of the laboratory."""
     model = prepare(tree, WOOD, SETTINGS, model=40)
     assert least_share_of_table(model) > -1e-5  # single precision
-    table = arrays_of_table(*exported_table(model, model.own_damping))
-    assert least_share_of_table(SimpleNamespace(**table)) > -1e-5
 
 
 def test_a_gain_is_left_out_and_nothing_else():

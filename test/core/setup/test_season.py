@@ -94,7 +94,6 @@ def test_needles_stay(key):
 
 DOORS = {
     'make_simulator': lambda tree, **how: make_simulator(tree, **how),
-    'auto': lambda tree, **how: make_simulator(tree, model='auto', **how),
     'Scene': lambda tree, **how: Scene([PlacedTree('tree', tree)]).simulator(**how),
 }
 

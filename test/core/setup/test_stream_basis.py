@@ -12,7 +12,7 @@ from drawn_trees import crown
 import numpy as np
 import pytest
 from scipy import linalg
-from simulators import FULL
+from simulators import AUTO, FULL
 
 from tree_sway.core.model.state_basis import FULL_SCALE, rounded
 from tree_sway.core.run.simulator_basis import basis_of
@@ -20,7 +20,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
 from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
 from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
@@ -109,7 +109,7 @@ def test_motions_that_are_too_many_for_a_frame_take_the_most_that_it_has():
     assert shapes.shape == (50, COUNTS[-1])
 
 
-@pytest.mark.parametrize('model', ['branch', 'auto', 12, *FULL])
+@pytest.mark.parametrize('model', ['branch', *AUTO, 12, *FULL])
 def test_the_motion_of_every_model_is_streamed(model):
     sim = make_simulator(crown((5, 3)), model=model)
     gap, motion = gaps(sim, basis_of(sim), 9.0)

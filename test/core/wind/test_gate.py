@@ -9,7 +9,7 @@ import pytest
 
 from tree_sway.core.wind import gate as gate_module
 from tree_sway.core.wind.gate import LARGEST_LEAD, SECOND, WindGate
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
 PERIOD = 0.05

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.drag.drag_law import AIR_DENSITY
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.files.export.hinged_tree import hinged_tree, plain_names, poses_on_parents
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.growth.builtin import builtin_tree

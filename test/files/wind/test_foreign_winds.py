@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.wind.simulated.about_means import turbulence_about_means
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.wind.nmea import parse_nmea
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.simulation.rig import simulate
+from tree_sway.simulation.wind.about_means import turbulence_about_means
 
 N = 10
 SPEEDS = 4.0 + np.sin(np.arange(N))

@@ -22,7 +22,7 @@ import sys
 import numpy as np
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
 
 FOLDER = Path(__file__).resolve().parent

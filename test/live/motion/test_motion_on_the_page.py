@@ -24,7 +24,7 @@ from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.species.species import species_named  # noqa: E402
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
+from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.live.motion import motion_feed  # noqa: E402

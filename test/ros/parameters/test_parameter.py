@@ -13,13 +13,13 @@ from tree_sway.core.settings import MOST, Settings  # noqa: I100
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway.errors import ParameterError
 from tree_sway.parameters.parameter import (
     Parameter,
     unknown_names,
     unknown_parameter,
 )
+from tree_sway.simulation.wind.sensor_faults import FAULTS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
 ROOT = Path(__file__).parents[3]

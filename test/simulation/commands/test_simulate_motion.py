@@ -18,7 +18,7 @@ from tree_sway.commands.cli import main
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.species import species_named
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.growth.builtin import builtin_tree
 from tree_sway.simulation.commands.exposure import touched_species

@@ -7,7 +7,7 @@ Trees that stand somewhere, in one wind.
 makes their `Simulator`: a `SwaySimulator` of one tree, a `SceneSimulator` of several, whose trees
 of one kind share a table and step in one native call (`sharing`, `shared_tables`). `Run` is the
 runtime that nodes, page and `simulate` have in common: the grid of time, gate and mean of the
-wind, requests between steps. `exported_table` is the table of a tree for receivers that solve it.
+wind, requests between steps.
 
 Nothing here draws, publishes or reads files.
 """
@@ -17,9 +17,6 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
-    from tree_sway.core.scene.demand import adaptive_among as adaptive_among
-    from tree_sway.core.scene.demand import set_cost_scale as set_cost_scale
-    from tree_sway.core.scene.demand import set_demand as set_demand
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.make import simulator_of as simulator_of
     from tree_sway.core.scene.make import solved as solved
@@ -32,8 +29,5 @@ if TYPE_CHECKING:
     from tree_sway.core.scene.scene import Scene as Scene
     from tree_sway.core.scene.scene_simulator import SceneSimulator as SceneSimulator
     from tree_sway.core.scene.scene_simulator import Simulator as Simulator
-    from tree_sway.core.scene.table_export import arrays_of_table as arrays_of_table
-    from tree_sway.core.scene.table_export import exported_table as exported_table
-    from tree_sway.core.scene.table_export import rounded as rounded
 else:
     __getattr__, __dir__, __all__ = face(__name__)

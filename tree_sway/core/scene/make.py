@@ -92,6 +92,7 @@ def simulator_of(
     model = prepared(reductions, cache=cache)
     if not auto:
         return SwaySimulator(model)
-    from tree_sway.core.fidelity import AdaptiveSimulator
+    from tree_sway.installed_models import chooser_of
 
-    return AdaptiveSimulator(model, **auto)
+    made: SwaySimulator = chooser_of('auto')(model, **auto)
+    return made

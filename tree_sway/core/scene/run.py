@@ -17,19 +17,21 @@ times are whole nanoseconds of one clock.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 import math
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import LONGEST_STEP
-from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind import GateCounts, GoodWind, WindAverage, WindIntake
 from tree_sway.errors import TreeSwayError
+
+if TYPE_CHECKING:
+    from tree_sway.core.run import SwaySimulator
 
 LONGEST_JUMP = round(1e9 * LONGEST_STEP)
 """Longest time that one `Run.advance` solves [ns]; time before it is skipped."""
@@ -123,9 +125,8 @@ class Run:
         """End of the last step in [ns]; None before the first."""
         return None if self._index is None else self._index * self.period
 
-    def warm_up(self) -> float:
-        """Step once; return the cost of a frame of the trees on ``auto`` in [us]."""
-        adaptive = adaptive_among(self.simulator.simulators)
+    def warm_up(self, timed: Sequence[SwaySimulator] = ()) -> float:
+        """Step some frames; return the cost of a frame of some of the trees in [us]."""
         spent = []
         wind = np.array([1.0, 0.0, 0.0])
         dt = self.period * 1e-9
@@ -134,7 +135,7 @@ class Run:
             self.simulator.place()
             if self._timer is not None:
                 begin = self._timer()
-                for each in adaptive:
+                for each in timed:
                     each.step(wind, dt)
                     each.place()
                 spent.append(self._timer() - begin)

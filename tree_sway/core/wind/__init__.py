@@ -6,11 +6,12 @@ The wind from a sensor to the trees.
 In the order of a sample: `WindConvention` (unit, sign, turn of the mast), `WindGate` (what no wind
 does is refused and counted), `WindIntake` (both, then the force plane), `WindAverage` (the mean of
 the curve through the samples over a step), `WindProfile` (height), `GustHistory` (gusts travel to
-a tree) and `CrownWind` (and from limb to limb). `ClimateTracker` keeps mean and spectrum of what
-has blown, for who chooses or filters by them. Speeds are in [m/s], the way the air goes, east,
+a tree) and `CrownWind` (and from limb to limb). Speeds are in [m/s], the way the air goes, east,
 north, up; times in [ns] where they are stamps, else in [s].
 
-Simulated winds are in `simulated`; formats of files and instruments are in other houses.
+`simulate_turbulence` draws a record from Kaimal's spectra (IEC 61400-1:2005, annex B.2); the same
+seed gives the same wind on every machine. Gusts in space are in `gusts`; formats of files and
+instruments are in other houses.
 """
 
 from typing import TYPE_CHECKING
@@ -20,8 +21,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.wind.averaging import LONGEST_HOLD as LONGEST_HOLD
     from tree_sway.core.wind.averaging import WindAverage as WindAverage
-    from tree_sway.core.wind.climate import ClimateTracker as ClimateTracker
-    from tree_sway.core.wind.climate import WindClimate as WindClimate
     from tree_sway.core.wind.convention import velocity_of_bearing as velocity_of_bearing
     from tree_sway.core.wind.convention import WindConvention as WindConvention
     from tree_sway.core.wind.gate import GateCounts as GateCounts
@@ -34,5 +33,12 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.limits import is_wind as is_wind
     from tree_sway.core.wind.limits import shorter_than as shorter_than
     from tree_sway.core.wind.sensor_timing import SensorTiming as SensorTiming
+    from tree_sway.core.wind.turbulence import along_bearing as along_bearing
+    from tree_sway.core.wind.turbulence import REFERENCE_INTENSITY as REFERENCE_INTENSITY
+    from tree_sway.core.wind.turbulence import SCALE_RATIOS as SCALE_RATIOS
+    from tree_sway.core.wind.turbulence import SHORTEST_PERIOD as SHORTEST_PERIOD
+    from tree_sway.core.wind.turbulence import simulate_turbulence as simulate_turbulence
+    from tree_sway.core.wind.turbulence import Turbulence as Turbulence
+    from tree_sway.core.wind.turbulence import turbulence_scale as turbulence_scale
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.run import SwaySimulator
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 
 RATE = 15
 """Frames per second."""

@@ -9,13 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from tree_sway.core.wind import FASTEST_WIND
-from tree_sway.core.wind.simulated import (
-    can_be_filled,
-    LEAST_INTERVAL,
-    turbulence_about_means,
-)
 from tree_sway.errors import ParameterError
 from tree_sway.files.wind.record import WindRecord
+from tree_sway.simulation.wind import can_be_filled, LEAST_INTERVAL, turbulence_about_means
 
 
 def filled_means(

@@ -15,12 +15,12 @@ from pathlib import Path
 import time
 
 from tree_sway.commands import refuse_overwriting, RowFile
-from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
 from tree_sway.live import LiveWind, WindReading
 from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
+from tree_sway.simulation.wind import LEAST_INTERVAL
 
 INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')
 MEANS = ('time', 'wind_speed [m/s]', 'wind_direction [deg]', 'wind_gust [m/s]')

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
-from tree_sway.core.wind.simulated import LEAST_INTERVAL
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
@@ -17,6 +16,7 @@ from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
+from tree_sway.simulation.wind import LEAST_INTERVAL
 
 SHORTEST, LONGEST = 0.2, 86_400.0
 """Interval of requests [s]."""

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from tree_sway.core.fidelity import DIAL
 from tree_sway.core.species import species_keys
+from tree_sway.fidelity import DIAL
 from tree_sway.growth import BUILTIN_TREES, OLDEST
 from tree_sway.installed_models import installed_models
 from tree_sway.live import LiveWind

@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 from tree_sway.commands import counting, waiting
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.commands import (
     add_distance_arguments,

@@ -11,7 +11,7 @@ from tree_sway_lab.example_trees import leafy_sapling
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.species.wood import Species
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 
 DT = 1.0 / 60.0
 WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0, damping_in_leaf=0.10)

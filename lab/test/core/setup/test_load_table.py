@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.kinds.kinds import kind_called, KINDS
 from tree_sway_lab.validation.trial import judged_simulator
 
-from tree_sway.core.scene.table_export import arrays_of_table, exported_table
+from tree_sway.stream.table_export import arrays_of_table, exported_table
 
 FEW = 'whips 4', 'palm 7', 'crooked 8'
 TRIED = [

@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.fidelity import AdaptiveSimulator, dialled, REVIEW
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.setup import prepare
 from tree_sway.core.tree import tips_of_poses
-from tree_sway.core.wind import WindClimate
+from tree_sway.fidelity import AdaptiveSimulator, dialled, REVIEW, WindClimate
 from tree_sway.files.wind import read_wind
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.tip_error import record_tips

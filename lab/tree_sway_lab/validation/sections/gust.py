@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.fidelity import AdaptiveSimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.setup import prepare
+from tree_sway.fidelity import AdaptiveSimulator
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.models import SEEDS

@@ -16,8 +16,7 @@ import numpy as np
 
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_named
-from tree_sway.core.wind import WindProfile
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import simulate_turbulence, WindProfile
 from tree_sway.errors import ParameterError
 from tree_sway.growth import grow
 from tree_sway.simulation import simulate

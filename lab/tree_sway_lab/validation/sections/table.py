@@ -9,16 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.fidelity import AdaptiveSimulator
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.settings import USUAL
 from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind import WindClimate
 from tree_sway.core.wind.gusts import USUAL_COHERENCE
 from tree_sway.errors import ParameterError
+from tree_sway.fidelity import AdaptiveSimulator, WindClimate
 from tree_sway.files.trees import open_tree
 from tree_sway.growth import BUILTIN_TREES
 from tree_sway_lab.bench.sizes import against, gusts_and_turns

@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.wind.gusts.far_wind import FarWind
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
 
 DT = 1.0 / 20.0
 PLACES = np.array([[0.0, 0.0, -1.0], [0.0, 2.0, -3.0], [1.0, -2.0, -3.0]])

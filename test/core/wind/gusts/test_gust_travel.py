@@ -14,7 +14,7 @@ import pytest
 
 from tree_sway.core.wind.gusts.gust_travel import GustHistory, SLOWEST_GUST
 from tree_sway.core.wind.gusts.wind_history import WindHistory
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 from tree_sway.errors import ParameterError
 
 LARGEST_STRETCH = 0.5

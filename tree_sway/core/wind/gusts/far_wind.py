@@ -40,7 +40,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Complexes, Floats, Ints, Singles
 from tree_sway.core.native import Address, contiguous, LIBRARY, NativeFarWind
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 
 _DECAYS = np.array([3.0, 10.0, 10.0])
 """Davenport's C along the wind, across it and up [-]."""

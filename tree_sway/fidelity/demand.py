@@ -9,8 +9,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.fidelity import AdaptiveSimulator
 from tree_sway.core.run import SwaySimulator
+from tree_sway.fidelity.adaptive import AdaptiveSimulator
 
 
 def set_demand(

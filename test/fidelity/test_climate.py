@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from tree_sway.core.wind.climate import ClimateTracker, WindClimate
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
+from tree_sway.fidelity.climate import ClimateTracker, WindClimate
 
 
 def test_the_power_of_a_record_is_its_mean_square_about_the_mean():

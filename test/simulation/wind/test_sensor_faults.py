@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tree_sway.core.wind.simulated.sensor_faults import FAULTS, SensorFaults
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.wind.sensor_faults import FAULTS, SensorFaults
 
 RATE = 10
 

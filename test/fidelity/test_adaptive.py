@@ -8,13 +8,13 @@ from drawn_trees import crown
 import numpy as np
 import pytest
 
-from tree_sway.core.fidelity.adaptive import LEAVE_IN, REVIEW
 from tree_sway.core.run.outcome import Outcome
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.climate import WindClimate
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.errors import StateError
+from tree_sway.core.wind.turbulence import simulate_turbulence
+from tree_sway.errors import ParameterError, StateError
+from tree_sway.fidelity.adaptive import LEAVE_IN, REVIEW
+from tree_sway.fidelity.climate import WindClimate
 
 DT = 1.0 / 60.0
 TREE = crown()
@@ -152,3 +152,9 @@ def test_reset_is_back_to_the_expected_wind():
     assert number(sim) == first
     assert np.abs(sim.place()[:, :3] - TREE.start).max() < 1e-12
     assert LEAVE_IN > 0.0
+
+
+@pytest.mark.parametrize('name', ['tolerance', 'budget'])
+def test_a_demand_that_is_no_number_is_named(name):
+    with pytest.raises(ParameterError, match='is not a number'):
+        make_simulator(TREE, model='auto', **{name: 'a'})

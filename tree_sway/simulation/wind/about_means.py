@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY, Turbulence
+from tree_sway.core.wind import REFERENCE_INTENSITY, Turbulence
 
 _RATE = 10.0
 """Largest rate of the wind in [Hz]."""

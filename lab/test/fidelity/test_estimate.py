@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from drawn_trees import crown
 
-from tree_sway.core.fidelity.estimate import frame_cost
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.fidelity.estimate import frame_cost
 
 
 def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch():

@@ -11,7 +11,7 @@ import scipy.integrate
 import scipy.signal
 import scipy.stats
 
-from tree_sway.core.wind.simulated.turbulence import (
+from tree_sway.core.wind.turbulence import (
     along_bearing,
     simulate_turbulence,
     Turbulence,
@@ -20,7 +20,7 @@ from tree_sway.core.wind.simulated.turbulence import (
 from tree_sway.errors import ParameterError
 
 RATE, HOUR = 20.0, 3600.0
-GOLDEN = Path(__file__).parents[3] / 'golden' / 'pyconturb' / 'spectra.csv'
+GOLDEN = Path(__file__).parents[2] / 'golden' / 'pyconturb' / 'spectra.csv'
 
 
 def along_the_wind(record):

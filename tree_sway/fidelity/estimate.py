@@ -16,16 +16,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 import math
-from typing import cast, Protocol
+from typing import cast
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import drag_density, DragLaw
-from tree_sway.core.run import Bank, Oscillators
+from tree_sway.core.run import Bank, TableOscillators
 from tree_sway.core.setup import branch_rotations, tip_motion, WindMoments
 from tree_sway.core.tree import Tree
-from tree_sway.core.wind import WindClimate
+from tree_sway.fidelity.climate import WindClimate
 
 DIAL = (0, 3, 6, 12, 20, 40, 60)
 """Numbers of coordinates to choose from, beside the number of all."""
@@ -107,27 +107,6 @@ class Estimate:
     def name(self) -> str:
         """Return the value of the parameter ``model``."""
         return str(self.n_coordinates)
-
-
-class Dialled(Oscillators, Protocol):
-    """Oscillators of which the last ones, the least important, can be left out."""
-
-    @property
-    def air_damping(self) -> Floats:
-        """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
-
-    @property
-    def n_solved(self) -> int:
-        """Return the number of coordinates that are solved, shown or not."""
-
-    swing: tuple[Floats, ...]
-    """Displacement, rate and force of each coordinate, (m,)."""
-
-    def show(self, hidden: Floats, count: int) -> None:
-        """Show and load the first coordinates only, without a hidden part of each, (m,)."""
-
-    def keep_only(self, count: int) -> None:
-        """Solve the first coordinates only, from rest on, until `reset`."""
 
 
 class ErrorEstimator:
@@ -276,9 +255,9 @@ def _steady_wind(climate: WindClimate) -> tuple[Floats, float]:
     return strength * axis, abs(float(axis[2]))
 
 
-def dialled(bank: Bank) -> Dialled:
-    """Return the oscillators of a number of coordinates."""
-    return cast(Dialled, bank.oscillators)
+def dialled(bank: Bank) -> TableOscillators:
+    """Return the oscillators of a number of coordinates, the last of which can be left out."""
+    return cast(TableOscillators, bank.oscillators)
 
 
 _CALL = 4.0

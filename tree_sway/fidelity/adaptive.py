@@ -33,12 +33,12 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import refuse_time_step, three_numbers, within
-from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
 from tree_sway.core.model import SwayModel
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.tree_state import TreeState
-from tree_sway.core.wind import ClimateTracker, is_wind, WindClimate
-from tree_sway.core.wind.simulated import simulate_turbulence
+from tree_sway.core.wind import is_wind, simulate_turbulence
+from tree_sway.fidelity.climate import ClimateTracker, WindClimate
+from tree_sway.fidelity.estimate import dialled, ErrorEstimator, Estimate
 
 if TYPE_CHECKING:
     from tree_sway.core.run import Spring

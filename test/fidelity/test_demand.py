@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import pytest
 
-from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.run import Run
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
+from tree_sway.fidelity.demand import set_cost_scale, set_demand
 
 OAK = species_named('oak')
 

@@ -8,8 +8,8 @@ import tracemalloc
 
 import numpy as np
 
-from tree_sway.core.wind.simulated import about_means
-from tree_sway.core.wind.simulated.about_means import turbulence_about_means
+from tree_sway.simulation.wind import about_means
+from tree_sway.simulation.wind.about_means import turbulence_about_means
 
 
 def test_weeks_of_means_take_little_more_memory_than_the_result() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
-from tree_sway.core.wind.simulated.turbulence import along_bearing, SHORTEST_PERIOD, Turbulence
+from tree_sway.core.wind import along_bearing, SHORTEST_PERIOD, Turbulence
 
 _SAMPLES = 2**15
 """Smallest number of samples after which the turbulence repeats: 27 minutes at 20 Hz."""

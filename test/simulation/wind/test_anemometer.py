@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tree_sway.core.wind.gate import SECOND, WindGate
-from tree_sway.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.turbulence import Turbulence
 from tree_sway.errors import ParameterError
+from tree_sway.simulation.wind.anemometer import AnemometerModel
 
 
 def read(model, n, first=0):

@@ -10,11 +10,11 @@ from drawn_trees import crown
 import numpy as np
 import pytest
 
-from tree_sway.core.fidelity.estimate import ErrorEstimator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.climate import WindClimate
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.wind.turbulence import simulate_turbulence
+from tree_sway.fidelity.climate import WindClimate
+from tree_sway.fidelity.estimate import ErrorEstimator
 
 DT = 1.0 / 60.0
 
