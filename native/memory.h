@@ -17,16 +17,11 @@ public:
   // `is_short` is set and nothing is returned.
   template <class T> __attribute__((always_inline)) T *take(uint64_t count) {
     const size_t room = sizeof(Block) + LINE;
-    if (is_short || count > (SIZE_MAX - room) / sizeof(T)) {
-      is_short = true;
-      return nullptr;
-    }
-    const size_t size = static_cast<size_t>(count) * sizeof(T);
-    Block *block = static_cast<Block *>(calloc(1, size + room));
-    if (!block) {
-      is_short = true;
-      return nullptr;
-    }
+    Block *block = nullptr;
+    if (!is_short && count <= (SIZE_MAX - room) / sizeof(T))
+      block = static_cast<Block *>(calloc(1, size_t(count) * sizeof(T) + room));
+    is_short = !block;
+    if (is_short) return nullptr;
     block->next = blocks;
     blocks = block;
     const uintptr_t first = reinterpret_cast<uintptr_t>(block + 1) + LINE - 1;

@@ -146,7 +146,7 @@ void fill_branch(const Arrays &a, int64_t branch, Block &block, int64_t slot) {
   block.first[slot] = a.branch_first[branch];
   block.skew[slot] = skew[0];
   block.tip_skew[slot] = skew[1] - skew[0];
-  block.bound_factor[slot] = static_cast<double>(a.branch_keys[branch] - 1);
+  block.bound_factor[slot] = double(a.branch_keys[branch] - 1);
   put(**block.axes, slot, frame + 3, 6);
   put(*block.offset, slot, offset, 3);
   for (int64_t row = 0; row < k; row++) {
@@ -180,8 +180,11 @@ void lay_out_places(sway_model &model, const Arrays &a) {
     scratch.release();
     return;
   }
-  Block *blocks = model.memory.take<Block>(slots.n_blocks);
-  Segment *segments = model.memory.take<Segment>(slots.n_records);
+  model.n_blocks = slots.n_blocks;
+  model.memory.take_each(slots.n_blocks, model.blocks);
+  model.memory.take_each(slots.n_records, model.segments);
+  Block *blocks = model.blocks;
+  Segment *segments = model.segments;
   double *by_block = model.memory.take<double>(slots.n_blocks * 4 * k * WIDTH);
   double *turns = k > 2 ? model.memory.take<double>(slots.n_records * 3 * k * WIDTH) : nullptr;
   if (!model.memory.is_short) {
@@ -209,9 +212,6 @@ void lay_out_places(sway_model &model, const Arrays &a) {
       raise_to(blocks[slots.block[parent]].n_parents, slots.slot[parent] + 1);
     }
   }
-  model.n_blocks = slots.n_blocks;
-  model.blocks = blocks;
-  model.segments = segments;
   scratch.release();
 }
 
