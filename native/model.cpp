@@ -246,7 +246,8 @@ void lay_out_group(sway_model &model, Arrays &given, Group group) {
       own = size_of(given, meaning.shape[axis]);
       padded = meaning.shape[axis] == SIZE_m ? model.padded : own;
     }
-    char *to = model.memory.take<char>(rows * padded * bytes);
+    char *to;
+    model.memory.take(rows * padded * bytes, to);
     for (int64_t row = 0; row < rows && to; row++)
       memcpy(to + row * padded * bytes, from + row * own * bytes, own * bytes);
     model.table[number] = to;
@@ -256,7 +257,7 @@ void lay_out_group(sway_model &model, Arrays &given, Group group) {
 // Shapes of 64 key rotations at a time, in single precision.
 void lay_out_shapes(sway_model &model, const Arrays &a) {
   const int64_t N = model.sizes.keys, m = model.sizes.coordinates;
-  model.memory.take_each((N + 63) / 64 * m * 64, model.shapes);
+  model.memory.take((N + 63) / 64 * m * 64, model.shapes);
   for (int64_t key = 0; key < N && model.shapes; key++)
     for (int64_t i = 0; i < m; i++)
       model.shapes[(key / 64 * m + i) * 64 + key % 64] = float(a.shapes[key * m + i]);
@@ -278,7 +279,7 @@ void lay_out(sway_model &model, Arrays &a) {
   if (a.shapes) lay_out_shapes(model, a);
   if (!by_table && !at_pose) return;
   const int64_t m = sizes.coordinates;
-  model.memory.take_each(model.padded, model.stiffness, model.own_damping);
+  model.memory.take(model.padded, model.stiffness, model.own_damping);
   for (int64_t i = 0; i < model.padded && !model.memory.is_short; i++) {
     model.stiffness[i] = i < m ? a.stiffness[i] : 1.0;
     model.own_damping[i] = i < m ? a.own_damping[i] : 0.0;
@@ -304,7 +305,8 @@ sway_model *sway_model_open(const void *bytes, size_t size, char *error, size_t 
   Text text(error, room);
   Memory memory;
   // A copy at the beginning of a line, so that every array is aligned.
-  char *own = bytes ? memory.take<char>(size) : nullptr;
+  char *own = nullptr;
+  if (bytes) memory.take(size, own);
   Arrays arrays = {};
   sway_model *model = nullptr;
   if (own) memcpy(own, bytes, size);

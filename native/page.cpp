@@ -103,10 +103,7 @@ SWAY_API page_placer *page_placer_open(const sway_model *model) {
   placer->model = model;
   Memory &memory = placer->memory;
   open_room(memory, &model, 1, placer->room);
-  double *numbers = memory.take<double>(2 * model->padded + 1);
-  placer->state.eta = numbers;
-  placer->state.hidden = numbers + model->padded;
-  placer->state.left_out = numbers + 2 * model->padded;
+  memory.take(model->padded + 1, placer->state.eta, placer->state.hidden, placer->state.left_out);
   if (!memory.is_short) return placer;
   memory.release();
   free(placer);

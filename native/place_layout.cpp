@@ -18,10 +18,10 @@ int64_t size_of(const Arrays &a, int64_t branch) {
 // Branches whose parents have slots: the richest and longest first, then children of the richest.
 class Ready {
 public:
-  Ready(Memory &memory, const Arrays &a, const int64_t *carried)
-      : a_(a), carried_(carried), heap_(memory.take<int64_t>(a.size[-SIZE_b])) {}
+  Ready(Memory &memory, const Arrays &a, const int64_t *carried) : a_(a), carried_(carried) {
+    memory.take(a.size[-SIZE_b], heap_);
+  }
 
-  bool is_there() const { return heap_ != nullptr; }
   int64_t count() const { return count_; }
 
   void add(int64_t branch) {
@@ -72,7 +72,7 @@ struct Slots {
 bool assign_slots(Memory &memory, const Arrays &a, Slots &slots) {
   const int64_t b = a.size[-SIZE_b];
   int64_t *carried, *first_child, *sibling;
-  memory.take_each(b, slots.block, slots.slot, slots.record, carried, first_child, sibling);
+  memory.take(b, slots.block, slots.slot, slots.record, carried, first_child, sibling);
   Ready ready(memory, a, carried);
   if (memory.is_short) return false;
   for (int64_t i = 0; i < b; i++) carried[i] = 1, first_child[i] = sibling[i] = -1;
@@ -181,12 +181,13 @@ void lay_out_places(sway_model &model, const Arrays &a) {
     return;
   }
   model.n_blocks = slots.n_blocks;
-  model.memory.take_each(slots.n_blocks, model.blocks);
-  model.memory.take_each(slots.n_records, model.segments);
+  model.memory.take(slots.n_blocks, model.blocks);
+  model.memory.take(slots.n_records, model.segments);
   Block *blocks = model.blocks;
   Segment *segments = model.segments;
-  double *by_block = model.memory.take<double>(slots.n_blocks * 4 * k * WIDTH);
-  double *turns = k > 2 ? model.memory.take<double>(slots.n_records * 3 * k * WIDTH) : nullptr;
+  double *by_block, *turns = nullptr;
+  model.memory.take(slots.n_blocks * 4 * k * WIDTH, by_block);
+  if (k > 2) model.memory.take(slots.n_records * 3 * k * WIDTH, turns);
   if (!model.memory.is_short) {
     for (int64_t i = 0; i < slots.n_blocks; i++) {
       blocks[i].base_rotation = by_block + i * 4 * k * WIDTH;

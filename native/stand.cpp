@@ -97,28 +97,28 @@ int64_t step_of(sway_stand &stand, const sway_tree &tree) {
     if (stand.steps[i].model == tree.model && stand.steps[i].scale == scale) return int64_t(i);
   OwnStep &own = stand.steps[stand.n_steps];
   own = {tree.model, scale, {}};
-  stand.memory.take_each(6 * stand.kinds[tree.model].model->padded, own.step.whole, own.step.half);
+  stand.memory.take(6 * stand.kinds[tree.model].model->padded, own.step.whole, own.step.half);
   return int64_t(stand.n_steps++);
 }
 
 // Take what a limp tree has beside its state.
 void open_limp(Memory &memory, const sway_model &model, LimpTree &tree) {
   const int64_t m = model.sizes.coordinates, row = model.limp.row, padded = model.padded;
-  memory.take_each(m * model.limp.places, tree.columns);
-  memory.take_each(model.limp.leading * row, tree.change);
-  memory.take_each(row, tree.weight);
-  memory.take_each(padded, tree.last_eta, tree.last_rate);
+  memory.take(m * model.limp.places, tree.columns);
+  memory.take(model.limp.leading * row, tree.change);
+  memory.take(row, tree.weight);
+  memory.take(padded, tree.last_eta, tree.last_rate);
   for (CoupledStep &law : tree.laws) {
-    memory.take_each(6 * padded, law.part.whole, law.part.half);
-    memory.take_each(row, law.coupled, law.stretch, law.per_force, law.own, law.root_damping);
-    memory.take_each(padded, law.own_damping);
+    memory.take(6 * padded, law.part.whole, law.part.half);
+    memory.take(row, law.coupled, law.stretch, law.per_force, law.own, law.root_damping);
+    memory.take(padded, law.own_damping);
   }
 }
 
 void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   kind.model = model;
   Tuning &tuning = kind.tuning;
-  stand.memory.take_each(model->padded, tuning.stiffness, tuning.damping);
+  stand.memory.take(model->padded, tuning.stiffness, tuning.damping);
   if (!model->sizes.is_stepped || stand.memory.is_short) return;
   memcpy(tuning.stiffness, model->stiffness, model->padded * sizeof(double));
   memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
@@ -133,10 +133,10 @@ int by_rows(const void *a, const void *b) {
 
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
   Memory &memory = stand.memory;
-  memory.take_each(stand.n_models, stand.kinds);
-  memory.take_each(stand.n_rooms, stand.rooms);
-  memory.take_each(stand.n_trees, stand.trees, stand.steps);
-  if (!ON_TABLES) memory.take_each(stand.n_trees, stand.order);
+  memory.take(stand.n_models, stand.kinds);
+  memory.take(stand.n_rooms, stand.rooms);
+  memory.take(stand.n_trees, stand.trees, stand.steps);
+  if (!ON_TABLES) memory.take(stand.n_trees, stand.order);
   if (stand.memory.is_short) return false;
   for (size_t i = 0; i < stand.n_models; i++) {
     open_kind(stand, stand.kinds[i], models[i]);
@@ -149,11 +149,11 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
       stand.has_crowns = true;
       stand.stride += CROWN + 1;  // an even number
     }
-  stand.states = stand.memory.take<double>(uint64_t(stand.n_trees) * stand.stride);
+  memory.take(uint64_t(stand.n_trees) * stand.stride, stand.states);
   for (size_t i = 0; i < stand.n_rooms; i++)
     open_room(stand.memory, models, stand.n_models, stand.rooms[i]);
   for (size_t i = 0; i < stand.n_models; i++)
-    if (is_limp(*models[i]) && !stand.limp) stand.limp = stand.memory.take<LimpTree>(stand.n_trees);
+    if (is_limp(*models[i]) && !stand.limp) memory.take(stand.n_trees, stand.limp);
   int64_t n_segments = 0;
   for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
     const sway_tree &given = trees[i];

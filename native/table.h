@@ -276,7 +276,7 @@ static void move(const double *c, int64_t M, const double *from, const double *a
 }
 
 // Write the state at the middle of the step.
-INLINE void move_to_middle(const sway_model &model, const Step &step, const State &state,
+static void move_to_middle(const sway_model &model, const Step &step, const State &state,
                            Room &room) {
   move(step.half, model.padded, state.eta, state.rate, state.force, room.middle, room.middle_rate);
 }

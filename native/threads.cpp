@@ -153,8 +153,10 @@ size_t processors() {
 }
 
 Threads *open_threads(Memory &memory, size_t rooms) {
-  Threads *all = memory.take<Threads>(1);
-  Thread *thread = memory.take<Thread>(rooms - 1);
+  Threads *all;
+  Thread *thread;
+  memory.take(1, all);
+  memory.take(rooms - 1, thread);
   if (memory.is_short) return nullptr;
   all->thread = thread;
   all->rooms = rooms;
