@@ -53,17 +53,6 @@ namespace {
 
 constexpr double T_MAX = 5.5528;  // square of the angle [rad^2] at which sinc = 0.3
 
-// Numbers of the lanes of sixteen branches from a slot on.
-INLINE Vector<Vec> load_rows(const double (*rows)[16], int slot) {
-  return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
-}
-
-INLINE void store_rows(double (*rows)[16], int slot, const Vector<Vec> &v) {
-  store(rows[0] + slot, v.x);
-  store(rows[1] + slot, v.y);
-  store(rows[2] + slot, v.z);
-}
-
 // The two key rotations of branches or what belongs to them.
 struct Pair {
   Vec x, y;
@@ -152,16 +141,16 @@ INLINE int64_t limit_load(Vector<Vec> &w, Vec limit) {
 // force, the relative speed s solves s + beta c s^2 = |U - u|.
 INLINE void find_wind_force(sway_branch_block &block, int slot, const Pair &theta, const Pair &rate,
                             const double wind[3], double drag_density) {
-  const Vector<Vec> gust = load_rows(block.gust, slot);
+  const Vector<Vec> gust = load_vector(block.gust, slot);
   const Vector<Vec> air =
       load(block.speed + slot) * Vector<Vec>{wind[0] + gust.x, wind[1] + gust.y, wind[2] + gust.z};
-  const Vector<Vec> rotation = theta.x * load_rows(block.load_rotation[0], slot) +
-                               theta.y * load_rows(block.load_rotation[1], slot);
-  const Vector<Vec> own = rate.x * load_rows(block.damping_mode[0], slot) +
-                          rate.y * load_rows(block.damping_mode[1], slot);
+  const Vector<Vec> rotation = theta.x * load_vector(block.load_rotation[0], slot) +
+                               theta.y * load_vector(block.load_rotation[1], slot);
+  const Vector<Vec> own = rate.x * load_vector(block.damping_mode[0], slot) +
+                          rate.y * load_vector(block.damping_mode[1], slot);
   const Vec compliance = load(block.compliance + slot);
   const Vector<Vec> u =
-      turned_by(-1.0 * rotation, air) - own + compliance * load_rows(block.drag_impulse, slot);
+      turned_by(-1.0 * rotation, air) - own + compliance * load_vector(block.drag_impulse, slot);
   Vec projector[6];
   for (int k = 0; k < 6; k++) projector[k] = load(block.projector[k] + slot);
   const Vector<Vec> across = times_symmetric(projector, u);
@@ -170,22 +159,22 @@ INLINE void find_wind_force(sway_branch_block &block, int slot, const Pair &thet
   const Vec drag = drag_density * load(block.area + slot) * speed;
   const Vec share = 2.0 / (1.0 + root(1.0 + 4.0 * compliance * drag));
   const Vec per_velocity = drag * share * share;
-  store_rows(block.drag_impulse, slot, per_velocity * u);
-  store_rows(block.force, slot, turned_by(rotation, per_velocity * across));
+  store_vector(block.drag_impulse, slot, per_velocity * u);
+  store_vector(block.force, slot, turned_by(rotation, per_velocity * across));
 }
 
 // P times its lever: along the chord, and on the key rotations.
 INLINE Vector<Vec> load_of(const sway_branch_block &block, int slot) {
-  const Vector<Vec> force = load_rows(block.force, slot);
-  return {dot(load_rows(block.chord_lever, slot), force),
-          dot(load_rows(block.load_mode[0], slot), force),
-          dot(load_rows(block.load_mode[1], slot), force)};
+  const Vector<Vec> force = load_vector(block.force, slot);
+  return {dot(load_vector(block.chord_lever, slot), force),
+          dot(load_vector(block.load_mode[0], slot), force),
+          dot(load_vector(block.load_mode[1], slot), force)};
 }
 
 // Step the lanes of a block from a slot on: `state` has the key rotations (2, 16) and their rates.
 // Returns how many loads were clamped.
-INLINE int64_t step_lanes(sway_branch_block &block, int slot, double (*state)[16],
-                          const double wind[3], double drag_density) {
+INLINE int64_t step_lanes(sway_branch_block &block, int slot, Row *state, const double wind[3],
+                          double drag_density) {
   const Pair theta = {load(state[0] + slot), load(state[1] + slot)};
   const Pair rate = {load(state[2] + slot), load(state[3] + slot)};
   Vec half[6], c[8];
@@ -193,12 +182,12 @@ INLINE int64_t step_lanes(sway_branch_block &block, int slot, double (*state)[16
   for (int k = 0; k < 8; k++) c[k] = load(block.whole[k] + slot);
 
   // The middle of the step, under the last load.
-  const Pair last = true_force(theta, load_rows(block.load, slot));
+  const Pair last = true_force(theta, load_vector(block.load, slot));
   const Pair middle = within_guard(half[0] * theta + half[1] * rate + half[2] * last);
   const Pair middle_rate = half[3] * theta + half[4] * rate + half[5] * last;
   find_wind_force(block, slot, middle, middle_rate, wind, drag_density);
   Vector<Vec> w = load_of(block, slot);
-  store_rows(block.load, slot, w);
+  store_vector(block.load, slot, w);
 
   // The step under the load: predictor and corrector of the moment.
   const Vec gyro_inertia = load(block.guard[0] + slot), limit = load(block.guard[2] + slot);
@@ -225,7 +214,7 @@ static void rest_branches(sway_branch_block *blocks, size_t count, const double 
                           double drag_density, const double *stiffness, double *rotations) {
   for (size_t first = 0; first < count; first += 16) {
     const size_t n = count - first < 16 ? count - first : 16;
-    double k1[16], state[2][16];
+    Row k1, state[2];
     for (size_t slot = 0; slot < 16; slot++) k1[slot] = slot < n ? stiffness[first + slot] : 1.0;
     for (int slot = 0; slot < 16; slot += LANES) {
       Pair theta = {};
@@ -250,7 +239,7 @@ static int64_t step_branches(sway_branch_block *blocks, size_t count, double *x,
   double not_finite = 0.0;  // a difference of equal numbers is 0 unless they are not finite
   for (size_t first = 0; first < count; first += 16) {
     const size_t n = count - first < 16 ? count - first : 16;
-    double state[4][16] = {};
+    Row state[4] = {};
     for (size_t slot = 0; slot < n; slot++)
       for (size_t axis = 0; axis < 2; axis++) {
         state[axis][slot] = x[2 * (first + slot) + axis];

@@ -24,7 +24,7 @@ INLINE V3 moved(const sway_branches &tree, int64_t b, const double *amounts, con
   V3 sum = {0.0, 0.0, 0.0};
   const int64_t count = tree.n_coordinates[b];
   const double *own = amounts + tree.coordinate[b], *row = mode + 3 * tree.keys * b;
-  for (int64_t c = 0; c < count; c++) sum = sum + own[c] * read(row + 3 * c);
+  for (int64_t c = 0; c < count; c++) sum += own[c] * read(row + 3 * c);
   return sum;
 }
 
@@ -38,10 +38,10 @@ INLINE Joint joint_of(const sway_branches &tree, int64_t b, const double *amount
   const int64_t parent = tree.parent[b], count = tree.n_coordinates[parent];
   const double *own = amounts + tree.coordinate[parent], *twist = tree.twist + 6 * tree.keys * b;
   for (int64_t c = 0; c < count; c++) {
-    joint.shift = joint.shift + own[c] * read(twist + 6 * c);
-    joint.rotation = joint.rotation + own[c] * read(twist + 6 * c + 3);
+    joint.shift += own[c] * read(twist + 6 * c);
+    joint.rotation += own[c] * read(twist + 6 * c + 3);
   }
-  joint.shift = joint.shift + cross(joint.rotation, read(tree.base + 3 * b));
+  joint.shift += cross(joint.rotation, read(tree.base + 3 * b));
   return joint;
 }
 

@@ -40,7 +40,7 @@ static void fill_coupled(const sway_model &model, const Tuning &tuning, double d
                          CoupledStep &law) {
   const Limp &limp = model.limp;
   const int64_t M = model.padded;
-  const double h = dt / static_cast<double>(n_parts);
+  const double h = dt / double(n_parts);
   fill_step(model.sizes.coordinates, M, tuning.stiffness, tuning.damping, h, law.part);
   law.part.dt = h;
   law.n_parts = n_parts;

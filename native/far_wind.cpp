@@ -40,7 +40,7 @@ void add_drawn(const sway_farwind &by, const Known &known, V3 *parts) {
   const double across = sqrt(s * s * variance.x + c * c * variance.y);
   const double up = sqrt(variance.z);
   const double at = known.run / SPACING, first = floor(at), share = at - first;
-  const int64_t row = static_cast<int64_t>(first) % by.samples;
+  const int64_t row = int64_t(first) % by.samples;
   const float *low = by.rest + 3 * by.parts * row;
   const float *high = by.rest + 3 * by.parts * ((row + 1) % by.samples);
   for (int64_t i = 0; i < by.parts; i++) {
@@ -49,8 +49,8 @@ void add_drawn(const sway_farwind &by, const Known &known, V3 *parts) {
       const double from = low[3 * i + axis];
       drawn[axis] = from + share * (high[3 * i + axis] - from);
     }
-    parts[i] = parts[i] + V3{along * c * drawn[0] - across * s * drawn[1],
-                             along * s * drawn[0] + across * c * drawn[1], up * drawn[2]};
+    parts[i] += V3{along * c * drawn[0] - across * s * drawn[1],
+                   along * s * drawn[0] + across * c * drawn[1], up * drawn[2]};
   }
 }
 
@@ -74,18 +74,18 @@ extern "C" void sway_push_farwind(const sway_farwind *pushed, double x, double y
   known.time = fmin(known.time + dt, fmax(AVERAGED, dt));
   const double share = dt / known.time;
   known.mean = mean + share * (wind - mean);
-  known.variance = known.variance + share * (squares(wind - mean) - known.variance);
+  known.variance += share * (squares(wind - mean) - known.variance);
   const double speed = fmax(level(mean), SLOWEST);
   known.run += speed * dt;
   for (int64_t j = 0; j < k; j++) {
     const double keep = fmax(-expm1(-speed * dt / by.length[j]), fmin(share, 1.0));
-    passed[j] = passed[j] + keep * (wind - passed[j]);
+    passed[j] += keep * (wind - passed[j]);
   }
   // Weights of the direction of the mean wind, between two of those that are known.
   const double turns = atan2(mean.y, mean.x) / TURN;
-  const double at = (turns - floor(turns)) * static_cast<double>(by.directions);
-  const int64_t first = static_cast<int64_t>(at);
-  const double between = at - static_cast<double>(first);
+  const double at = (turns - floor(turns)) * double(by.directions);
+  const int64_t first = int64_t(at);
+  const double between = at - double(first);
   const double *low = by.weights + first % by.directions * g * k;
   const double *high = by.weights + (first + 1) % by.directions * g * k;
   V3 expected = {};
@@ -93,19 +93,19 @@ extern "C" void sway_push_farwind(const sway_farwind *pushed, double x, double y
     V3 sum = {};
     for (int64_t j = 0; j < k; j++) {
       const double from = low[i * k + j], weight = from + between * (high[i * k + j] - from);
-      sum = sum + weight * (passed[j] - mean);
+      sum += weight * (passed[j] - mean);
     }
-    expected = expected + by.share[i] * sum;
+    expected += by.share[i] * sum;
     parts[i] = sum + mean;
   }
   if (by.is_sample) {
     add_drawn(by, known, parts);
   } else {
-    known.told = known.told + share * (squares(expected) - known.told);
+    known.told += share * (squares(expected) - known.told);
     add_lost(by, known.variance - known.told, parts);
   }
   V3 whole = {};
-  for (int64_t i = 0; i < g; i++) whole = whole + by.share[i] * parts[i];
+  for (int64_t i = 0; i < g; i++) whole += by.share[i] * parts[i];
   for (int64_t i = 0; i < g; i++) parts[i] = parts[i] - whole;
   write(by.whole, whole);
 }

@@ -86,7 +86,7 @@ struct Room {
 // A number of coordinates that a state has, 0 to `most`, whatever was written to it.
 inline __attribute__((always_inline)) int64_t count_of(double value, int64_t most) {
   if (!(value > 0.0)) return 0;
-  return value < static_cast<double>(most) ? static_cast<int64_t>(value) : most;
+  return value < double(most) ? int64_t(value) : most;
 }
 
 // Winds from here on are calm [m/s]: squares of all others, and of their sums, are finite.

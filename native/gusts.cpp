@@ -60,8 +60,8 @@ void remember(const History &history, double finest, const double wind[3], doubl
   }
   run[head] = run[last] + dt * Four{1.0, wind[0], wind[1], wind[2]};
   if (is_joined) return;
-  *history.last = static_cast<double>(head);
-  *history.count = least(*history.count + 1.0, static_cast<double>(size));
+  *history.last = double(head);
+  *history.count = least(*history.count + 1.0, double(size));
 }
 
 void past_winds(const History &history, const double *wanted, double *delays, int64_t count,
@@ -111,9 +111,9 @@ void sway_past_winds(double *history, size_t size, double finest, const double *
 #ifndef SWAY_PAGE
   if (size == 0) return;  // no past is kept, and nothing is written
 #endif
-  const History own = history_of(history, static_cast<int64_t>(size));
+  const History own = history_of(history, int64_t(size));
   if (finest >= 0.0) remember(own, finest, wind, dt);
-  past_winds(own, wanted, delays, static_cast<int64_t>(count), longest, wind, dt, out);
+  past_winds(own, wanted, delays, int64_t(count), longest, wind, dt, out);
 }
 
 void sway_limb_winds(double *memory, double spread, double coherence, const double *wind,

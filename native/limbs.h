@@ -74,7 +74,7 @@ static bool step_coordinates(const sway_model &model, const double *stiffness, c
   push_crown(crown, *model.table.limb_spread, *model.table.crown_coherence, velocity, step.dt);
   Vector<double> apart = {};
   for (int64_t delay = 0; delay < model.sizes.delays; delay++)
-    apart = apart + model.table.limb_share[delay] * read(crown.apart + 3 * delay);
+    apart += model.table.limb_share[delay] * read(crown.apart + 3 * delay);
   const Vector<double> mean = wind + apart;
   const bool is_clamped = step_table(model, stiffness, step, state, room, mean, per_speed_squared);
   add_gusts(model, stiffness, step, state, room, crown, wind, mean, per_speed_squared);

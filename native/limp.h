@@ -33,7 +33,7 @@ constexpr double SLACK = 0.05;
 INLINE int64_t parts_of(double dt, double speed) {
   const double in_storm = PART_IN_STORM / most(speed * speed, 1.0);
   const double longest = least(LONGEST_PART, most(in_storm, SHORTEST_PART));
-  return static_cast<int64_t>(__builtin_ceil(least(most(dt / longest - 1e-9, 1.0), MOST_PARTS)));
+  return int64_t(__builtin_ceil(least(most(dt / longest - 1e-9, 1.0), MOST_PARTS)));
 }
 
 // Write the drag of a wind [m/s] on every segment at the pose, over the root of its mass, at 1 kg/m^3.
@@ -55,9 +55,7 @@ static void find_drag(const Limp &limp, LimpRoom &own, double per_time, const do
       air[axis] -= along * load(own.tangent + axis * each + i);
       square += air[axis] * air[axis];
     }
-    Vec across;
-    for (int lane = 0; lane < LANES; lane++) across[lane] = __builtin_sqrt(square[lane]);
-    const Vec factor = load(limp.area + i) * across / root;
+    const Vec factor = load(limp.area + i) * ::root(square) / root;
     for (int axis = 0; axis < 3; axis++) store(own.force + axis * each + i, factor * air[axis]);
   }
 }
@@ -138,18 +136,14 @@ static bool take_part(const sway_model &model, const double *stiffness, const Co
     tree.allowed = __builtin_inf();
   }
   // The middle, with places ahead and behind along the motion.
-  for (int64_t i = 0; i < M; i += LANES) {
-    move(law.part.half, M, state, room.middle, room.middle_rate, i);
-    store(own.rate + i, load(state.rate + i));
-  }
+  move_to_middle(model, law.part, state, room);
+  memcpy(own.rate, state.rate, M * sizeof(double));
   turn(model, room.middle, room.middle_rate, own.turned, own.turning);
   const double fastest = largest(own.turning, limp.keys);
   const double ahead = fastest > 0.0 ? MOTION_TURN / fastest : 0.0;
   find_place(model, room, own.turned, own.here, own.tangent);
-  for (int64_t i = 0; i < limp.keys; i++) own.keys[i] = own.turned[i] + ahead * own.turning[i];
-  find_place(model, room, own.keys, own.ahead, nullptr);
-  for (int64_t i = 0; i < limp.keys; i++) own.keys[i] = own.turned[i] - ahead * own.turning[i];
-  find_place(model, room, own.keys, own.behind, nullptr);
+  place_along(model, room, ahead, own.turning, own.ahead);
+  place_along(model, room, -ahead, own.turning, own.behind);
   find_drag(limp, own, ahead > 0.0 ? 0.5 / ahead : 0.0, wind);
   for (int64_t i = 0; i < limp.places; i += LANES)
     store(own.ahead + i, load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
@@ -168,13 +162,7 @@ static bool take_part(const sway_model &model, const double *stiffness, const Co
   find_centrifugal_force(model, tree, own, own.products + limp.row, room.middle_rate, ahead);
   find_coupled_force(model, law, state, tree, own, per_speed_squared * speed);
   // The whole part.
-  for (int64_t i = 0; i < M; i += LANES) {
-    const double *c = law.part.whole;
-    const Vec q = load(state.eta + i), v = load(own.rate + i), f = load(own.new_force + i);
-    store(own.eta + i, load(c + i) * q + load(c + M + i) * v + load(c + 2 * M + i) * f);
-    store(own.rate + i,
-          load(c + 3 * M + i) * q + load(c + 4 * M + i) * v + load(c + 5 * M + i) * f);
-  }
+  move(law.part.whole, M, state.eta, own.rate, own.new_force, own.eta, own.rate);
   turn(model, own.eta, own.rate, own.turned, own.turning);
   const double fastest_now = largest(own.turning, limp.keys);
   const bool is_bounded = fastest_now > FASTEST_TURN;

@@ -108,7 +108,7 @@ INLINE Lanes3 along(const double *row, size_t columns, int64_t count, const doub
                     int width) {
   Lanes3 sum = {};
   for (int64_t c = 0; c < count; c++)
-    sum = sum + load(row + c * columns) * lanes_of(read(mode + c * width));
+    sum += load(row + c * columns) * lanes_of(read(mode + c * width));
   return sum;
 }
 
@@ -162,11 +162,10 @@ INLINE void load_own(const sway_branches &tree, int64_t b, const sway_branch_loa
       coupling * by_turn - cross(lanes_of(own.own_moment), turned) - cross(constant, velocity);
   const Lanes3 by_rate = -1.0 * (own.drag * loaded);
   const Lanes3 at_root = own.own_frame * force, by_rate_at_root = own.own_frame * by_rate;
-  to.force = to.force + at_root;
-  to.moment = to.moment + own.own_frame * couple + cross(place, at_root);
-  to.damping = to.damping + by_rate_at_root;
-  to.damping_moment =
-      to.damping_moment + own.own_frame * (coupling * by_rate) + cross(place, by_rate_at_root);
+  to.force += at_root;
+  to.moment += own.own_frame * couple + cross(place, at_root);
+  to.damping += by_rate_at_root;
+  to.damping_moment += own.own_frame * (coupling * by_rate) + cross(place, by_rate_at_root);
   for (int64_t c = 0; c < count; c++) {
     double excess = 0.0;
     if (c < 2) {
@@ -210,10 +209,10 @@ INLINE void sum_inward(const sway_branches &tree, const sway_branch_load *loads,
     if (b == 0) break;
     const Moved &from = moved[b];
     Moved &on = moved[tree.parent[b]];
-    on.force = on.force + from.force;
-    on.moment = on.moment + from.moment;
-    on.damping = on.damping + from.damping;
-    on.damping_moment = on.damping_moment + from.damping_moment;
+    on.force += from.force;
+    on.moment += from.moment;
+    on.damping += from.damping;
+    on.damping_moment += from.damping_moment;
 
     const Lanes3 place = lanes_of(own.place);
     const Lanes3 back = lanes_of(-1.0 * read(loads[b].rotation));

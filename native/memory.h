@@ -11,35 +11,16 @@
 
 namespace sway {
 
+// The code of a frame, which is compiled for several targets, takes no memory.
 class Memory {
 public:
-  // Zeros for a number of values, at the beginning of a cache line. Where memory is short,
-  // `is_short` is set and nothing is returned.
-  template <class T> __attribute__((always_inline)) T *take(uint64_t count) {
-    const size_t room = sizeof(Block) + LINE;
-    if (is_short || count > (SIZE_MAX - room) / sizeof(T)) {
-      is_short = true;
-      return nullptr;
-    }
-    const size_t size = static_cast<size_t>(count) * sizeof(T);
-    Block *block = static_cast<Block *>(calloc(1, size + room));
-    if (!block) {
-      is_short = true;
-      return nullptr;
-    }
-    block->next = blocks;
-    blocks = block;
-    const uintptr_t first = reinterpret_cast<uintptr_t>(block + 1) + LINE - 1;
-    return reinterpret_cast<T *>(first / LINE * LINE);
+  // Zeros for the same number of values for each of some arrays, which begin with a line of the cache.
+  // Where memory is short, `is_short` is set and they are null.
+  template <class... T> void take(uint64_t count, T *&...arrays) {
+    ((arrays = static_cast<T *>(bytes_of(count, sizeof(T)))), ...);
   }
 
-  // The same number of values for each of some arrays.
-  template <class... T>
-  __attribute__((always_inline)) void take_each(uint64_t count, T *&...arrays) {
-    ((arrays = take<T>(count)), ...);
-  }
-
-  __attribute__((always_inline)) void release() {
+  void release() {
     while (blocks) {
       Block *next = blocks->next;
       free(blocks);
@@ -54,6 +35,20 @@ private:
   struct Block {
     Block *next;
   };
+
+  void *bytes_of(uint64_t count, size_t each) {
+    const size_t room = sizeof(Block) + LINE;
+    Block *block = nullptr;
+    if (!is_short && count <= (SIZE_MAX - room) / each)
+      block = static_cast<Block *>(calloc(1, size_t(count) * each + room));
+    is_short = !block;
+    if (is_short) return nullptr;
+    block->next = blocks;
+    blocks = block;
+    return reinterpret_cast<void *>((reinterpret_cast<uintptr_t>(block + 1) + LINE - 1) / LINE *
+                                    LINE);
+  }
+
   Block *blocks = nullptr;
 };
 

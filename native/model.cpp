@@ -141,7 +141,7 @@ private:
   }
 
   int64_t length(const char *name, int axis = 0) const {
-    return static_cast<int64_t>(entries_[number_of(name)].shape[axis]);
+    return int64_t(entries_[number_of(name)].shape[axis]);
   }
 
   bool find_sizes() {
@@ -176,7 +176,7 @@ private:
         const int64_t wanted = meaning.shape[axis];
         if ((axis < entries_[number].dimensions) != (wanted != 0))
           return refuse(meaning.name, "of another number of dimensions");
-        const int64_t own = static_cast<int64_t>(entries_[number].shape[axis]);
+        const int64_t own = int64_t(entries_[number].shape[axis]);
         if (wanted != SIZE_any && own != size_of(arrays_, wanted))
           return refuse(meaning.name, "of another shape");
       }
@@ -191,7 +191,7 @@ private:
     const float *singles = static_cast<const float *>(arrays_[number]);
     bool holds = true;
     for (uint64_t i = 0; i < counts_[number] && type != TYPE_int64_t; i++) {
-      const double value = type == TYPE_double ? doubles[i] : static_cast<double>(singles[i]);
+      const double value = type == TYPE_double ? doubles[i] : double(singles[i]);
       holds &= value >= -LARGEST && value <= LARGEST;
     }
     return holds;
@@ -246,7 +246,8 @@ void lay_out_group(sway_model &model, Arrays &given, Group group) {
       own = size_of(given, meaning.shape[axis]);
       padded = meaning.shape[axis] == SIZE_m ? model.padded : own;
     }
-    char *to = model.memory.take<char>(rows * padded * bytes);
+    char *to;
+    model.memory.take(rows * padded * bytes, to);
     for (int64_t row = 0; row < rows && to; row++)
       memcpy(to + row * padded * bytes, from + row * own * bytes, own * bytes);
     model.table[number] = to;
@@ -256,11 +257,10 @@ void lay_out_group(sway_model &model, Arrays &given, Group group) {
 // Shapes of 64 key rotations at a time, in single precision.
 void lay_out_shapes(sway_model &model, const Arrays &a) {
   const int64_t N = model.sizes.keys, m = model.sizes.coordinates;
-  float *shapes = model.memory.take<float>((N + 63) / 64 * m * 64);
-  model.shapes = shapes;
-  for (int64_t key = 0; key < N && shapes; key++)
+  model.memory.take((N + 63) / 64 * m * 64, model.shapes);
+  for (int64_t key = 0; key < N && model.shapes; key++)
     for (int64_t i = 0; i < m; i++)
-      shapes[(key / 64 * m + i) * 64 + key % 64] = static_cast<float>(a.shapes[key * m + i]);
+      model.shapes[(key / 64 * m + i) * 64 + key % 64] = float(a.shapes[key * m + i]);
 }
 
 void lay_out(sway_model &model, Arrays &a) {
@@ -279,15 +279,11 @@ void lay_out(sway_model &model, Arrays &a) {
   if (a.shapes) lay_out_shapes(model, a);
   if (!by_table && !at_pose) return;
   const int64_t m = sizes.coordinates;
-  double *stiffness = model.memory.take<double>(model.padded);
-  double *damping = model.memory.take<double>(model.padded);
-  if (stiffness && damping)
-    for (int64_t i = 0; i < model.padded; i++) {
-      stiffness[i] = i < m ? a.stiffness[i] : 1.0;
-      damping[i] = i < m ? a.own_damping[i] : 0.0;
-    }
-  model.stiffness = stiffness;
-  model.own_damping = damping;
+  model.memory.take(model.padded, model.stiffness, model.own_damping);
+  for (int64_t i = 0; i < model.padded && !model.memory.is_short; i++) {
+    model.stiffness[i] = i < m ? a.stiffness[i] : 1.0;
+    model.own_damping[i] = i < m ? a.own_damping[i] : 0.0;
+  }
   lay_out_group(model, a, NUMBERS);
   if (by_table) lay_out_group(model, a, TABLE);
   if (sizes.delays) lay_out_group(model, a, LIMBS);
@@ -309,7 +305,8 @@ sway_model *sway_model_open(const void *bytes, size_t size, char *error, size_t 
   Text text(error, room);
   Memory memory;
   // A copy at the beginning of a line, so that every array is aligned.
-  char *own = bytes ? memory.take<char>(size) : nullptr;
+  char *own = nullptr;
+  if (bytes) memory.take(size, own);
   Arrays arrays = {};
   sway_model *model = nullptr;
   if (own) memcpy(own, bytes, size);

@@ -101,21 +101,21 @@ struct Limp {
   int64_t leading;  // q: coordinates whose inertia is that of the pose
   int64_t row;      // q and three right-hand sides, up to whole vectors
   int64_t each, places, keys;  // up to whole vectors
-  const double *shapes;        // (keys / 32, m, 32)
-  const double *directions;    // key rotations per unit of each coordinate (m, keys)
-  const double *amount;        // of each coordinate for the difference of its column (m)
-  const double *columns;       // places per unit of each coordinate, J (m, places)
-  const double *factor;        // Cholesky factor of the inertia of the places (q, row)
-  const double *weight;        // force of the weight on leading coordinates (q)
-  const double *slopes;        // derivative of this force by each coordinate (q, padded)
-  const double *force;         // of the weight, on the model's coordinates (padded)
-  const double *all_slopes;    // its derivative by each coordinate (m, padded)
-  const double *gravity;       // along z, over the factor of each place (each)
+  double *shapes;        // (keys / 32, m, 32)
+  double *directions;    // key rotations per unit of each coordinate (m, keys)
+  double *amount;        // of each coordinate for the difference of its column (m)
+  double *columns;       // places per unit of each coordinate, J (m, places)
+  double *factor;        // Cholesky factor of the inertia of the places (q, row)
+  double *weight;        // force of the weight on leading coordinates (q)
+  double *slopes;        // derivative of this force by each coordinate (q, padded)
+  double *force;         // of the weight, on the model's coordinates (padded)
+  double *all_slopes;    // its derivative by each coordinate (m, padded)
+  double *gravity;       // along z, over the factor of each place (each)
   double potential;            // of this at rest
-  const double *root_mass, *from_start;  // (each)
-  const double *area, *speed;             // drag area [m^2], wind over that of the tree (each)
-  const int64_t *delay;                   // of the gusts at each segment (n); null without
-  const double *damping;                  // by still air, per drag and speed (padded)
+  double *root_mass, *from_start;  // (each)
+  double *area, *speed;             // drag area [m^2], wind over that of the tree (each)
+  int64_t *delay;                   // of the gusts at each segment (n); null without
+  double *damping;                  // by still air, per drag and speed (padded)
 };
 
 }  // namespace sway
@@ -127,11 +127,11 @@ struct sway_model {
   int64_t padded;  // coordinates, up to whole vectors
 
   int64_t n_blocks;
-  const sway::Block *blocks;
-  const sway::Segment *segments;
+  sway::Block *blocks;
+  sway::Segment *segments;
 
-  const double *stiffness, *own_damping;  // (padded), 1 and 0 after the last
-  const float *shapes;                    // (keys / 64, m, 64), rounded up
+  double *stiffness, *own_damping;  // (padded), 1 and 0 after the last
+  float *shapes;                    // (keys / 64, m, 64), rounded up
   // Numbers, limbs and the table of winds, if it is stepped by one: rows of coordinates have `padded`
   // numbers, zeros after the last.
   sway::Arrays table;

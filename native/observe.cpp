@@ -97,7 +97,7 @@ void follow_lags(sway_readings &readings, double time) {
     is_heard = true;
   }
   if (!is_new) return;
-  const int64_t needed = static_cast<int64_t>(fmin(ceil(most - 0.01), SWAY_LATEST));
+  const int64_t needed = int64_t(fmin(ceil(most - 0.01), SWAY_LATEST));
   if (needed > readings.late || (is_heard && needed < readings.late - SPARE))
     readings.late = needed;
 }
@@ -169,7 +169,7 @@ void add_to_series(const sway_sensor &sensor, const double *forces, int64_t n) {
   if (!series) return;
   double *row = series->rows + series->filled++ % (SWAY_HALVES * series->half) * (n + 4);
   memcpy(row, sensor.moved + series->first, 2 * sizeof(double));
-  memcpy(row + 2, forces, static_cast<size_t>(n) * sizeof(double));
+  memcpy(row + 2, forces, size_t(n) * sizeof(double));
   memcpy(row + 2 + n, sensor.moved + series->second, 2 * sizeof(double));
 }
 
@@ -193,7 +193,7 @@ int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, do
   const double *computed = by.sensed + then % SWAY_SLOTS * ROWS * k;
   for (int64_t i = 0; i < k; i++) {
     sway_sensor &sensor = *by.sensor[i];
-    const double when = time - static_cast<double>(by.late) * sensor.dt;
+    const double when = time - double(by.late) * sensor.dt;
     by.is_known[i] = read(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
     if (by.is_known[i]) add_to_series(sensor, by.still + then % SWAY_SLOTS * n, n);
   }
@@ -227,7 +227,7 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
   }
   double *last = filter->innovations + (filter->lag - 1) * p;
   memmove(filter->innovations, filter->innovations + p,
-          static_cast<size_t>(filter->lag - 1) * p * sizeof(double));
+          size_t(filter->lag - 1) * p * sizeof(double));
   for (int64_t k = 0; k < p; k++) last[k] = 0.0;
   for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
   double largest = 0.0;  // of the quantities of a sensor
@@ -261,10 +261,11 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
   double whole = 0.0, own = 0.0;
   for (int64_t i = 0; i < n; i++) {
     trust[i] += share * (correction->wanted[i] - trust[i]);
-    const double *by = ahead + i;
-    moved[i] = trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
-    by += 3 * n;
-    moving[i] = trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
+    for (int64_t j = 0; j < 2; j++) {
+      const double *by = ahead + 3 * j * n + i;
+      moved[j * n + i] =
+          trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
+    }
     const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
     const double at = x + moved[i], going = v + moving[i];
     whole += stiffness * at * at + going * going;
@@ -281,7 +282,7 @@ void sway_drag(const sway_dragged *dragged, const double *correction, size_t ste
   for (int64_t j = 0; j < n; j++) add_row(m, correction[n + j], dragged->drag + j * m, force);
   for (int64_t j = 0; j < n; j++) force[j] *= 1.0 - dragged->trust[j];
   for (size_t step = 0; step < steps; step++) move(m, dragged->law, 2, state);
-  memcpy(added, state, static_cast<size_t>(2 * m) * sizeof(double));
+  memcpy(added, state, size_t(2 * m) * sizeof(double));
   for (int64_t j = 0; j < n; j++) {
     added[j] += correction[j];
     added[m + j] += correction[n + j];

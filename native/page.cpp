@@ -103,10 +103,7 @@ SWAY_API page_placer *page_placer_open(const sway_model *model) {
   placer->model = model;
   Memory &memory = placer->memory;
   open_room(memory, &model, 1, placer->room);
-  double *numbers = memory.take<double>(2 * model->padded + 1);
-  placer->state.eta = numbers;
-  placer->state.hidden = numbers + model->padded;
-  placer->state.left_out = numbers + 2 * model->padded;
+  memory.take(model->padded + 1, placer->state.eta, placer->state.hidden, placer->state.left_out);
   if (!memory.is_short) return placer;
   memory.release();
   free(placer);
@@ -128,7 +125,7 @@ SWAY_API void page_place(page_placer *placer, const float *coordinates, double x
   Room &room = placer->room;
   const Frame &frame = frame_of_machine();
   for (int64_t i = 0; i < model.sizes.coordinates; i++)
-    placer->state.eta[i] = static_cast<double>(coordinates[i]);
+    placer->state.eta[i] = double(coordinates[i]);
   frame.find_keys(model, placer->state, room);
   for (size_t i = 0; i < count; i++)
     room.keys[count_of(turns[2 * i], model.sizes.keys - 1)] += turns[2 * i + 1];
@@ -136,9 +133,9 @@ SWAY_API void page_place(page_placer *placer, const float *coordinates, double x
   frame.place(model, place, room, room.poses);
   const double *pose = room.poses;
   for (int64_t i = 0; i < model.sizes.segments; i++, pose += 7, out += 8) {
-    for (int axis = 0; axis < 3; axis++) out[axis] = static_cast<float>(pose[axis]);
-    out[3] = static_cast<float>(scale);
-    for (int part = 0; part < 4; part++) out[4 + part] = static_cast<float>(pose[3 + part]);
+    for (int axis = 0; axis < 3; axis++) out[axis] = float(pose[axis]);
+    out[3] = float(scale);
+    for (int part = 0; part < 4; part++) out[4 + part] = float(pose[3 + part]);
   }
 }
 
@@ -148,6 +145,6 @@ SWAY_API size_t page_steps(const sway_model *model, double dt, double *whole, do
   if (whole)
     fill_step(model->sizes.coordinates, model->padded, model->stiffness, model->own_damping, dt,
               {whole, half, dt});
-  return static_cast<size_t>(model->padded);
+  return size_t(model->padded);
 }
 }

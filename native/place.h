@@ -20,9 +20,6 @@ constexpr double BLEND_TO = 45.0 * DEGREE * 45.0 * DEGREE;
 constexpr double STRETCH_TO = 90.0 * DEGREE * 90.0 * DEGREE;
 
 // Rows of sixteen slots.
-typedef double Row[WIDTH];
-
-// Values of the sixteen branches of a block.
 struct Slots {
   explicit Slots(double *memory, int64_t rows)
       : row(reinterpret_cast<Row *>(memory)), key(row), parent_base(row + 2), support(row + 10),
@@ -49,21 +46,9 @@ INLINE Quaternion<Vec> load_quaternion(const Row *rows, int slot) {
   return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot), load(rows[3] + slot)};
 }
 
-INLINE Vector<Vec> load_vector(const Row *rows, int slot) {
-  return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
-}
-
 INLINE void store_quaternion(Row *rows, int slot, const Quaternion<Vec> &q) {
   store(rows[0] + slot, q.w);
-  store(rows[1] + slot, q.x);
-  store(rows[2] + slot, q.y);
-  store(rows[3] + slot, q.z);
-}
-
-INLINE void store_vector(Row *rows, int slot, const Vector<Vec> &v) {
-  store(rows[0] + slot, v.x);
-  store(rows[1] + slot, v.y);
-  store(rows[2] + slot, v.z);
+  store_vector(rows + 1, slot, {q.x, q.y, q.z});
 }
 
 // Read four numbers of each of four rows of an array into slots.
@@ -94,10 +79,15 @@ INLINE void put_four(const Row *slots, int slot, double *array, int64_t stride, 
   store_four(array + (rows[slot + 3] + ahead) * stride + first, d);
 }
 
+// The orientation of a pose, whose real part is the last.
+INLINE Quaternion<Vec> orientation_of(const Row *pose, int slot) {
+  const Vector<Vec> imaginary = load_vector(pose + 3, slot);
+  return {load(pose[6] + slot), imaginary.x, imaginary.y, imaginary.z};
+}
+
 // The point at a length along the x axis of a pose.
 INLINE Vector<Vec> along(const Row *pose, int slot, Vec length) {
-  const Quaternion<Vec> q = {load(pose[6] + slot), load(pose[3] + slot), load(pose[4] + slot),
-                             load(pose[5] + slot)};
+  const Quaternion<Vec> q = orientation_of(pose, slot);
   const Vec twice = length + length;
   return {load(pose[0] + slot) + length - twice * (q.y * q.y + q.z * q.z),
           load(pose[1] + slot) + twice * (q.x * q.y + q.w * q.z),
@@ -107,10 +97,9 @@ INLINE Vector<Vec> along(const Row *pose, int slot, Vec length) {
 // Add the parts across the x axes of points in the frames of poses.
 static void go_aside(const Row *pose, Row *point, double scale, const Row *local, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
-    const Quaternion<Vec> q = {load(pose[6] + slot), load(pose[3] + slot), load(pose[4] + slot),
-                               load(pose[5] + slot)};
     const Vector<Vec> aside = {Vec{}, load(local[1] + slot), load(local[2] + slot)};
-    store_vector(point, slot, load_vector(point, slot) + scale * rotated(q, aside));
+    const Vector<Vec> turned = rotated(orientation_of(pose, slot), aside);
+    store_vector(point, slot, load_vector(point, slot) + scale * turned);
   }
 }
 
@@ -139,7 +128,7 @@ static void stand_on_ground(Slots &slots, const Place &place) {
 INLINE void read_further(const double *keys, const int64_t *first, Row *out, int64_t n_rows,
                          int slot) {
   for (int64_t from = 2; from < n_rows; from += 4)
-    take_four(keys, 1, first, static_cast<int>(from), out + from, slot);
+    take_four(keys, 1, first, int(from), out + from, slot);
 }
 
 INLINE void read_parents(const Block &block, Slots &slots, const Room &room, const double *poses) {
@@ -180,12 +169,9 @@ INLINE double rotate_bases(const Block &block, Slots &slots, double scale, const
     const Vec half_y = load(slots.parent_base[5] + slot);
     Vector<Vec> on_parent = half_x * load_vector(turn, slot) + half_y * load_vector(turn + 3, slot);
     for (int64_t row = 2; row < block.n_parent_rows; row++)
-      on_parent =
-          on_parent + 0.5 * load(slots.parent_key[row] + slot) * load_vector(turn + 3 * row, slot);
+      on_parent += 0.5 * load(slots.parent_key[row] + slot) * load_vector(turn + 3 * row, slot);
     const Vec square = dot(on_parent, on_parent);
-    const HalfAngle<Vec> half = half_angle(square, largest(square));
-    const Quaternion<Vec> turned = {half.cosine, half.sinc * on_parent.x, half.sinc * on_parent.y,
-                                    half.sinc * on_parent.z};
+    const Quaternion<Vec> turned = quaternion_of(half_angle(square, largest(square)), on_parent);
     const Quaternion<Vec> base = product(load_quaternion(slots.parent_base, slot), turned);
 
     const Vec x = load(slots.key[0] + slot), y = load(slots.key[1] + slot);
@@ -241,9 +227,7 @@ INLINE void join(const Segment &segment, Slots &slots, double scale, int slot,
                  const Quaternion<Vec> &turned) {
   const Quaternion<Vec> q = product(turned, load_quaternion(segment.rest, slot));
   store_vector(slots.pose, slot, load_vector(slots.start, slot));
-  store(slots.pose[3] + slot, q.x);
-  store(slots.pose[4] + slot, q.y);
-  store(slots.pose[5] + slot, q.z);
+  store_vector(slots.pose + 3, slot, {q.x, q.y, q.z});
   store(slots.pose[6] + slot, q.w);
   store_vector(slots.start, slot, along(slots.pose, slot, scale * load(segment.chord[0] + slot)));
 }
@@ -275,11 +259,9 @@ INLINE void bend_by_all(const Segment &segment, Slots &slots, double scale, int6
     const Vec slope = load(slots.blend + slot) * load(segment.tip_slope + slot);
     Vector<Vec> half = slope * load_vector(slots.half_rotation, slot);
     for (int64_t row = 0; row < n_rows; row++)
-      half = half + load(slots.half_key[row] + slot) * load_vector(turn + 3 * row, slot);
-    const HalfAngle<Vec> angle = half_angle(dot(half, half), bound);
-    join(segment, slots, scale, slot,
-         product(load_quaternion(slots.base, slot),
-                 {angle.cosine, angle.sinc * half.x, angle.sinc * half.y, angle.sinc * half.z}));
+      half += load(slots.half_key[row] + slot) * load_vector(turn + 3 * row, slot);
+    const Quaternion<Vec> bend = quaternion_of(half_angle(dot(half, half), bound), half);
+    join(segment, slots, scale, slot, product(load_quaternion(slots.base, slot), bend));
   }
 }
 
@@ -300,7 +282,7 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
   Slots slots(room.slots, model.rows + 4);
   for (int64_t number = 0; number < model.n_blocks; number++) {
     const Block &block = model.blocks[number];
-    const int count = static_cast<int>((block.n_slots + LANES - 1) / LANES * LANES);
+    const int count = int((block.n_slots + LANES - 1) / LANES * LANES);
     read_keys(block, slots, room.keys, count);
     if (block.parent[0] < 0)
       stand_on_ground(slots, where);
@@ -332,8 +314,7 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
 static void find_keys(const sway_model &model, const State &state, Room &room) {
   const int64_t m = model.sizes.coordinates;
   const int64_t n_shown = m - count_of(*state.left_out, m);
-  for (int64_t i = 0; i < n_shown; i++)
-    room.shown[i] = static_cast<float>(state.eta[i] - state.hidden[i]);
+  for (int64_t i = 0; i < n_shown; i++) room.shown[i] = float(state.eta[i] - state.hidden[i]);
   constexpr int PARTS = LANES < 8 ? 8 : 4, SINGLES = 2 * LANES, TOGETHER = PARTS * SINGLES;
   for (int64_t first = 0; first < model.sizes.keys; first += TOGETHER) {
     const float *shapes = model.shapes + first / 64 * m * 64 + first % 64;

@@ -18,10 +18,10 @@ int64_t size_of(const Arrays &a, int64_t branch) {
 // Branches whose parents have slots: the richest and longest first, then children of the richest.
 class Ready {
 public:
-  Ready(Memory &memory, const Arrays &a, const int64_t *carried)
-      : a_(a), carried_(carried), heap_(memory.take<int64_t>(a.size[-SIZE_b])) {}
+  Ready(Memory &memory, const Arrays &a, const int64_t *carried) : a_(a), carried_(carried) {
+    memory.take(a.size[-SIZE_b], heap_);
+  }
 
-  bool is_there() const { return heap_ != nullptr; }
   int64_t count() const { return count_; }
 
   void add(int64_t branch) {
@@ -72,7 +72,7 @@ struct Slots {
 bool assign_slots(Memory &memory, const Arrays &a, Slots &slots) {
   const int64_t b = a.size[-SIZE_b];
   int64_t *carried, *first_child, *sibling;
-  memory.take_each(b, slots.block, slots.slot, slots.record, carried, first_child, sibling);
+  memory.take(b, slots.block, slots.slot, slots.record, carried, first_child, sibling);
   Ready ready(memory, a, carried);
   if (memory.is_short) return false;
   for (int64_t i = 0; i < b; i++) carried[i] = 1, first_child[i] = sibling[i] = -1;
@@ -146,7 +146,7 @@ void fill_branch(const Arrays &a, int64_t branch, Block &block, int64_t slot) {
   block.first[slot] = a.branch_first[branch];
   block.skew[slot] = skew[0];
   block.tip_skew[slot] = skew[1] - skew[0];
-  block.bound_factor[slot] = static_cast<double>(a.branch_keys[branch] - 1);
+  block.bound_factor[slot] = double(a.branch_keys[branch] - 1);
   put(**block.axes, slot, frame + 3, 6);
   put(*block.offset, slot, offset, 3);
   for (int64_t row = 0; row < k; row++) {
@@ -180,10 +180,14 @@ void lay_out_places(sway_model &model, const Arrays &a) {
     scratch.release();
     return;
   }
-  Block *blocks = model.memory.take<Block>(slots.n_blocks);
-  Segment *segments = model.memory.take<Segment>(slots.n_records);
-  double *by_block = model.memory.take<double>(slots.n_blocks * 4 * k * WIDTH);
-  double *turns = k > 2 ? model.memory.take<double>(slots.n_records * 3 * k * WIDTH) : nullptr;
+  model.n_blocks = slots.n_blocks;
+  model.memory.take(slots.n_blocks, model.blocks);
+  model.memory.take(slots.n_records, model.segments);
+  Block *blocks = model.blocks;
+  Segment *segments = model.segments;
+  double *by_block, *turns = nullptr;
+  model.memory.take(slots.n_blocks * 4 * k * WIDTH, by_block);
+  if (k > 2) model.memory.take(slots.n_records * 3 * k * WIDTH, turns);
   if (!model.memory.is_short) {
     for (int64_t i = 0; i < slots.n_blocks; i++) {
       blocks[i].base_rotation = by_block + i * 4 * k * WIDTH;
@@ -209,9 +213,6 @@ void lay_out_places(sway_model &model, const Arrays &a) {
       raise_to(blocks[slots.block[parent]].n_parents, slots.slot[parent] + 1);
     }
   }
-  model.n_blocks = slots.n_blocks;
-  model.blocks = blocks;
-  model.segments = segments;
   scratch.release();
 }
 

@@ -95,7 +95,7 @@ static void return_to_rest(const sway_model &model, LimpTree &tree) {
 INLINE int64_t columns_due(int64_t count, double turned, double speed) {
   const double share = turned / (speed < STORM ? OLDEST : OLDEST_IN_STORM);
   if (!(share > 1.0 / MOST_STEPS)) return (count + 7) / 8;
-  return share < 1.0 ? static_cast<int64_t>(__builtin_ceil(share * count)) : count;
+  return share < 1.0 ? int64_t(__builtin_ceil(share * count)) : count;
 }
 
 // Twice the kinetic energy [J] of rates; writes the momentum of leading coordinates.
@@ -112,20 +112,25 @@ static double twice_kinetic_energy(const Limp &limp, const LimpTree &tree, int64
   return energy;
 }
 
+// Write where the segments are at an amount of a direction from here.
+static void place_along(const sway_model &model, Room &room, double amount, const double *direction,
+                        double *out) {
+  LimpRoom &own = room.limp;
+  for (int64_t i = 0; i < model.limp.keys; i += LANES)
+    store(own.keys + i, load(own.turned + i) + amount * load(direction + i));
+  find_place(model, room, own.keys, out, nullptr);
+}
+
 // Turn the tree a little from here along each of the next coordinates and take the difference as
 // its column. The rows of the room beyond the first two are these columns.
 static void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t count) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates;
   LimpRoom &own = room.limp;
-  double *keys = own.keys;
   for (int64_t k = 0; k < count; k++) {
     const int64_t number = (tree.next + k) % m;
     const double amount = limp.amount[number];
-    const double *direction = limp.directions + number * limp.keys;
-    for (int64_t i = 0; i < limp.keys; i += LANES)
-      store(keys + i, load(own.turned + i) + amount * load(direction + i));
-    find_place(model, room, keys, own.trial, nullptr);
+    place_along(model, room, amount, limp.directions + number * limp.keys, own.trial);
     double *column = tree.columns + number * limp.places;
     for (int64_t i = 0; i < limp.places; i += LANES)
       store(column + i, (load(own.trial + i) - load(own.here + i)) / amount);

@@ -197,7 +197,7 @@ extern "C" {
 
 void sway_steps(const double *stiffness, const double *damping, size_t count, double dt,
                 double *whole, double *half) {
-  const int64_t n = static_cast<int64_t>(count);
+  const int64_t n = int64_t(count);
   fill_step(n, n, stiffness, damping, dt, {whole, half, dt});
 }
 
@@ -237,7 +237,7 @@ int64_t sway_propagators(const double *inertia, const double *damping, const dou
       row[6] = -row[7];
     } else {
       row[0] = 1.0;
-      if (refused < 0) refused = static_cast<int64_t>(n);
+      if (refused < 0) refused = int64_t(n);
     }
     memcpy(out + 8 * n, row, sizeof row);
   }

@@ -9,17 +9,16 @@ namespace {
 using namespace sway;
 
 void open_limp_room(Memory &memory, const Limp &limp, int64_t m, int64_t padded, LimpRoom &room) {
-  memory.take_each(limp.keys, room.turned, room.turning, room.keys);
-  memory.take_each(limp.places, room.here, room.ahead, room.behind, room.trial, room.tangent,
-                   room.force, room.gust);
-  memory.take_each((m + 2) * limp.row, room.products);
-  memory.take_each(m + 2, room.rows);
-  memory.take_each(limp.row, room.momentum, room.across, room.along);
-  memory.take_each(limp.leading * limp.row, room.matrix, room.block);
-  memory.take_each(8 * limp.row, room.coupled);
-  memory.take_each(3 * limp.row, room.solved);
-  memory.take_each(padded, room.eta, room.rate, room.new_force, room.by_wind, room.wanted,
-                   room.sloped);
+  memory.take(limp.keys, room.turned, room.turning, room.keys);
+  memory.take(limp.places, room.here, room.ahead, room.behind, room.trial, room.tangent, room.force,
+              room.gust);
+  memory.take((m + 2) * limp.row, room.products);
+  memory.take(m + 2, room.rows);
+  memory.take(limp.row, room.momentum, room.across, room.along);
+  memory.take(limp.leading * limp.row, room.matrix, room.block);
+  memory.take(8 * limp.row, room.coupled);
+  memory.take(3 * limp.row, room.solved);
+  memory.take(padded, room.eta, room.rate, room.new_force, room.by_wind, room.wanted, room.sloped);
 }
 
 }  // namespace
@@ -43,14 +42,14 @@ void open_room(Memory &memory, const sway_model *const *models, size_t n_models,
     raise_to(limp.places, model.limp.places);
     raise_to(limp.keys, model.limp.keys);
   }
-  memory.take_each(keys + 64 + KEYS_BEYOND, room.keys);
-  memory.take_each(8 * branches, room.bases);
-  memory.take_each(7 * segments, room.poses);
-  memory.take_each(slots_of(rows + 4), room.slots);
-  memory.take_each(padded, room.middle, room.middle_rate, room.change);
-  memory.take_each(padded, room.turned, room.damped, room.single_rate, room.shown);
-  memory.take_each(4 * padded, room.distance);
-  memory.take_each(16, room.single_keys);
+  memory.take(keys + 64 + KEYS_BEYOND, room.keys);
+  memory.take(8 * branches, room.bases);
+  memory.take(7 * segments, room.poses);
+  memory.take(slots_of(rows + 4), room.slots);
+  memory.take(padded, room.middle, room.middle_rate, room.change);
+  memory.take(padded, room.turned, room.damped, room.single_rate, room.shown);
+  memory.take(4 * padded, room.distance);
+  memory.take(16, room.single_keys);
   if (!ON_TABLES && limp.leading) open_limp_room(memory, limp, coordinates, padded, room.limp);
 }
 

@@ -102,7 +102,7 @@ bool is_saturated(sway_ring &ring, const double *sample) {
 
 // Row of a sample, counted from the oldest.
 int64_t row_of(const sway_ring &ring, int64_t from_oldest) {
-  return static_cast<int64_t>(static_cast<uint64_t>(ring.first + from_oldest) % SWAY_RING);
+  return int64_t(uint64_t(ring.first + from_oldest) % SWAY_RING);
 }
 
 void drop_oldest(sway_ring &ring) {
@@ -188,7 +188,7 @@ int sway_read_samples(sway_ring *kept, double time, double dt, double *sample) {
     if (stamp <= time) before = row;
   }
   if (within > 1) {
-    for (int j = 0; j < 9; j++) sample[j] /= static_cast<double>(within);
+    for (int j = 0; j < 9; j++) sample[j] /= double(within);
     return 1;
   }
   if (before < 0) return 0;

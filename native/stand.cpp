@@ -87,44 +87,38 @@ bool is_tree(const sway_tree &tree, size_t n_models) {
   const double numbers[] = {tree.at[0], tree.at[1], tree.at[2], tree.yaw, tree.scale, tree.speed};
   for (double number : numbers)
     if (!isfinite(number)) return false;
-  return tree.scale > 0.0 && tree.speed >= 0.0 && tree.model >= 0 &&
-         static_cast<size_t>(tree.model) < n_models;
+  return tree.scale > 0.0 && tree.speed >= 0.0 && tree.model >= 0 && size_t(tree.model) < n_models;
 }
 
 // The number of the step of a tree, added if no tree before it has the same.
 int64_t step_of(sway_stand &stand, const sway_tree &tree) {
   const double scale = exp(FINEST_SCALE * rint(log(tree.scale) / FINEST_SCALE));
   for (size_t i = 0; i < stand.n_steps; i++)
-    if (stand.steps[i].model == tree.model && stand.steps[i].scale == scale)
-      return static_cast<int64_t>(i);
-  const int64_t rows = 6 * stand.kinds[tree.model].model->padded;
-  stand.steps[stand.n_steps] = {
-      tree.model, scale, {stand.memory.take<double>(rows), stand.memory.take<double>(rows), 0.0}};
-  return static_cast<int64_t>(stand.n_steps++);
+    if (stand.steps[i].model == tree.model && stand.steps[i].scale == scale) return int64_t(i);
+  OwnStep &own = stand.steps[stand.n_steps];
+  own = {tree.model, scale, {}};
+  stand.memory.take(6 * stand.kinds[tree.model].model->padded, own.step.whole, own.step.half);
+  return int64_t(stand.n_steps++);
 }
 
 // Take what a limp tree has beside its state.
 void open_limp(Memory &memory, const sway_model &model, LimpTree &tree) {
   const int64_t m = model.sizes.coordinates, row = model.limp.row, padded = model.padded;
-  tree.columns = memory.take<double>(m * model.limp.places);
-  tree.change = memory.take<double>(model.limp.leading * row);
-  tree.weight = memory.take<double>(row);
-  tree.last_eta = memory.take<double>(padded);
-  tree.last_rate = memory.take<double>(padded);
+  memory.take(m * model.limp.places, tree.columns);
+  memory.take(model.limp.leading * row, tree.change);
+  memory.take(row, tree.weight);
+  memory.take(padded, tree.last_eta, tree.last_rate);
   for (CoupledStep &law : tree.laws) {
-    law.part = {memory.take<double>(6 * padded), memory.take<double>(6 * padded), 0.0};
-    law.coupled = memory.take<int64_t>(row);
-    double **rows[] = {&law.stretch, &law.per_force, &law.own, &law.root_damping};
-    for (double **each : rows) *each = memory.take<double>(row);
-    law.own_damping = memory.take<double>(padded);
+    memory.take(6 * padded, law.part.whole, law.part.half);
+    memory.take(row, law.coupled, law.stretch, law.per_force, law.own, law.root_damping);
+    memory.take(padded, law.own_damping);
   }
 }
 
 void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   kind.model = model;
   Tuning &tuning = kind.tuning;
-  tuning.stiffness = stand.memory.take<double>(model->padded);
-  tuning.damping = stand.memory.take<double>(model->padded);
+  stand.memory.take(model->padded, tuning.stiffness, tuning.damping);
   if (!model->sizes.is_stepped || stand.memory.is_short) return;
   memcpy(tuning.stiffness, model->stiffness, model->padded * sizeof(double));
   memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
@@ -138,15 +132,15 @@ int by_rows(const void *a, const void *b) {
 }
 
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
-  stand.kinds = stand.memory.take<Kind>(stand.n_models);
-  stand.trees = stand.memory.take<Tree>(stand.n_trees);
-  if (!ON_TABLES) stand.order = stand.memory.take<const Tree *>(stand.n_trees);
-  stand.steps = stand.memory.take<OwnStep>(stand.n_trees);
-  stand.rooms = stand.memory.take<Room>(stand.n_rooms);
+  Memory &memory = stand.memory;
+  memory.take(stand.n_models, stand.kinds);
+  memory.take(stand.n_rooms, stand.rooms);
+  memory.take(stand.n_trees, stand.trees, stand.steps);
+  if (!ON_TABLES) memory.take(stand.n_trees, stand.order);
   if (stand.memory.is_short) return false;
   for (size_t i = 0; i < stand.n_models; i++) {
     open_kind(stand, stand.kinds[i], models[i]);
-    const size_t width = static_cast<size_t>(models[i]->padded);
+    const size_t width = size_t(models[i]->padded);
     if (width > stand.width) stand.width = width;
   }
   stand.stride = ROWS * stand.width + SCALARS;
@@ -155,11 +149,11 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
       stand.has_crowns = true;
       stand.stride += CROWN + 1;  // an even number
     }
-  stand.states = stand.memory.take<double>(static_cast<uint64_t>(stand.n_trees) * stand.stride);
+  memory.take(uint64_t(stand.n_trees) * stand.stride, stand.states);
   for (size_t i = 0; i < stand.n_rooms; i++)
     open_room(stand.memory, models, stand.n_models, stand.rooms[i]);
   for (size_t i = 0; i < stand.n_models; i++)
-    if (is_limp(*models[i]) && !stand.limp) stand.limp = stand.memory.take<LimpTree>(stand.n_trees);
+    if (is_limp(*models[i]) && !stand.limp) memory.take(stand.n_trees, stand.limp);
   int64_t n_segments = 0;
   for (size_t i = 0; i < stand.n_trees && !stand.memory.is_short; i++) {
     const sway_tree &given = trees[i];

@@ -91,7 +91,7 @@ static Corners find_corners(const sway_model &model, const Wind &wind, const dou
       __builtin_atan2(wind.direction.y, wind.direction.x) * (AZIMUTHS / (360.0 * DEGREE));
   const double whole = __builtin_floor(position);
   Corners corners;
-  corners.azimuth[0] = (static_cast<int64_t>(whole) + AZIMUTHS) % AZIMUTHS;
+  corners.azimuth[0] = (int64_t(whole) + AZIMUTHS) % AZIMUTHS;
   corners.azimuth[1] = (corners.azimuth[0] + 1) % AZIMUTHS;
   const double share = position - whole, rest = 1.0 - share;
   const double *before = table.amount + corners.azimuth[0] * M;
@@ -145,13 +145,11 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
     const double other_rise = equilibrium[corners.number[3] * M + i] - other_low;
     const double away = room.middle[i] - corners.by_azimuth[0] * (low + above * rise) -
                         corners.by_azimuth[1] * (other_low + above * other_rise);
-    room.distance[i] = static_cast<float>(corners.weight[0] * (away + to_below * rise));
-    room.distance[M + i] = static_cast<float>(corners.weight[1] * (away - to_above * rise));
-    room.distance[2 * M + i] =
-        static_cast<float>(corners.weight[2] * (away + to_below * other_rise));
-    room.distance[3 * M + i] =
-        static_cast<float>(corners.weight[3] * (away - to_above * other_rise));
-    room.single_rate[i] = static_cast<float>(room.middle_rate[i]);
+    room.distance[i] = float(corners.weight[0] * (away + to_below * rise));
+    room.distance[M + i] = float(corners.weight[1] * (away - to_above * rise));
+    room.distance[2 * M + i] = float(corners.weight[2] * (away + to_below * other_rise));
+    room.distance[3 * M + i] = float(corners.weight[3] * (away - to_above * other_rise));
+    room.single_rate[i] = float(room.middle_rate[i]);
     room.turned[i] = room.damped[i] = 0.0f;
   }
 }
@@ -167,17 +165,17 @@ static void add_slopes(const sway_model &model, const Corners &corners, double s
   for (int corner = 0; corner < 4; corner++) {
     turning[corner] = table.turning + corners.number[corner] * m * M;
     damping[corner] = table.damping + corners.number[corner] * m * M;
-    weight[corner] = static_cast<float>(corners.weight[corner]);
+    weight[corner] = float(corners.weight[corner]);
   }
   const float *lean[2];
   float slants[2];
   for (int side = 0; side < 2; side++) {
     lean[side] = table.lean + corners.azimuth[side] * m * M;
-    slants[side] = static_cast<float>(level_winds * corners.by_azimuth[side] * slant);
+    slants[side] = float(level_winds * corners.by_azimuth[side] * slant);
   }
   for (int64_t moving = 0; moving < n_coupled; moving++) {
     const int64_t row = moving * M;
-    const float moved = static_cast<float>(room.middle[moving]);
+    const float moved = float(room.middle[moving]);
     const float rate = room.single_rate[moving];
     float away[4], rates[4];
     for (int corner = 0; corner < 4; corner++) {
@@ -205,13 +203,13 @@ static void add_steep_slopes(const sway_model &model, bool is_upwards, double st
   const float *turning = model.table.steep_turning + (is_upwards ? m * M : 0);
   const float *damping = model.table.steep_damping + (is_upwards ? m * M : 0);
   for (int64_t moving = 0; moving < n_coupled; moving++) {
-    const float moved = static_cast<float>(steepness * room.middle[moving]);
-    const float rate = static_cast<float>(steepness) * room.single_rate[moving];
+    const float moved = float(steepness * room.middle[moving]);
+    const float rate = float(steepness) * room.single_rate[moving];
     for (int64_t i = 0; i < M; i += 2 * LANES) {
       store(room.turned + i, load(room.turned + i) + moved * load(turning + moving * M + i));
       store(room.damped + i, load(room.damped + i) + rate * load(damping + moving * M + i));
     }
-    state.diagonal[moving] += drag * steepness * static_cast<double>(damping[moving * M + moving]);
+    state.diagonal[moving] += drag * steepness * double(damping[moving * M + moving]);
   }
 }
 
@@ -246,8 +244,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
   for (int64_t i = 0; i < m; i++) {
     double slope = 0.0;
     for (int corner = 0; corner < 4; corner++)
-      slope += corners.weight[corner] *
-               static_cast<double>(table.damping[(corners.number[corner] * m + i) * M + i]);
+      slope +=
+          corners.weight[corner] * double(table.damping[(corners.number[corner] * m + i) * M + i]);
     state.diagonal[i] = drag * slope;
   }
   for (int64_t i = m; i < M; i++) state.diagonal[i] = 0.0;
@@ -267,19 +265,20 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
           load(state.diagonal + i) - drag * between(table.cross_damping, M, corners, i));
 }
 
-// Move coordinates by rows of coefficients under their force.
-INLINE void move(const double *c, int64_t M, const State &state, double *eta, double *rate,
-                 int64_t i) {
-  const Vec q = load(state.eta + i), v = load(state.rate + i), f = load(state.force + i);
-  store(eta + i, load(c + i) * q + load(c + M + i) * v + load(c + 2 * M + i) * f);
-  store(rate + i, load(c + 3 * M + i) * q + load(c + 4 * M + i) * v + load(c + 5 * M + i) * f);
+// Move M coordinates of some rates by rows of coefficients under a force.
+static void move(const double *c, int64_t M, const double *from, const double *at_rate,
+                 const double *force, double *eta, double *rate) {
+  for (int64_t i = 0; i < M; i += LANES) {
+    const Vec q = load(from + i), v = load(at_rate + i), f = load(force + i);
+    store(eta + i, load(c + i) * q + load(c + M + i) * v + load(c + 2 * M + i) * f);
+    store(rate + i, load(c + 3 * M + i) * q + load(c + 4 * M + i) * v + load(c + 5 * M + i) * f);
+  }
 }
 
 // Write the state at the middle of the step.
 static void move_to_middle(const sway_model &model, const Step &step, const State &state,
                            Room &room) {
-  for (int64_t i = 0; i < model.padded; i += LANES)
-    move(step.half, model.padded, state, room.middle, room.middle_rate, i);
+  move(step.half, model.padded, state.eta, state.rate, state.force, room.middle, room.middle_rate);
 }
 
 // Twice the energy of strain and motion [J].
@@ -352,8 +351,7 @@ static bool step_table(const sway_model &model, const double *stiffness, const S
     find_wind_force(model, wind, state, room, n_coupled);
     change_force(model, step, state, room);
   }
-  for (int64_t i = 0; i < model.padded; i += LANES)
-    move(step.whole, model.padded, state, state.eta, state.rate, i);
+  move(step.whole, model.padded, state.eta, state.rate, state.force, state.eta, state.rate);
   keep_at_rest(model, state);
   // A pull may bend a tree more than any wind; no wind adds to that.
   const double energy = twice_energy(model, stiffness, state);

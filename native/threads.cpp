@@ -24,6 +24,7 @@ constexpr size_t PARTS = 32;
 typedef SRWLOCK Lock;
 typedef CONDITION_VARIABLE Signal;
 typedef HANDLE Thread;
+typedef DWORD Ended;
 
 void begin(Lock &lock, Signal &signal) {
   InitializeSRWLock(&lock);
@@ -35,7 +36,7 @@ void wait(Signal &signal, Lock &lock) { SleepConditionVariableSRW(&signal, &lock
 void wake(Signal &signal) { WakeAllConditionVariable(&signal); }
 int64_t process() { return GetCurrentProcessId(); }
 
-DWORD WINAPI run(void *all);
+Ended WINAPI run(void *all);
 
 bool start(Thread &thread, Threads &all) {
   thread = CreateThread(nullptr, 0, run, &all, 0, nullptr);
@@ -52,6 +53,7 @@ void join(Thread &thread) {
 typedef pthread_mutex_t Lock;
 typedef pthread_cond_t Signal;
 typedef pthread_t Thread;
+typedef void *Ended;
 
 void begin(Lock &lock, Signal &signal) {
   pthread_mutex_init(&lock, nullptr);
@@ -63,7 +65,8 @@ void wait(Signal &signal, Lock &lock) { pthread_cond_wait(&signal, &lock); }
 void wake(Signal &signal) { pthread_cond_broadcast(&signal); }
 int64_t process() { return getpid(); }
 
-void *run(void *all);
+#define WINAPI
+Ended run(void *all);
 
 // Signals stay with the threads of the program.
 bool start(Thread &thread, Threads &all) {
@@ -120,17 +123,10 @@ void serve(Threads &all) {
   leave(all.lock);
 }
 
-#if defined(_WIN32)
-DWORD WINAPI run(void *all) {
+Ended WINAPI run(void *all) {
   serve(*static_cast<Threads *>(all));
-  return 0;
+  return {};
 }
-#else
-void *run(void *all) {
-  serve(*static_cast<Threads *>(all));
-  return nullptr;
-}
-#endif
 
 void start_all(Threads &all) {
   begin(all.lock, all.change);
@@ -157,8 +153,10 @@ size_t processors() {
 }
 
 Threads *open_threads(Memory &memory, size_t rooms) {
-  Threads *all = memory.take<Threads>(1);
-  Thread *thread = memory.take<Thread>(rooms - 1);
+  Threads *all;
+  Thread *thread;
+  memory.take(1, all);
+  memory.take(rooms - 1, thread);
   if (memory.is_short) return nullptr;
   all->thread = thread;
   all->rooms = rooms;

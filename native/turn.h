@@ -51,8 +51,7 @@ template <class V> INLINE Vector<V> spin_by(const Vector<V> &rotation, const Vec
 // The unit quaternion of a rotation vector [rad].
 INLINE Quaternion<double> quaternion_of(const Vector<double> &rotation) {
   const Vector<double> half = 0.5 * rotation;
-  const HalfAngle<double> angle = half_angle(dot(half, half));
-  return {angle.cosine, angle.sinc * half.x, angle.sinc * half.y, angle.sinc * half.z};
+  return quaternion_of(half_angle(dot(half, half)), half);
 }
 
 // Three rows of a matrix.

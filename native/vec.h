@@ -110,6 +110,19 @@ template <class V> struct Quaternion {
   V w, x, y, z;
 };
 
+// Values of sixteen branches, a slot each.
+typedef double Row[16];
+
+INLINE Vector<Vec> load_vector(const Row *rows, int slot) {
+  return {load(rows[0] + slot), load(rows[1] + slot), load(rows[2] + slot)};
+}
+
+INLINE void store_vector(Row *rows, int slot, const Vector<Vec> &v) {
+  store(rows[0] + slot, v.x);
+  store(rows[1] + slot, v.y);
+  store(rows[2] + slot, v.z);
+}
+
 // b, then a.
 template <class V> INLINE Quaternion<V> product(const Quaternion<V> &a, const Quaternion<V> &b) {
   return {
@@ -141,6 +154,8 @@ template <class V> INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
+template <class V> INLINE void operator+=(Vector<V> &a, const Vector<V> &b) { a = a + b; }
+
 template <class V, class S> INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
   return {scale * a.x, scale * a.y, scale * a.z};
 }
@@ -153,6 +168,12 @@ template <class V> INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
 template <class V> struct HalfAngle {
   V cosine, sinc;
 };
+
+// The quaternion of the halves of an angle and of its rotation vector.
+template <class V>
+INLINE Quaternion<V> quaternion_of(const HalfAngle<V> &by, const Vector<V> &half) {
+  return {by.cosine, by.sinc * half.x, by.sinc * half.y, by.sinc * half.z};
+}
 
 // The largest squared half angles [rad^2] of the short and the long series: 0.2 and 1.5 rad.
 constexpr double NEAR = 0.04, FAR = 2.25;
@@ -203,7 +224,7 @@ INLINE HalfAngle<Vec> half_angle(Vec square, double bound) {
   }
   HalfAngle<Vec> found{};
   for (int lane = 0; lane < LANES; lane++) {
-    const HalfAngle<double> one = half_angle(static_cast<double>(square[lane]));
+    const HalfAngle<double> one = half_angle(double(square[lane]));
     found.cosine[lane] = one.cosine;
     found.sinc[lane] = one.sinc;
   }
