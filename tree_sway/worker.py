@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
+import os
 import threading
 from typing import TypeVar
 
@@ -60,3 +61,7 @@ def submit_beside(call: Callable[[], _T], /) -> Future[_T]:
 @cache
 def _beside() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(1, thread_name_prefix='beside the steps')
+
+
+if hasattr(os, 'register_at_fork'):  # a child process has no threads of its parent
+    os.register_at_fork(after_in_child=_beside.cache_clear)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 import os
@@ -27,13 +28,12 @@ from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
-from tree_sway.twin.later_work import Submit
+from tree_sway.twin import later_work
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 from tree_sway.twin.sensor_report import sensor_reports
 from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.twin.tree_fit import TreeFit
-from tree_sway.worker import submit_beside
 
 DT, SECONDS = 1.0 / 60.0, 70
 LEARNED = 30 * 60
@@ -98,12 +98,10 @@ class Replay(NamedTuple):
     sway_band: Floats
 
 
-def replayed(
-    motion: SensedMotion | None, *, learns: bool = False, submit: Submit | None = None
-) -> Replay:
+def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
     twin = ObservedTree(
         TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True, submit=submit,
+        has_band=True,
     )  # fmt: skip
     wind, block = truth().wind, np.empty((TREE.n_segments, 7))
     tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
@@ -243,8 +241,21 @@ def test_it_learns_stiffness_and_damping() -> None:
     assert dynamic_error(tips) < 0.6 * dynamic_error(alone().tips)
 
 
-def test_the_motion_is_the_same_with_work_beside_the_steps() -> None:
-    _twin, tips, late, band, _ = replayed(measured(), learns=True, submit=submit_beside)
+class Postponed(NamedTuple):
+    """Work that is done when its result is asked for."""
+
+    find: Callable[[], object]
+
+    def result(self) -> object:
+        return self.find()
+
+
+def test_the_motion_does_not_depend_on_when_work_beside_the_steps_is_done(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As late as can be, by the steps themselves: then it would read what they have changed."""
+    monkeypatch.setattr(later_work, 'submit_beside', Postponed)
+    _twin, tips, late, band, _ = replayed(measured(), learns=True)
     np.testing.assert_array_equal(tips, learning().tips)
     np.testing.assert_array_equal(late, learning().late)
     np.testing.assert_array_equal(band, learning().band)

@@ -142,7 +142,7 @@ def seeing(sensed: Floats, model: Floats) -> SensorTrack:
 
 def said(track: SensorTrack, *, is_told: bool) -> tuple[str, ...]:
     """Return what a sensor says after its mounting was found again."""
-    track.take(next(track.search(NO_LAG._replace(is_told=is_told))))
+    track.take(track.search(NO_LAG._replace(is_told=is_told))())
     assert track.alignment is not None
     return (*track.alignment.notes, *filter(None, [track.alignment.problem]))
 
@@ -215,7 +215,7 @@ def said_beside(late: float, others: dict[str, float], own: float = 0.0) -> str:
         OtherSensor(name, upright, np.roll(limb, round(lag / DT), axis=0), 0.0, abs(lag) + own)
         for name, lag in others.items()
     )
-    track.take(next(track.search(NO_LAG._replace(is_told=True, others=beside))))
+    track.take(track.search(NO_LAG._replace(is_told=True, others=beside))())
     assert track.alignment is not None
     assert track.in_use == (not track.alignment.problem)
     return track.alignment.problem

@@ -192,7 +192,7 @@ def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() 
     track.sensor.quantities = ('acceleration', 'rate')
     of.read(0.0, 0, -1)
     found = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1))
-    track.search = lambda _: iter([FoundMounting(found, np.zeros(9))])
+    track.search = lambda _: lambda: FoundMounting(found, np.zeros(9))
     track._next_fit = 0
     of.read(DT, 1, 0)
     track.sensor.quantities = ('acceleration', 'rate', 'orientation')

@@ -12,10 +12,9 @@ from tree_sway.twin.steady_filter import (
     predicted_covariance,
     stationary_covariance,
     steady_filter,
-    SteadyFilter,
     sway_law,
     SwayLaw,
-    told_shares_in_parts,
+    told_shares,
 )
 
 M, DT = 5, 1.0 / 60.0
@@ -38,11 +37,6 @@ def driven(law: SwayLaw) -> np.ndarray:
     whole = np.zeros((3 * M, 3 * M))
     whole[2 * M :, 2 * M :] = law.driven
     return whole
-
-
-def told_shares(gains: SteadyFilter, law: SwayLaw, noise: np.ndarray) -> np.ndarray:
-    found = told_shares_in_parts(gains, law, noise)
-    return next(each for each in found if each is not None)
 
 
 def test_the_law_is_the_exponential_of_the_equation_of_motion() -> None:

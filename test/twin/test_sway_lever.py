@@ -67,7 +67,7 @@ def test_it_is_noted_when_a_mounting_is_found(lever: float) -> None:
     track._sensed[:n, 2] += GRAVITY
     track._computed[:n, :3], track._computed[:n, 3:6] = free[:, :3], (model - free)[:, :3]
     track._computed[:n, 6:9] = model[:, 3:6]
-    track.take(next(track.search()))
+    track.take(track.search()())
     assert track.in_use
     assert track.alignment is not None
     notes = [note for note in track.alignment.notes if 'turns about a point' in note]

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Gains for the sensors in use and the present wind, found a part at each step.
+Gains for the sensors in use and the present wind, found beside the steps.
 
 A sensor on the stem tells about a hanging twig only what both have in common by the law of the
 gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
@@ -11,21 +11,17 @@ the tree sways in the wind alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.twin.steady_filter import (
-    filter_in_parts,
-    SteadyFilter,
-    SwayLaw,
-    told_shares_in_parts,
-)
+from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, SwayLaw, told_shares
 from tree_sway.twin.unknown_motion import UnknownMotion
 
 NOISE = 1.0
@@ -38,7 +34,7 @@ correction is not applied, and applied whole.
 """
 
 _DUE = 45
-"""Steps after which new gains are in use: their parts are fewer."""
+"""Steps after which new gains are in use."""
 
 
 class Gains(NamedTuple):
@@ -67,8 +63,6 @@ class GainDesign:
         Sensors, and how each is moved by the coordinates of the model.
     lag
         Steps by which the smoothed motion is late.
-    submit
-        As `LaterWork` takes it.
 
     """
 
@@ -78,10 +72,9 @@ class GainDesign:
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
         lag: int,
-        submit: Submit | None = None,
     ) -> None:
         self._unknown, self._tracks, self._places = unknown, tracks, places
-        self._lag, self._submit = lag, submit
+        self._lag = lag
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self.used: tuple[int, ...] = ()
@@ -113,7 +106,7 @@ class GainDesign:
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        return LaterWork(_in_parts(used, law, apart, sensed, noise, self._lag), _DUE, self._submit)
+        return LaterWork(partial(_gains, used, law, apart, sensed, noise, self._lag), _DUE)
 
     def felt(self, which: int) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -126,17 +119,11 @@ class GainDesign:
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
 
 
-def _in_parts(
+def _gains(
     used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats, lag: int
-) -> Iterator[Gains | None]:
-    """Find the gains of some sensors, judged by gusts of each limb; None until they are found."""
-    for gains in filter_in_parts(law, sensed, NOISE * noise, lag):
-        yield None
-        if gains is not None:
-            found = gains
-    for told in told_shares_in_parts(found, apart, NOISE * noise):
-        if told is None:
-            yield None
-            continue
-        trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
-        yield Gains(used, noise, found, trust)
+) -> Gains:
+    """Find the gains of some sensors, judged by gusts of each limb."""
+    found = steady_filter(law, sensed, NOISE * noise, lag)
+    told = told_shares(found, apart, NOISE * noise)
+    trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
+    return Gains(used, noise, found, trust)

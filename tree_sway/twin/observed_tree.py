@@ -44,7 +44,6 @@ from tree_sway.twin.disturbance import crown_slope
 from tree_sway.twin.dragged_motion import DraggedMotion
 from tree_sway.twin.explained_motion import ExplainedMotion
 from tree_sway.twin.late_wind import LateWind
-from tree_sway.twin.later_work import Submit
 from tree_sway.twin.learned_tree import LearnedTree
 from tree_sway.twin.members import Members, most_of, uncertainty_of
 from tree_sway.twin.motion_sensor import MotionSensor
@@ -106,9 +105,6 @@ class ObservedTree(SwaySimulator):
     upwind
         Distance of the anemometer upwind of the tree in [m], for a tree without sensors: those
         find how long gusts travel, and more exactly than the mean wind of the first minutes.
-    submit
-        Begins a call in another thread, as ``concurrent.futures.Executor.submit`` does, in which
-        gains, mountings and fits are found beside the steps. The motion is the same without.
 
     Raises
     ------
@@ -135,7 +131,6 @@ class ObservedTree(SwaySimulator):
         learns: bool = True,
         has_band: bool = False,
         upwind: float = 0.0,
-        submit: Submit | None = None,
         cache: ModelCache | None = PREPARED,
         **changes: Any,
     ) -> None:
@@ -156,7 +151,7 @@ class ObservedTree(SwaySimulator):
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
-        self._explained, self._submit = ExplainedMotion(), submit
+        self._explained = ExplainedMotion()
         self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
         self._as_made = self.check_tuning()
         self._tuned: tuple[Tuning, ...] = ()
@@ -231,7 +226,6 @@ class ObservedTree(SwaySimulator):
             before=before,
             wind=self.late_wind,
             is_smoothed=self._is_smoothed,
-            submit=self._submit,
         )
         """What the sensors tell."""
         self._dragged = DraggedMotion(self.observer, 1.0 / rate)

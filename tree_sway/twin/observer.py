@@ -27,7 +27,6 @@ from tree_sway.twin.disturbance import Disturbance
 from tree_sway.twin.estimate import Estimate
 from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
 from tree_sway.twin.late_wind import LateWind
-from tree_sway.twin.later_work import Submit
 from tree_sway.twin.running_fit import RunningFit
 from tree_sway.twin.sensor_place import place_motion
 from tree_sway.twin.sensor_readings import LATEST, SensorReadings
@@ -69,8 +68,6 @@ class Observer:
         Wind of the tree, which is made as late as the sensors tell.
     is_smoothed
         Whether the smoothed state is kept too.
-    submit
-        As `LaterWork` takes it.
 
     """
 
@@ -83,7 +80,6 @@ class Observer:
         before: Observer | None = None,
         wind: LateWind | None = None,
         is_smoothed: bool = False,
-        submit: Submit | None = None,
     ) -> None:
         self.tracks, self._dt = list(tracks), dt
         oscillators: Any = simulator.banks[0].oscillators
@@ -96,13 +92,13 @@ class Observer:
         with one_thread():
             self._unknown = UnknownMotion(simulator, n, dt)
             self._readings = SensorReadings(
-                self._unknown, self.tracks, places, dt, swing, wind or LateWind(), submit
+                self._unknown, self.tracks, places, dt, swing, wind or LateWind()
             )
-        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt, submit)
+        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt)
         if before is not None:
             self._fit.follow(before._fit)
         lag = SMOOTHED_LAG if is_smoothed else 0
-        self._design = GainDesign(self._unknown, self.tracks, places, lag, submit)
+        self._design = GainDesign(self._unknown, self.tracks, places, lag)
         self._smoothed = SmoothedMotion(m, n) if is_smoothed else None
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None

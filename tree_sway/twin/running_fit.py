@@ -1,17 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of stiffness and damping while the sensors measure, a candidate at each step."""
+"""Fits of stiffness and damping while the sensors measure, beside the steps."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
-from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.sway_watch import SwayWatch
-from tree_sway.twin.tree_fit import fits, N_CANDIDATES, Spectrum, TreeFit
+from tree_sway.twin.tree_fit import fit_of, N_CANDIDATES, Spectrum, TreeFit
 from tree_sway.twin.unknown_motion import UnknownMotion
 
 _FIRST, _LATER, _LATEST = 40.0, 1.4, 600.0
@@ -38,8 +39,6 @@ class RunningFit:
         First frequency of the model in [Hz].
     dt
         Time step in [s].
-    submit
-        As `LaterWork` takes it.
 
     """
 
@@ -50,14 +49,13 @@ class RunningFit:
         places: Sequence[PlaceMotion],
         frequency: float,
         dt: float,
-        submit: Submit | None = None,
     ) -> None:
-        self._unknown, self._tracks, self._submit = unknown, tracks, submit
+        self._unknown, self._tracks = unknown, tracks
         n = unknown.count
         self._places = [each.first(n) for each in places]
         self._frequency, self._dt = frequency, dt
         self._spectra = [SensorSpectrum(frequency, dt, n) for _ in tracks]
-        self.watches = [SwayWatch(each, frequency, submit) for each in self._spectra]
+        self.watches = [SwayWatch(each, frequency) for each in self._spectra]
         """Whether the tree still sways as it did, by each sensor."""
         self._uses: list[tuple[int, ...]] = [()] * len(tracks)
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
@@ -98,7 +96,7 @@ class RunningFit:
         spectrum = SensorSpectrum(self._frequency, self._dt, n, first, second)
         self._spectra[which] = spectrum
         track.native.series = spectrum.native.at
-        self.watches[which] = SwayWatch(spectrum, self._frequency, self._submit)
+        self.watches[which] = SwayWatch(spectrum, self._frequency)
 
     def advance(self, used: Sequence[int]) -> None:
         """Go on with a fit, or begin one by the sensors in use once there is enough motion."""
@@ -119,7 +117,8 @@ class RunningFit:
         if any(not each.count and each.until_first < _SOON for each in spectra):
             return
         self._fit_after = min(_LATER * seconds, seconds + _LATEST)
-        parts = fits(
+        find = partial(
+            fit_of,
             [self._spectrum(k) for k in measured],
             self._stiffness,
             self._damping,
@@ -127,7 +126,7 @@ class RunningFit:
             forces.covariance,
             1.0 if self.found is None else self.found.drag,
         )
-        self._work = LaterWork(parts, N_CANDIDATES * len(measured) + 1, self._submit)
+        self._work = LaterWork(find, N_CANDIDATES * len(measured) + 1)
 
     def _spectrum(self, which: int) -> Spectrum:
         """Spectrum of a sensor, and its rows by the model as it was made."""

@@ -17,7 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native import LIBRARY, NativeReadings
 from tree_sway.twin.late_wind import LateWind, LONGEST_WAY
-from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import (
     FoundMounting,
@@ -60,8 +60,6 @@ class SensorReadings:
         Displacement, rate and force of each coordinate in the wind alone, (m,).
     wind
         Wind of the tree, which is made as late as the sensors tell.
-    submit
-        As `LaterWork` takes it.
 
     """
 
@@ -73,10 +71,9 @@ class SensorReadings:
         dt: float,
         swing: Sequence[Floats],
         wind: LateWind,
-        submit: Submit | None = None,
     ) -> None:
         self._unknown, self._tracks = unknown, tracks
-        self._dt, self._wind, self._submit = dt, wind, submit
+        self._dt, self._wind = dt, wind
         self._told_lag: SensorTrack | None = None
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
@@ -136,7 +133,7 @@ class SensorReadings:
             for each in self._tracks:
                 each.note_step(step)
             search = due.search(self._lags_of(due))
-            self._search = due, LaterWork(search, _MOUNTED_AFTER, self._submit)
+            self._search = due, LaterWork(search, _MOUNTED_AFTER)
         track, work = self._search
         found = work.advance()
         if found is not None:

@@ -10,8 +10,9 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 import math
 from typing import NamedTuple
 
@@ -164,9 +165,9 @@ class FoundMounting(NamedTuple):
     late: float = 0.0
 
 
-def _mountings(
+def _mounting(
     sensed: Floats, computed: Floats, sensor: MotionSensor, windows: Windows, lags: LagRange
-) -> Iterator[FoundMounting]:
+) -> FoundMounting:
     """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
@@ -221,7 +222,7 @@ def _mountings(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    yield FoundMounting(found, bias, lag, left_for, left.seconds)
+    return FoundMounting(found, bias, lag, left_for, left.seconds)
 
 
 def _is_off(found: SensorLag, lags: LagRange) -> bool:
@@ -480,12 +481,12 @@ class SensorTrack:
         """Whether it has seen enough motion for its mounting to be found again."""
         return bool(self.native.count >= self._next_fit)
 
-    def search(self, lags: LagRange = NO_LAG) -> Iterator[FoundMounting]:
-        """Find its mounting from the motion so far, as a work of one part."""
+    def search(self, lags: LagRange = NO_LAG) -> Callable[[], FoundMounting]:
+        """Return what finds its mounting from the motion so far."""
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
         lags = lags._replace(left_for=self._left_for)
-        return _mountings(sensed, computed.T.copy(), self.sensor, self._windows, lags)
+        return partial(_mounting, sensed, computed.T.copy(), self.sensor, self._windows, lags)
 
     @property
     def window(self) -> int:

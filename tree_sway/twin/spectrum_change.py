@@ -15,7 +15,7 @@ largest of all windows is the change. In winds unlike all of those before, the e
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 import math
 from typing import Any, NamedTuple
@@ -124,9 +124,9 @@ class SpectrumChange:
 
     def add(
         self, power: Floats, noise: float, seconds: float, wind: tuple[float, float]
-    ) -> Iterator[BandChange | None]:
+    ) -> BandChange:
         """
-        Add a block, and find the largest change in parts of some milliseconds.
+        Add a block, and find the largest change.
 
         Parameters
         ----------
@@ -139,14 +139,13 @@ class SpectrumChange:
         wind
             Mean wind to east and north in [m/s].
 
-        Yields
-        ------
-        BandChange or None
-            None, and the change at last; its size is 0 where there is no past.
+        Returns
+        -------
+        BandChange
+            The change; its size is 0 where there is no past.
 
         """
         self._blocks.append(self._block(power, noise, seconds, wind))
-        yield None
         largest = BandChange(1.0, 0.0, 0.0, 0.0)
         n_blocks = len(self._blocks)
         for n_recent in _RECENT:
@@ -157,10 +156,9 @@ class SpectrumChange:
             usual = (1.0 + sum(self._squares[:first])) / (1.0 + first)
             found = found._replace(size=found.size / math.sqrt(usual))
             largest = max(largest, found, key=lambda each: each.size)
-            yield None
         last = self._change(n_blocks - 1, self._blocks[-1:]).size if n_blocks > 1 else _USUAL
         self._squares.append((last / _USUAL) ** 2)
-        yield largest
+        return largest
 
     def _block(
         self, power: Floats, noise: float, seconds: float, wind: tuple[float, float]

@@ -19,7 +19,6 @@ Symbols: H measurements by the state, R their noise, S their predicted covarianc
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
@@ -134,40 +133,25 @@ def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> 
         Number of steps by which the smoothed displacements are late.
 
     """
-    return next(each for each in filter_in_parts(law, sensed, noise, lag) if each is not None)
-
-
-def filter_in_parts(
-    law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0
-) -> Iterator[SteadyFilter | None]:
-    """
-    Find the steady gains as `steady_filter` in parts of some milliseconds.
-
-    What is yielded last are the gains, all before is None.
-    """
     step = law.matrix
     m = law.step.shape[2]
     driven = np.zeros_like(step)
     driven[2 * m :, 2 * m :] = law.driven
-    doublings = _doublings(step, sensed, driven, noise)
-    while (predicted := next(doublings)) is None:
-        yield None
+    backward = np.zeros((m, lag, len(sensed)))
     with one_thread():
+        predicted = predicted_covariance(step, sensed, driven, noise)
         cross = predicted @ sensed.T
         innovation = sensed @ cross + np.diag(np.square(noise))
         gain = np.linalg.solve(innovation, cross.T).T
         left = np.eye(3 * m) - gain @ sensed
         corrected = left @ predicted
         closed = step @ left
-    backward = np.zeros((m, lag, len(sensed)))
-    onward = predicted
-    for k in range(lag):
-        yield None
-        with one_thread():
+        onward = predicted
+        for k in range(lag):
             onward = onward @ closed.T
             backward[:, k] = np.linalg.solve(innovation, (onward[:m] @ sensed.T).T).T
     deviation = np.sqrt(np.diag(innovation))
-    yield SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
+    return SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
 
 
 def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Floats) -> Floats:
@@ -182,33 +166,21 @@ def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Fl
         Roots of the diagonal of R, (p,).
 
     """
-    doublings = _doublings(step, sensed, driven, noise)
-    while (found := next(doublings)) is None:
-        pass
-    return found
-
-
-def _doublings(
-    step: Floats, sensed: Floats, driven: Floats, noise: Floats
-) -> Iterator[Floats | None]:
-    """Yield None after each doubling of `predicted_covariance`, and P at the end."""
     onward = step.T.copy()
     seen = sensed.T @ (sensed / np.square(noise)[:, None])
     found = driven.copy()
     one = np.eye(len(step))
     for _ in range(_MOST_DOUBLINGS):
-        with one_thread():
-            both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
-            next_onward, spread = both[:, : len(step)], both[:, len(step) :]
-            added = onward.T @ found @ next_onward
-            seen = seen + onward @ spread @ onward.T
-            seen = 0.5 * (seen + seen.T)
-            onward = onward @ next_onward
-            found = found + 0.5 * (added + added.T)
+        both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
+        next_onward, spread = both[:, : len(step)], both[:, len(step) :]
+        added = onward.T @ found @ next_onward
+        seen = seen + onward @ spread @ onward.T
+        seen = 0.5 * (seen + seen.T)
+        onward = onward @ next_onward
+        found = found + 0.5 * (added + added.T)
         if np.abs(added).max() <= _ENOUGH * np.abs(found).max():
             break
-        yield None
-    yield found
+    return found
 
 
 def stationary_covariance(law: SwayLaw) -> Floats:
@@ -224,15 +196,12 @@ def stationary_covariance(law: SwayLaw) -> Floats:
     return np.ascontiguousarray(pairs.transpose(2, 0, 3, 1)).reshape(3 * m, 3 * m)
 
 
-def told_shares_in_parts(
-    gains: SteadyFilter, law: SwayLaw, noise: Floats
-) -> Iterator[Floats | None]:
+def told_shares(gains: SteadyFilter, law: SwayLaw, noise: Floats) -> Floats:
     """
     Find the share of each displacement's variance that gains take away under another law.
 
     What a gain leaves moves as ``E = (1 - L H) (A E A' + Q) (1 - L H)' + L R L'``, whatever the
-    law that it was found for. What is yielded last are the shares, (m,), negative where the
-    correction adds; all before is None.
+    law that it was found for. The shares, (m,), are negative where the correction adds.
 
     Parameters
     ----------
@@ -249,12 +218,10 @@ def told_shares_in_parts(
         kept = np.eye(3 * m) - gains.gain @ gains.sensed
         noisy = gains.gain * noise
         added = noisy @ noisy.T + kept[:, 2 * m :] @ law.driven @ kept[:, 2 * m :].T
-    doublings = _doublings(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
-    while (left := next(doublings)) is None:
-        yield None
+        left = predicted_covariance(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
     steps = np.moveaxis(law.step, 2, 0)
     alone = _pair_covariances(steps, steps, np.diag(law.driven))[:, 0, 0]
-    yield np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
+    return np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
 
 
 def _pair_covariances(first: Floats, second: Floats, driven: Floats) -> Floats:

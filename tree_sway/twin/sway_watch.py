@@ -17,13 +17,14 @@ bands, which `spectrum_change` compares.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.later_work import LaterWork, Submit
+from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
 from tree_sway.twin.spectrum_change import BandChange, CHANGED, SpectrumChange
 
@@ -49,7 +50,7 @@ _LEAST_POWER = 1.0
 """Least power of the sway over that of the noise [-]: with less, a block tells nothing."""
 
 _COMPARED_AFTER = 10
-"""Steps after which the bands of a block are compared: their parts are fewer."""
+"""Steps after which the bands of a block are compared."""
 
 _CAUSES = 'as after the loss of a limb, with loose roots, ice or other leaves'
 
@@ -134,15 +135,11 @@ class SwayWatch:
         Spectrum of the sensor.
     frequency
         First frequency of the model in [Hz].
-    submit
-        As `LaterWork` takes it.
 
     """
 
-    def __init__(
-        self, spectrum: SensorSpectrum, frequency: float, submit: Submit | None = None
-    ) -> None:
-        self._spectrum, self._submit = spectrum, submit
+    def __init__(self, spectrum: SensorSpectrum, frequency: float) -> None:
+        self._spectrum = spectrum
         self._bands = SpectrumChange(spectrum.watched_frequencies, frequency)
         self._work: LaterWork[BandChange] | None = None
         self._blocks: list[_Middle] = []
@@ -182,13 +179,14 @@ class SwayWatch:
             frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
             self._compare(_Middle(float(frequency), math.log(max(math.hypot(*wind), 0.1))))
         if block.n_stretches:
-            parts = self._bands.add(
+            find = partial(
+                self._bands.add,
                 block.watched / block.n_stretches,
                 self._spectrum.power_of_noise(watched_noise),
                 block.seconds,
                 wind,
             )
-            self._work = LaterWork(parts, _COMPARED_AFTER, self._submit)
+            self._work = LaterWork(find, _COMPARED_AFTER)
 
     def _take(self, band: BandChange) -> None:
         """Take the largest change of a band; once a band has changed, that stays."""

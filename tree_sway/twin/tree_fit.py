@@ -21,7 +21,7 @@ the anemometer is so far away that its wind explains nothing, a is zero and the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -45,7 +45,7 @@ _STIFFNESSES = np.geomspace(0.5, 1.8, 53)
 _DAMPINGS = np.geomspace(0.35, 3.0, 9)
 _SLOPES = np.array([0.0, 1.0, 2.0, 3.0])
 N_CANDIDATES = len(_STIFFNESSES) * len(_DAMPINGS)
-"""Number of candidates of a fit: its parts are one for each and each sensor."""
+"""Number of candidates of a fit."""
 
 _MOST_DRAG = 2.0
 _LEAST_DRAG = 0.2
@@ -110,16 +110,16 @@ class Spectrum(NamedTuple):
     seconds: float
 
 
-def fits(
+def fit_of(
     spectra: Sequence[Spectrum],
     stiffness: Floats,
     damping: Floats,
     air_damping: Floats,
     covariance: Floats,
     drag: float = 1.0,
-) -> Iterator[TreeFit | None]:
+) -> TreeFit:
     """
-    Try one candidate after the other, a sensor at a time; the fit is yielded last, before it None.
+    Try all candidates on all sensors.
 
     Parameters
     ----------
@@ -147,7 +147,6 @@ def fits(
                 table[i, j] += misfit
                 told[0, i, j] += known
                 told[1, i, j] += known * np.log(np.maximum(drags, _LEAST_DRAG))
-                yield None
             prior = (math.log(stiff) / STIFFNESS_SPREAD) ** 2
             table[i, j] += 0.5 * (prior + (math.log(damped) / DAMPING_SPREAD) ** 2)
     weight_of_slope = np.exp(table.min() - table)
@@ -157,7 +156,7 @@ def fits(
     first = _mean(np.log(_STIFFNESSES), weight.sum(axis=1))
     second = _mean(np.log(_DAMPINGS), weight.sum(axis=0))
     third = _drag(*(told * weight_of_slope).reshape(2, -1).sum(axis=1).tolist())
-    yield TreeFit(
+    return TreeFit(
         math.exp(first[0]),
         math.exp(second[0]),
         first[1],

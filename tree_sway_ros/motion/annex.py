@@ -12,7 +12,6 @@ from tree_sway.errors import FormatError, inside, ParameterError
 from tree_sway.files.motion import TreeHistory
 from tree_sway.files.trees import LearnedFile
 from tree_sway.twin import observed_scene, ObservedTree
-from tree_sway.worker import submit_beside
 from tree_sway_ros.motion.imu_intake import ImuIntake, places_of
 
 
@@ -44,7 +43,6 @@ class MotionAnnex(ImuIntake):
             at=places,
             rate=values['rate'],
             has_band=True,
-            submit=submit_beside,
         )
         if self._learned is not None:
             self.twin.learned_before = self._learned.opened.learned

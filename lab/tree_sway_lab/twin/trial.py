@@ -19,7 +19,6 @@ from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import LATE_STEPS, ObservedTree, sensor_reports
-from tree_sway.worker import submit_beside
 from tree_sway_lab.twin.sensor_faults import FAULTS, FIRST, LIVE, WAY
 from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
@@ -187,7 +186,6 @@ def twin_score(
         is_smoothed=True,
         has_band=has_band,
         upwind=upwind,
-        submit=submit_beside,
         **changes,
     )
     rng = np.random.default_rng(seed)

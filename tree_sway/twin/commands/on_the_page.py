@@ -26,7 +26,6 @@ from tree_sway.stream import Control
 from tree_sway.twin import observed_scene, ObservedTree
 from tree_sway.twin.commands.camera_arguments import filming
 from tree_sway.twin.commands.learn_argument import add_learn_argument, check_learn_argument
-from tree_sway.worker import submit_beside
 
 
 class SensorsOnThePage(PageAddition):
@@ -92,9 +91,7 @@ class SensorsOnThePage(PageAddition):
         if (path := self.arguments.learn) is not None:
             file = LearnedFile(path, scene.trees[0], settings.in_leaf)
             scene = scene.of_species(file.opened.species)
-        twin = observed_scene(
-            scene, settings, camera, at=places, rate=RATE, has_band=True, submit=submit_beside
-        )
+        twin = observed_scene(scene, settings, camera, at=places, rate=RATE, has_band=True)
         if file is not None:
             twin.learned_before = file.opened.learned
             self._learned[twin] = file
