@@ -25,8 +25,8 @@ from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import refusal, require_token  # noqa: E402
 from tree_sway.page.guard import STATIC  # noqa: E402
 from tree_sway.page.page_client import PageClient  # noqa: E402
-from tree_sway.page.published import Published  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.published import Published  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 

@@ -134,7 +134,7 @@ def added_sensors(arguments: argparse.Namespace, places: Mapping[str, str]) -> S
 
 
 class LateMachine:
-    """What a session waits for, on the clock of a sensor: one wait of many is longer than asked."""
+    """What a session waits for, on the clock of a sensor; one wait of 300 is too long."""
 
     def __init__(self, sensor: Sensor, late: float, steps: int) -> None:
         self._sensor, self._late, self._left = sensor, late, steps
@@ -309,7 +309,7 @@ def test_it_is_told_why_samples_were_refused() -> None:
     live = LiveMotion(open_motion('udp:5006'), print)
     assert live.note == ''
     live.left_out = 3
-    assert live.note.startswith('3 samples were refused: the tree stood still at their times')
+    assert live.note.startswith('3 samples were refused: the tree stood still then')
     twin = ObservedTree(TREE, at={'phone': f'segment:{SEGMENT}'})
     for at in (0.0, 0.02, 0.01):
         twin.offer('phone', at, acceleration=(0.1 * at, 0.0, 9.8))

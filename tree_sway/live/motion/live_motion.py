@@ -37,7 +37,7 @@ _PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
 _COUNTED = 40
 """Samples over which the rate is counted."""
 _LONGEST_PAUSE = 2.0
-_LEFT_OUT = 'the tree stood still at their times, paused or because this machine had too much to do'
+_LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
 
 
 class MotionSample(NamedTuple):

@@ -3,9 +3,9 @@
 """
 Live motion sensors of an observed tree: their samples, with times on the clock of its steps.
 
-Samples have times of `time.monotonic`, on which a step is due at a time of its own, however late it
-is taken. Where time was left out of the steps, by a pause or because this machine was late, the
-samples of that time have no step: they are refused, counted, and said to be so.
+Samples have times of `time.monotonic`, and so has each step, however late it is taken. Where time
+was left out of the steps, by a pause or because this machine was late, the samples of that time
+have no step: they are refused, counted, and said to be so.
 """
 
 from __future__ import annotations
