@@ -26,6 +26,7 @@ from tree_sway.page.access import refusal, require_token  # noqa: E402
 from tree_sway.page.guard import STATIC  # noqa: E402
 from tree_sway.page.page_client import PageClient  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.published import Published  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 
@@ -308,6 +309,34 @@ def test_a_client_that_does_not_read_keeps_its_hello() -> None:
     assert 'hello' in socket.sent[0]
     assert socket.sent[-1] == {'status': 49}
     assert len(socket.sent) == 17
+
+
+@pytest.mark.parametrize(
+    ('rate', 'credit', 'missed'), [(60.0, 64, 0), (20.0, 64, 0), (60.0, 4, 6), (60.0, 0, 9)]
+)
+def test_frames_that_a_late_client_misses_are_counted(
+    rate: float, credit: int, missed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It asks for frames, gives leave for a few, and for more after ten of 60 Hz."""
+
+    class Socket:
+        async def send_bytes(self, _: bytes) -> None:
+            pass
+
+    async def frames() -> int:
+        loop = asyncio.get_running_loop()
+        client, published = PageClient(Socket(), None), Published(b'tree')  # type: ignore[arg-type]
+        client.take({'rate': rate, 'credit': credit + 1})
+        for number in range(12):
+            monkeypatch.setattr(loop, 'time', lambda at=number / 60.0: 100.0 + at)
+            published.newest = number, b'frame'
+            if number == 11:
+                client.take({'credit': 64})
+            await client.send_due(published)
+        client.stop_timer()
+        return client.missed
+
+    assert asyncio.run(frames()) == pytest.approx(missed, abs=1 if missed else 0)
 
 
 def test_health_and_headers(server: PageServer) -> None:

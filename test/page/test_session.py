@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+import itertools
 from pathlib import Path
 import threading
 import time
@@ -93,6 +94,21 @@ def test_frames_belong_to_the_description_and_keep_time(live: tuple[Session, Sin
     assert [frame.sequence for frame in frames] == list(range(60))
     assert 0.5 < (frames[-1].stamp - frames[0].stamp) * 1e-9 < 10.0
     assert np.linalg.norm(frames[-1].wind) > 0.5
+
+
+@pytest.mark.parametrize(('clock', 'sent'), [('perf_counter', 100), ('thread_time', 60)])
+def test_work_of_its_own_alone_thins_the_frames(
+    clock: str, sent: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where other programs delay the steps, each is sent."""
+    session, sink = Session(build, Choices(str(SEEDLING)), SimulatedWind(5.0)), Sink()
+    session._server = sink  # type: ignore[assignment]
+    passed = itertools.count()
+    monkeypatch.setattr(time, 'thread_time', lambda: 0.0)
+    monkeypatch.setattr(time, clock, lambda: 0.01 * next(passed))
+    for _ in range(100):
+        session._step(time.perf_counter())
+    assert len(sink.frames) == pytest.approx(sent, abs=10)
 
 
 def test_pause_and_reset(live: tuple[Session, Sink]) -> None:

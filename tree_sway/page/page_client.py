@@ -72,6 +72,11 @@ class PageClient:
         self.wake = asyncio.Event()
         """Set when something may have to be sent."""
         self.last_heard = time.monotonic()
+        self.missed = 0
+        """
+        Number of frames that it asked for and was not sent, as it, the line or this machine was
+        late.
+        """
         self._transport = transport
         self._texts: deque[str] = deque(maxlen=_MOST_TEXTS)
         self._sending_since = math.inf
@@ -167,6 +172,9 @@ class PageClient:
             if self._timer is None:
                 self._timer = loop.call_at(self._next_due, self._ring)
             return
+        if self._sent >= 0 and self._period:
+            late = int((now - self._next_due) / self._period)
+            self.missed += min(max(late, 0), number - self._sent - 1)
         self._next_due = max(self._next_due + self._period, now)
         self._credit -= 1
         self._sent = number

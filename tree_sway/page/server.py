@@ -170,6 +170,11 @@ class PageServer:
         return len(self._clients)
 
     @property
+    def n_missed(self) -> int:
+        """Number of frames that the connected pages asked for and were not sent."""
+        return sum(client.missed for client in tuple(self._clients))
+
+    @property
     def n_refused(self) -> int:
         """Number of refused requests and messages."""
         return self._refusals.count
@@ -423,7 +428,9 @@ class PageServer:
             why = ''
             try:
                 if self._clients:
-                    self._send_all({'status': {**self._status(), 'clients': len(self._clients)}})
+                    status = {**self._status(), 'clients': len(self._clients)}
+                    for client in self._clients:
+                        client.say({'status': {**status, 'missed': client.missed}})
             except Exception as error:
                 why = f'no status ({type(error).__name__}: {error})'
                 if why != told:

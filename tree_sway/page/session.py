@@ -45,7 +45,10 @@ _MOST_LATE = 0.25
 _NEWEST = 0.05
 """Weight of the newest step in the means of the status."""
 _BUSY = 0.2
-"""Share of a period of work above which only every second step is sent."""
+"""
+Share of a period of work above which only every second step is sent. It is time of the processor:
+where other programs delay a step, sending fewer of them saves nothing.
+"""
 _BAND_EVERY = 15
 """Steps from one estimate of the uncertainty band to the next."""
 
@@ -280,7 +283,7 @@ class Session:
                 'problem': live[each.name].problem or each.problem,
                 'residual': round(each.residual, 2),
                 'rate': round(each.rate, 1),
-                'refused': each.refused,
+                'refused': each.refused + live[each.name].left_out,
                 'notes': [*each.notes, *filter(None, [live[each.name].note])],
             }
             for each in sensor_reports(simulator)
@@ -358,13 +361,14 @@ class Session:
 
     def _run(self) -> None:
         try:
-            due = self._last = time.perf_counter()
+            self._last = time.perf_counter()
+            due = time.monotonic()
             while not self._stop.is_set():
-                self._step(time.perf_counter())
-                due += _PERIOD
-                now = time.perf_counter()
+                now = time.monotonic()
                 due = now if now - due > _MOST_LATE else due
-                self._stop.wait(max(0.0, due - now))
+                self._step(time.perf_counter(), due)
+                due += _PERIOD
+                self._stop.wait(max(0.0, due - time.monotonic()))
         except Exception as error:
             self.failure = error
 
@@ -376,8 +380,9 @@ class Session:
         elif self._ticks % _BAND_EVERY == 0:
             self._band = [round(each, 4) for each in simulator.sway_band().tolist()]
 
-    def _step(self, begin: float) -> None:
+    def _step(self, begin: float, due: float | None = None) -> None:
         assert self._server is not None
+        worked = time.thread_time()
         has_restarted = self._resets
         self._resets = False
         if self._next is not None:
@@ -388,7 +393,7 @@ class Session:
             self._scene.simulator.reset()
         if not self._is_paused:
             self._ticks += 1
-            self._motion.feed(self._scene.simulator, self._now)
+            self._motion.feed(self._scene.simulator, self._now, due)
             blow(self._runtime, self.wind, self._ticks * self._runtime.period)
             self._note_band()
         self._steps += 1
@@ -400,7 +405,6 @@ class Session:
                 is_wind_lost=self._runtime.is_wind_lost,
             )
             self._server.publish(frame)
-        now = time.perf_counter()
-        self._work += _NEWEST * (now - begin - self._work)
+        self._work += _NEWEST * (time.thread_time() - worked - self._work)
         self._spacing += _NEWEST * (begin - self._last - self._spacing)
         self._last = begin

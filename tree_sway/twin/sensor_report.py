@@ -11,6 +11,9 @@ from tree_sway.twin.motion_sensor import SensorCounts
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sway_watch import SwayChange
 
+_MANY_REFUSED = 0.01
+"""Share of refused samples from which on it is said why they were."""
+
 
 class SensorReport(NamedTuple):
     """
@@ -34,7 +37,7 @@ class SensorReport(NamedTuple):
         Counts of its samples.
     notes
         Properties that were recognised, such as a unit, how late the wind is, what the sensor
-        measures no more, and that its clock may be behind.
+        measures no more, that its clock may be behind, and why many samples were refused.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -74,6 +77,9 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
                 f'its samples come {sensor.lateness:.1f} s after their times: a slow connection, '
                 'or its clock is behind'
             )
+        counts = sensor.counts
+        if counts.refused > _MANY_REFUSED * counts.accepted:
+            lost.append(f'{counts.refused} samples were refused: {counts.why_refused}')
         found.append(
             SensorReport(
                 sensor.name,

@@ -200,7 +200,13 @@ class ViewerNode(TreeSwayNode):
     def _statuses(self) -> list[Status]:
         n_pages = 0 if self.server is None else self.server.n_clients
         refused = self._followed.refused
-        values = {'pages': n_pages, 'frames': self._sequence, 'refused': refused}
+        missed = 0 if self.server is None else self.server.n_missed
+        values = {
+            'pages': n_pages,
+            'frames': self._sequence,
+            'missed by pages': missed,
+            'refused': refused,
+        }
         text = f'{n_pages} pages'
         solvers = self._solvers
         if len(solvers) < 2:

@@ -28,8 +28,9 @@ from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.live.motion import motion_feed  # noqa: E402
-from tree_sway.live.motion.live_motion import MotionSample  # noqa: E402
+from tree_sway.live.motion.live_motion import LiveMotion, MotionSample  # noqa: E402
 from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: E402
+from tree_sway.live.motion.motion_registry import open_motion  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
@@ -37,6 +38,7 @@ from tree_sway.simulation.wind_source import RecordedWind  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
+from tree_sway.twin.sensor_report import sensor_reports  # noqa: E402
 from tree_sway.twin.tree_fit import TreeFit  # noqa: E402
 
 DT, SECONDS = 1.0 / 60.0, 50
@@ -81,11 +83,13 @@ class Sensor:
         motion = truth().motion
         self._left = list(zip(*motion, strict=True))
         self.ends_at = np.inf
+        self.left_out = 0
 
-    def drain(self) -> list[MotionSample]:
-        """Return what came up to now, 40 ms late."""
+    def drain(self, until: float = np.inf) -> list[MotionSample]:
+        """Return what was measured until then and came up to now, 40 ms late."""
         found = []
-        while self._left and self._left[0][0] + 0.04 <= self.now - BEGAN:
+        end = min(self.now - 0.04, until) - BEGAN
+        while self._left and self._left[0][0] <= end:
             at, force, spin = self._left.pop(0)
             if at < self.ends_at:
                 found.append(MotionSample(BEGAN + at, tuple(force), tuple(spin), None))
@@ -129,8 +133,24 @@ def added_sensors(arguments: argparse.Namespace, places: Mapping[str, str]) -> S
     return added
 
 
-def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
-    """Step a session with the wind of the truth; its tip displacement at each step."""
+class LateMachine:
+    """What a session waits for, on the clock of a sensor; one wait of 300 is too long."""
+
+    def __init__(self, sensor: Sensor, late: float, steps: int) -> None:
+        self._sensor, self._late, self._left = sensor, late, steps
+
+    def is_set(self) -> bool:
+        """Whether all steps are taken."""
+        return self._left == 0
+
+    def wait(self, seconds: float) -> None:
+        """Wait."""
+        self._left -= 1
+        self._sensor.now += seconds + self._late * (self._left % 300 == 150)
+
+
+def session_of(placed: list[PlacedSensor]) -> Session:
+    """Make a session with the wind of the truth."""
     wind = truth().wind
     record = RecordedWind(DT * np.arange(len(wind)), wind)
     arguments = show_arguments()
@@ -143,6 +163,12 @@ def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> 
         motion=feed,
     )
     session._server = Sink()  # type: ignore[assignment]
+    return session
+
+
+def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
+    """Step a session with the wind of the truth; its tip displacement at each step."""
+    session = session_of(placed)
     tips = np.empty((until * 60, 3))
     for k in range(len(tips)):
         sensor.now += DT
@@ -250,13 +276,45 @@ def test_a_sensor_that_falls_silent_leaves_the_wind(sensor: Sensor) -> None:
     assert np.isfinite(tips).all()
 
 
+@pytest.mark.parametrize(('late', 'left_out'), [(0.2, 0), (1.0, 2 * 100)])
+def test_no_sample_is_refused_as_a_machine_was_late(
+    sensor: Sensor, late: float, left_out: int
+) -> None:
+    """Those of time that the steps left out, as it was too much to catch up, have a count."""
+    session = session_of([PlacedSensor(sensor, f'segment:{SEGMENT}')])  # type: ignore[arg-type]
+    session._stop = LateMachine(sensor, late, 600)  # type: ignore[assignment]
+    session._run()
+    assert session.failure is None
+    (known,) = session._scene.simulator.sensors.values()  # type: ignore[union-attr]
+    assert known.counts.refused == known.counts.restarted == 0
+    assert sensor.left_out == pytest.approx(left_out, abs=5)
+    offered = round(100.0 * (sensor.now - BEGAN - 0.04))
+    assert known.counts.accepted == pytest.approx(offered - left_out, abs=5)
+    (told,) = session.status()['motion']['sensors']  # type: ignore[index]
+    assert told['refused'] == sensor.left_out
+
+
 def test_a_pause_does_not_move_the_clocks_apart(sensor: Sensor) -> None:
     feed = MotionFeed([])
     feed.feed(None, 10.0)
-    assert feed._ahead == pytest.approx(10.0 - BEGAN)
+    assert feed._time_of(BEGAN) == pytest.approx(10.0)
     sensor.now += 60.0
     feed.feed(None, 10.0 + DT)
-    assert feed._ahead == pytest.approx(10.0 + DT - BEGAN - 60.0)
+    assert feed._time_of(BEGAN - 0.1) == pytest.approx(9.9)
+    assert feed._time_of(BEGAN + 30.0) is None
+    assert feed._time_of(BEGAN + 60.0) == pytest.approx(10.0 + DT)
+
+
+def test_it_is_told_why_samples_were_refused() -> None:
+    live = LiveMotion(open_motion('udp:5006'), print)
+    assert live.note == ''
+    live.left_out = 3
+    assert live.note.startswith('3 samples were refused: the tree stood still then')
+    twin = ObservedTree(TREE, at={'phone': f'segment:{SEGMENT}'})
+    for at in (0.0, 0.02, 0.01):
+        twin.offer('phone', at, acceleration=(0.1 * at, 0.0, 9.8))
+    (told,) = sensor_reports(twin)
+    assert told.notes == ('1 samples were refused: their times do not rise',)
 
 
 @pytest.mark.parametrize(

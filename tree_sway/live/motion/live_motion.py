@@ -37,6 +37,7 @@ _PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
 _COUNTED = 40
 """Samples over which the rate is counted."""
 _LONGEST_PAUSE = 2.0
+_LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
 
 
 class MotionSample(NamedTuple):
@@ -83,6 +84,8 @@ class LiveMotion(LiveSource):
         """Name of the sensor for viewers."""
         self.quantities: tuple[str, ...] = ()
         """What its samples have."""
+        self.left_out = 0
+        """Number of samples of times that the steps of the tree left out, which were refused."""
         self._source = source
         self._heard = heard
         self._clock = SenderClock(source.ticks)
@@ -125,13 +128,16 @@ class LiveMotion(LiveSource):
 
     @property
     def note(self) -> str:
-        """Who else sends; empty if nobody does."""
-        return self._senders.problem or self._clock.mixture
+        """Who else sends, and what the steps left out; empty if nothing is odd."""
+        told = [self._senders.problem or self._clock.mixture]
+        if self.left_out:
+            told.append(f'{self.left_out} samples were refused: {_LEFT_OUT}')
+        return '; '.join(filter(None, told))
 
-    def drain(self) -> list[MotionSample]:
-        """Return the samples since the last call."""
+    def drain(self, until: float = math.inf) -> list[MotionSample]:
+        """Return the samples since the last call, up to a time of `time.monotonic` [s]."""
         found = list[MotionSample]()
-        while self._samples:
+        while self._samples and not self._samples[0].time > until:
             found.append(self._samples.popleft())
         return found
 

@@ -3,8 +3,9 @@
 """
 Live motion sensors of an observed tree: their samples, with times on the clock of its steps.
 
-Samples have times of `time.monotonic`. The difference to the time of the steps is averaged, as
-steps jitter, and taken anew where it jumps.
+Samples have times of `time.monotonic`, and so has each step, however late it is taken. Where time
+was left out of the steps, by a pause or because this machine was late, the samples of that time
+have no step: they are refused, counted, and said to be so.
 """
 
 from __future__ import annotations
@@ -19,10 +20,8 @@ from tree_sway.live.motion.live_motion import LiveMotion
 from tree_sway.twin import ObservedTree
 from tree_sway.twin.camera import Camera, FilmedTree
 
-_NEWEST = 0.02
-"""Weight of the newest difference of the clocks in their mean."""
-_JUMP = 0.1
-"""Change of the difference [s] that is no jitter: the steps were paused or late."""
+_ROUNDING = 1e-6
+"""Largest change [s] of the difference of the clocks that is none."""
 
 
 class PlacedSensor(NamedTuple):
@@ -30,6 +29,17 @@ class PlacedSensor(NamedTuple):
 
     live: LiveMotion
     at: str
+
+
+class _LeftOut(NamedTuple):
+    """Time that was left out of the steps."""
+
+    ahead: float
+    """Time of the steps before it less that of the clock [s]."""
+    since: float
+    """Its begin, by the steps [s]."""
+    until: float
+    """Its end, by the clock [s]."""
 
 
 class MotionFeed:
@@ -48,7 +58,9 @@ class MotionFeed:
         """Sensors by their names; of two of one name and place, the last."""
         self.film: LiveFilm | None = None
         """A camera that films the tree; None without one."""
-        self._ahead = math.nan  # mean time of the steps less that of the clock [s]
+        self._ahead = math.nan  # time of a step less the time of the clock at which it is due [s]
+        self._stepped = -math.inf  # time of the last step [s]
+        self._left_out = _LeftOut(0.0, -math.inf, -math.inf)
 
     @property
     def places(self) -> dict[str, str]:
@@ -60,7 +72,7 @@ class MotionFeed:
         """Where the camera stands; None without one."""
         return None if self.film is None else self.film.camera
 
-    def feed(self, simulator: object, until: float) -> None:
+    def feed(self, simulator: object, until: float, due: float | None = None) -> None:
         """
         Offer the samples that have come to an observed tree; drop them for any other.
 
@@ -70,25 +82,40 @@ class MotionFeed:
             The simulator that is stepped.
         until
             Present time of its steps in [s].
+        due
+            Time of `time.monotonic` at which that step is due [s]; now if None.
 
         """
-        difference = until - time.monotonic()
-        if math.isnan(self._ahead) or abs(difference - self._ahead) > _JUMP:
-            self._ahead = difference
-        self._ahead += _NEWEST * (difference - self._ahead)
+        moment = time.monotonic() if due is None else due
+        ahead = until - moment
+        if self._ahead - ahead > _ROUNDING:
+            self._left_out = _LeftOut(self._ahead, self._stepped, self._stepped - ahead)
+        self._ahead, self._stepped = ahead, until
         sightings = self.film.drain() if self.film is not None else []
         if isinstance(simulator, FilmedTree):
             for seen in sightings:
                 simulator.film(seen.time + self._ahead, seen.reference, seen.points)
-        for name, each in self.sensors.items():
-            samples = each.live.drain()
+        for name, placed in self.sensors.items():
+            samples = placed.live.drain(moment)
             if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:
                 continue
             for sample in samples:
+                at = self._time_of(sample.time)
+                if at is None:
+                    placed.live.left_out += 1
+                    continue
                 simulator.offer(
                     name,
-                    sample.time + self._ahead,
+                    at,
                     acceleration=sample.acceleration,
                     rate=sample.rate,
                     orientation=sample.orientation,
                 )
+
+    def _time_of(self, moment: float) -> float | None:
+        """Return the time of the steps at a moment of the clock [s]; None if it was left out."""
+        gap = self._left_out
+        if moment >= gap.until:
+            return moment + self._ahead
+        before = moment + gap.ahead
+        return before if before <= gap.since else None
