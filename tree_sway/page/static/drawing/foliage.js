@@ -15,6 +15,9 @@ const LARGEST_CARDS = 2.5;
 const TUFTS_BESIDE = 0.7;
 /** Least length of a small card over that of a full one. */
 const LEAST_CARD = 0.08;
+/** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
+ * leaves in leaves. */
+const [SHOOT, DENSE, FEW_LEAVES] = [4.6, 1.3, 3];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -256,11 +259,13 @@ function cardsOf(look, mean, clusters, cards, most) {
     const along = leavesAlong(look, larger * length * mean);
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
   }
-  // About two thirds of the area of the full ones, which hide each other more.
-  const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-  if (look.has_needles || small * mean > 1.6 * leaf) {
-    const along = leavesAlong(look, small * mean);
-    return { each, along, spray: { rolls, width: pictureWidth(look, along, true), length: small }, isSpread: true };
+  if (look.has_needles || mean > FEW_LEAVES * leaf) {
+    // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
+    const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
+    const long = Math.max(small, SHOOT * look.leaf_size / mean);
+    const along = leavesAlong(look, long * mean);
+    const spray = { rolls, width: pictureWidth(look, along, true), length: long };
+    return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
   const spray = { ...alone, length: leaf / mean };

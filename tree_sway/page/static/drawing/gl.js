@@ -33,16 +33,17 @@ function source(wanted) {
   return part ? source(part.base) + part.text : "";
 }
 
-/** WebGL context of a canvas, and whether the processor draws. @param {HTMLCanvasElement} canvas */
-export function contextOf(canvas) {
+/** WebGL context of a canvas, and whether the processor draws and may leave out. @param {HTMLCanvasElement} canvas
+ * @param {boolean} isFine */
+export function contextOf(canvas, isFine) {
   const probe = document.createElement("canvas").getContext("webgl2");
   const info = probe?.getExtension("WEBGL_debug_renderer_info");
   const name = info && probe?.getParameter(info.UNMASKED_RENDERER_WEBGL);
-  const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(String(name));
+  const isSlow = !isFine && /swiftshader|llvmpipe|software|basic render/i.test(String(name));
   probe?.getExtension("WEBGL_lose_context")?.loseContext();
-  const gl = canvas.getContext("webgl2", { antialias: !isSoftware, alpha: false, powerPreference: "high-performance" });
+  const gl = canvas.getContext("webgl2", { antialias: !isSlow, alpha: false, powerPreference: "high-performance" });
   if (!gl) throw new Error("this browser has no WebGL 2");
-  return { gl, isSoftware };
+  return { gl, isSlow };
 }
 
 /** Compile a program and find its inputs. @param {GL} gl @param {string} name of its part @returns {Program} */

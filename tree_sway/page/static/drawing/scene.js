@@ -49,9 +49,9 @@ const UNPAINTED = [0, 0, 0, 0];
 export class Scene {
   /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] leave nothing out, even if it is slow */
   constructor(canvas, isFine = false) {
-    const { gl, isSoftware } = contextOf(canvas);
+    const { gl, isSlow } = contextOf(canvas, isFine);
     /** Whether to save points and shadows, without a graphics unit. */
-    this.isSlow = isSoftware && !isFine;
+    this.isSlow = isSlow;
     this.gl = gl;
     this.canvas = canvas;
     this.camera = new Camera();
@@ -484,7 +484,9 @@ export class Scene {
     gl.disable(gl.CULL_FACE);
     if (!this.leavesShown) return;
     this._begin(leaf, isShadow, own);
+    if (!this.isSlow) gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     for (const level of levels) this._drawEach(level.leaf, leaf, level, level.foliage, density);
+    gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
   }
 
   /** Draw a mesh for each tree of a level. @param {Drawable | undefined} part @param {Program} used

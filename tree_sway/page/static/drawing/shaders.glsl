@@ -195,24 +195,24 @@ void main() {
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.45 * flat_ + outward * sign(dot(flat_, outward) + 1e-6));
+  vec3 n = normalize(0.3 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
-  float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
-  float across = side * dot(n, light);
+  float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
+  float across = dot(n, light);
   float open = flutter.z;
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   float sunny = mix(0.16, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
-  vec3 up = sky * (0.16 + 0.94 * near) * (0.8 + 0.2 * n.z * side);
+  vec3 up = sky * (0.13 + 0.9 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.15, 1.2, 0.55) * (1.05 * max(-across, 0.0));
-  vec3 direct = sun * sunny * (0.16 + 1.15 * max(0.7 * across + 0.3, 0.0) + through);
+  vec3 through = vec3(1.05, 1.1, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
+  vec3 direct = sun * sunny * (1.3 * max(0.75 * across + 0.25, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(1.0, 0.99, 1.06) + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
-  hue += (0.6 * (flutter.w - 1.0) + 0.25 * max(0.0, near - 0.7)) * vec3(0.7, 0.3, -0.6);
+  vec3 hue = vec3(1.0, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
+  hue += (0.6 * (flutter.w - 1.0) + 0.2 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
@@ -237,11 +237,14 @@ void main() {
   float small = length(fwidth(at));
   float cells = exp2(floor(0.5 - log2(small)));
   float chance = fract(43758.5453 * sin(dot(floor(at * cells), vec2(12.9898, 78.233))));
-  float mixed = max(0.0, log2(180.0 * small));
-  float least = mix(0.5, 0.06 + 0.88 * chance, min(1.0, 0.3 * mixed));
-  if (edge * leaf.a < least) discard;
-  float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * min(1.0, 0.3 * mixed);
-  color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, 1.0);
+  float mixed = min(1.0, 0.3 * max(0.0, log2(180.0 * small)));
+  float least = mix(0.5, 0.06 + 0.88 * chance, mixed);
+  float shown = edge * leaf.a;
+  // The rim of a leaf covers a part of its pixel.
+  float cover = clamp(0.5 + (shown - least) / max(fwidth(shown), 0.02), 0.0, 1.0);
+  if (cover < 0.05) discard;
+  float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * mixed;
+  color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);
 }
 
 #part plainleaf.vertex leaf.vertex
