@@ -29,7 +29,7 @@ PACKAGES = {
 #: the commands that houses bring.
 STOREYS = {
     'errors': 0, 'faces': 0, 'tables': 0, 'drawn': 0, 'by_name': 26, 'extras': 1, 'cache': 1,
-    'worker': 1, 'newest': 1,
+    'worker': 1, 'newest': 1, '__main__': 40,
     'doorkeeper': 1, 'installed_models': 2, 'commands': 19, 'core': 20, 'growth': 21, 'twin': 21,
     'fidelity': 21,
     'simulation': 22, 'files': 23, 'parameters': 23, 'live': 24, 'stream': 24, 'page': 25,
