@@ -114,22 +114,18 @@ def format_of(
     head = read_head(path) if head is None else head
     what, cure = foreign_file(path, head) if kind == 'tree' and head else ('', '')
     if what:
-        raise FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
+        raise FormatError(f'{what}, not a {kind}', cure=cure)
     with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)
     for known in formats:
         if known.recognise(head):
             return known
     if any(known.recognise(with_points) for known in formats):
-        raise FormatError(
-            'numbers with a decimal comma', where=str(path), cure='export it with decimal points'
-        )
+        raise FormatError('numbers with a decimal comma', cure='export it with decimal points')
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
     if _is_header_alone(head):
-        raise FormatError(
-            'a header and no rows', where=str(path), cure='write rows below its header'
-        )
+        raise FormatError('a header and no rows', cure='write rows below its header')
     raise _unknown(path, kind, names)
 
 
@@ -159,16 +155,16 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
     what, cure = foreign_file(path)
     if what:
         cures = filter(None, (cure, f'formats that are read: {names}'))
-        return FormatError(f'{what}, not a {kind}', where=str(path), cure='; '.join(cures))
+        return FormatError(f'{what}, not a {kind}', cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
     head = read_head(path) if kind == 'tree' else ''
     if _is_cloud(head):
         what, cure = foreign_file(Path('cloud.las'))
-        return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
+        return FormatError(f'{what}, not a {kind}', cure=cure)
     if head:
         need = (
             'an inventory has columns for the place, the species, and the height or dbh; a tree '
             'as a table has segment, parent, x0, y0, z0, x1, y1, z1, d0, d1 [m]'
         )
         cure = f'{need}; {cure}' if _names_trees(head) else f'{cure}; {need}'
-    return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)
+    return UnknownFormatError(f'a file of an unknown {kind} format', cure=cure)

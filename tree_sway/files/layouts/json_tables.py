@@ -50,14 +50,14 @@ def read_json_table(lines: list[str], source: str) -> TextTable:
     try:
         document = _document(lines)
     except (ValueError, RecursionError) as error:
-        raise FormatError(f'not JSON: {error}', where=source, cure='save it again whole') from None
+        raise FormatError(f'not JSON: {error}', cure='save it again whole') from None
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     if not tables:
         cure = 'give columns or records with a time, a speed and a direction'
-        raise FormatError('no table in the JSON', where=source, cure=cure)
+        raise FormatError('no table in the JSON', cure=cure)
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     return max(winds or tables, key=lambda table: len(table.texts))
@@ -89,7 +89,7 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     if found:
         what = f'no true wind among the paths {", ".join(sorted(there)[:8])}'
         cure = f'record {SIGNALK_WIND}directionTrue and speedOverGround or speedTrue'
-        raise FormatError(what, where=source, cure=cure)
+        raise FormatError(what, cure=cure)
     return None
 
 

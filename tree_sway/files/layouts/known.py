@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tree_sway.errors import inside
 from tree_sway.files.layouts.badc_csv import BADC_CSV
 from tree_sway.files.layouts.isd import ISD_CSV
 from tree_sway.files.layouts.jma import JMA
@@ -36,7 +37,8 @@ def layout_of(lines: Sequence[str]) -> Layout | None:
 
 def table_of(lines: list[str], source: str) -> TextTable:
     """Return the table of a file's lines; a `FormatError` if they are none."""
-    return (layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
+    with inside(source):
+        return (layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
 
 
 def looks_like_wind(head: str) -> bool:

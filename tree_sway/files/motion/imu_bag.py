@@ -17,6 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.paths import of_file
 from tree_sway.files.recording.bag_reader import header_of, read_bag
 
 IMU = 'sensor_msgs/msg/Imu'
@@ -27,6 +28,7 @@ _MOST_BACK = 0.1
 """Largest share of messages that are not later than the one before."""
 
 
+@of_file
 def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     """
     Read the motion of a bag: its folder, or its ``.db3`` or ``.mcap`` file.
@@ -58,10 +60,10 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     if n_short == len(rows):
         what = f'no message on {chosen}' + (f', {n_short} are too short' if rows else '')
         cure = 'record while the sensor publishes'
-        raise FormatError(what, where=str(path), cure=cure)
+        raise FormatError(what, cure=cure)
     if len(frames) > 1:
         what = f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}'
-        raise FormatError(what, where=str(path), cure='record each sensor on a topic of its own')
+        raise FormatError(what, cure='record each sensor on a topic of its own')
     epoch = rows[0][0] * 1e-9
     time = np.array([(each - rows[0][0]) * 1e-9 for each, _ in rows])
     values = np.stack([each for _, each in rows])
@@ -73,7 +75,7 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     if n_back > _MOST_BACK * len(rows):
         what = f'time goes back or stands in {n_back} of {len(rows)} messages on {chosen}'
         cure = 'stamp each by the clock of its sensor, or with zero for the time of recording'
-        raise FormatError(what, where=str(path), cure=cure)
+        raise FormatError(what, cure=cure)
     counted = ((n_short, 'are too short'), (n_back, 'are not later than the one before'))
     notes = (f'topic {chosen}, {IMU}', *(f'{n} messages {what}' for n, what in counted if n))
     return MotionRecord(time, parts[0], parts[1], parts[2], str(path), epoch, notes)

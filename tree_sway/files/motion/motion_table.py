@@ -35,6 +35,7 @@ from tree_sway.files.column_names import (
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
@@ -66,6 +67,7 @@ _NAMES = (
 )
 
 
+@of_file
 def read_motion_table(path: Path) -> MotionRecord:
     """
     Read a table of a motion sensor, or the tables of a zip, such as a phone's.

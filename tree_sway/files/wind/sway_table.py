@@ -22,6 +22,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import motion_of
 from tree_sway.files.layouts.known import table_of
+from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import Join, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
@@ -57,6 +58,7 @@ class SwayRecord:
     source: str
 
 
+@of_file
 def read_csv_sway(path: Path) -> SwayRecord:
     """Read the motion of a tree from a table, as `parse_sway`."""
     return parse_sway(read_table_lines(path), str(path))

@@ -38,14 +38,14 @@ def read_geojson(text: str, source: str) -> TextTable:
     try:
         document = _object(json.loads(text))
     except (ValueError, RecursionError) as error:
-        raise FormatError(f'not GeoJSON: {error}', where=source, cure='save it again') from None
+        raise FormatError(f'not GeoJSON: {error}', cure='save it again') from None
     records = [*_elements(document), *_features(document)]
     if not records:
-        raise FormatError('no features', where=source, cure='export points with properties')
+        raise FormatError('no features', cure='export points with properties')
     names = list(dict.fromkeys(name for record in records for name in record))
     if not {'x', 'longitude'} & {*names}:
         cure = 'give each feature a geometry with coordinates of two numbers'
-        raise FormatError('no feature has a place', where=source, cure=cure)
+        raise FormatError('no feature has a place', cure=cure)
     rows = [[record.get(name, '') for name in names] for record in records]
     return table_of_cells(names, rows, source, row_name='feature')
 

@@ -71,7 +71,7 @@ def points_of_geopackage(path: str) -> Arrays:
             if any(row[0] for row in found):
                 yield 'rows', packed_rows(chain([first], found, rows))
                 return
-    raise FormatError('no layer of points', where=path, cure='export the trees as points')
+    raise FormatError('no layer of points', cure='export the trees as points')
 
 
 def _layer(

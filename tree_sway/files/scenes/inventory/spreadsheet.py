@@ -44,7 +44,7 @@ def read_spreadsheet(path: Path) -> TextTable:
         if sum(map(bool, cells)) >= 2 and number + 1 < len(rows)
     ]
     if not tables:
-        raise FormatError('no sheet with a header and rows', where=str(path))
+        raise FormatError('no sheet with a header and rows')
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = [row for row in rows[number + 1 :] if any(row)]

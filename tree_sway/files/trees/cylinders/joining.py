@@ -11,8 +11,8 @@ import numpy as np
 from tree_sway.core.arrays import Ints
 from tree_sway.core.tree import chain_starts, first_of_each
 from tree_sway.errors import TreeError
-from tree_sway.files.trees.assembly import nearest_axis
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.nearest_axis import nearest_axis
 
 _MAX_LOOSE = 1000
 _MAX_LOOSE_VOLUME = 0.2

@@ -31,10 +31,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     """Trees of a file."""
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
-        raise FormatError('no header', where=str(path), cure=f'a header names {",".join(_FIELDS)}')
+        raise FormatError('no header', cure=f'a header names {",".join(_FIELDS)}')
     of_tree, of_node = _columns(lines[0], f'{path}:{numbers[0]}')
     if len(lines) < 2:
-        raise FormatError('no trees', where=str(path))
+        raise FormatError('no trees')
     trees = []
     for number, line in zip(numbers[1:], lines[1:], strict=True):
         cells = _filled(split_row(line, ','))
@@ -81,7 +81,7 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
             cure = 'the first node has -1, every other the number of a node of its line'
             raise TreeError(f'parent_id is {above}', where=labels[row], cure=cure)
     parent = np.maximum(parent, -1)
-    return cylinders_of_nodes(points, diameter, parent, labels, where, cones=False)
+    return cylinders_of_nodes(points, diameter, parent, labels, cones=False)
 
 
 FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read, FITTED)

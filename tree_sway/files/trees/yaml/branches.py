@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import checked_order
 from tree_sway.errors import FormatError, nearest, TreeError
-from tree_sway.files.trees.assembly import nearest_axis
+from tree_sway.files.trees.nearest_axis import nearest_axis
 from tree_sway.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]

@@ -25,10 +25,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import tree_from_segments
 from tree_sway.errors import FormatError, SpeciesError
-from tree_sway.files.paths import is_file, path_of
+from tree_sway.files.paths import is_file, of_file, path_of
 from tree_sway.files.text_file import read_text
-from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments
 from tree_sway.files.yaml_document import read_yaml, tree_schema, YAML_SUFFIXES, YamlDocument
@@ -58,7 +58,7 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     values = document.values
     species = species_of(document)
     name = values.get('name', default_name)
-    tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
+    tree = tree_from_segments(**branch_segments(document), name=name, species=species.key)
     learned = LearnedTree(**values['learned']) if 'learned' in values else None
     notes = () if learned is None else (str(learned),)
     return TreeFile(tree, species, source, notes, learned=learned)
@@ -69,7 +69,8 @@ def is_species_file(name: str) -> bool:
     return Path(name).suffix.lower() in YAML_SUFFIXES or is_file(path_of(name))
 
 
-def read_species(path: str | Path) -> Species:
+@of_file
+def read_species(path: Path) -> Species:
     """
     Read the species of a YAML file, with the wood that the file measures.
 
@@ -84,13 +85,10 @@ def read_species(path: str | Path) -> Species:
         An unknown species.
 
     """
-    path = path_of(path)
     schema = {**tree_schema(), 'required': []}
     document = read_yaml(read_text(path), str(path), schema)
     if not {'species', 'wood'} & set(document.values):
-        raise FormatError(
-            'no species and no wood', where=str(path), cure="add 'species' or 'wood' to it"
-        )
+        raise FormatError('no species and no wood', cure="add 'species' or 'wood' to it")
     return species_of(document)
 
 
