@@ -47,7 +47,7 @@ def of_file(read: Callable[Concatenate[Path, P], T]) -> Callable[Concatenate[str
         with inside(str(file)):
             return read(file, *arguments, **options)
 
-    return named
+    return named  # type: ignore[return-value]
 
 
 def is_file(path: Path) -> bool:

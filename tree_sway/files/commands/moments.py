@@ -63,11 +63,7 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
             raise ParameterError(f'{count} moments in one file', where=pattern, cure=cure)
         names = [pattern]
     else:
-        found = _NUMBER.search(pattern)
-        assert found is not None
-        before = pattern[: found.start()]
-        after = pattern[found.end() :]
-        names = [f'{before}{found[0] % k}{after}' for k in range(count)]
+        names = [_NUMBER.sub(lambda found, k=k: found[0] % k, pattern) for k in range(count)]
     for name in names:
         if not may_overwrite:
             refuse_overwriting(name, '--output')

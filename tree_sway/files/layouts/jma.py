@@ -35,7 +35,7 @@ _DOUBTFUL = ('0', '1', '2')
 
 
 def _is_jma(lines: Sequence[str]) -> bool:
-    return bool(lines) and lines[0].startswith(_FIRST)
+    return lines[0].startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:

@@ -12,11 +12,11 @@ of states. The longest of these in the document is the table.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-import json
 from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.json_values import cell_of, parsed
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -47,10 +47,7 @@ def _is_json(lines: Sequence[str]) -> bool:
 
 def read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
-    try:
-        document = _document(lines)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not JSON: {error}', cure='save it again whole') from None
+    document = _document(lines)
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
@@ -96,12 +93,12 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
 def _document(lines: list[str]) -> Any:
     """Return a document of several lines, or a list of those that are one each."""
     try:
-        return json.loads('\n'.join(lines))
-    except ValueError:
+        return parsed('\n'.join(lines))
+    except FormatError:
         filled = [line for line in lines if line.strip()]
         if not filled[0].rstrip().endswith('}'):
             raise
-        return [json.loads(line) for line in filled]
+        return [parsed(line) for line in filled]
 
 
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:
@@ -243,9 +240,7 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
 
 
 def _text(cell: Any) -> str:
-    if cell is None or isinstance(cell, dict | list | bool):
-        return ''
-    return str(cell).replace('\x1f', ' ').replace('\n', ' ')
+    return '' if isinstance(cell, bool) else cell_of(cell)
 
 
 def _unit(cell: Any) -> str:

@@ -32,7 +32,7 @@ _HEAD = 200
 
 def layout_of(lines: Sequence[str]) -> Layout | None:
     """Return the layout of a table by its first lines; None if it is none."""
-    return next((layout for layout in LAYOUTS if layout.recognise(lines)), None)
+    return next((layout for layout in LAYOUTS if layout.recognise(lines or [''])), None)
 
 
 def table_of(lines: list[str], source: str) -> TextTable:

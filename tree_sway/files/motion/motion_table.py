@@ -168,16 +168,10 @@ def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
         for quantity in _AXES:
             values = getattr(each, quantity)
             if found[quantity] is None and values is not None:
-                shift = 0.0
-                if first.epoch is not None and each.epoch is not None:
-                    shift = each.epoch - first.epoch
-                found[quantity] = np.stack(
-                    [
-                        np.interp(first.time, each.time + shift, axis, np.nan, np.nan)
-                        for axis in values.T
-                    ],
-                    axis=1,
-                )
+                are_dated = first.epoch is not None and each.epoch is not None
+                clock = each.times_after(first.epoch) if are_dated else each.time
+                axes = [np.interp(first.time, clock, axis, np.nan, np.nan) for axis in values.T]
+                found[quantity] = np.stack(axes, axis=1)
                 notes += each.notes
     return replace(first, source=source, notes=tuple(notes), **found)
 
@@ -231,17 +225,12 @@ def _gravity(values: Floats) -> tuple[str, ...]:
     return tuple(unit for unit, each in units if _GRAVITY[0] < size * each < _GRAVITY[1])
 
 
-def _size(values: Floats) -> float:
-    """Return the median length of vectors; 0 without one."""
-    size = np.linalg.norm(values, axis=1)
-    return float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0
-
-
-def _largest(values: Floats) -> float:
-    """Return the length of the largest vectors; 0 without one."""
+def _size(values: Floats, share: float = 0.5) -> float:
+    """Return the length of vectors that a share of them stays below; 0 without one."""
     size = np.linalg.norm(values, axis=1)
     size = size[np.isfinite(size)]
-    return float(np.quantile(size, _LARGEST, method='lower')) if len(size) else 0.0
+    method = 'lower' if share == _LARGEST else 'linear'
+    return float(np.quantile(size, share, method=method)) if len(size) else 0.0
 
 
 def _without_unit(
@@ -257,7 +246,7 @@ def _without_unit(
         return _UNITS[told], said if told else ''
     of, size = 'as a median', _size(values)
     if quantity == 'rate':
-        of, size = 'at most', _largest(values)
+        of, size = 'at most', _size(values, _LARGEST)
         is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
         if most < size <= np.degrees(most) and not is_count:
             said = f'no unit of {name} in the header: taken in deg/s, as it is up to {size:.4g}'

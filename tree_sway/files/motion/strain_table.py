@@ -11,6 +11,7 @@ a pair sits. A header is optional; a unit in its brackets counts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 import re
@@ -21,7 +22,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
-from tree_sway.files.table_file import split_row
+from tree_sway.files.table_file import filled_lines, split_row
 from tree_sway.files.text_file import finite, read_table_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.twin import as_orientation
@@ -63,16 +64,12 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    lines = [line for line in read_table_lines(path) if line.strip() and line[0] != '#']
+    _, lines = filled_lines(read_table_lines(path))
     first = lines[0] if lines else ''
-    separator = next((each for each in '\t;,' if each in first), '')
-
-    def cells(line: str) -> list[str]:
-        return [*split_row(line, separator)] if separator else line.split()
-
-    head = cells(first)
-    has_names = len(head) < 2 or finite(head[1]) is None
-    rows = [cells(line) for line in lines[has_names:]]
+    separator = next((each for each in '\t;,' if each in first), ' ')
+    head, *rows = (split_row(line, separator) for line in lines or [''])
+    if len(head) > 1 and finite(head[1]) is not None:
+        rows.insert(0, head)
     size = max((len(row) for row in rows), default=0)
     if size < 3 or not size % 2:
         what = f'{max(size - 1, 0)} columns beside the time'
@@ -94,7 +91,7 @@ def read_strain(path: Path) -> StrainRecord:
     return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))
 
 
-def _factor(head: list[str]) -> float:
+def _factor(head: Sequence[str]) -> float:
     """Factor to strain by the unit of the second column of a header."""
     found = re.search(r'[\[(]([^\])]*)[\])]', head[1]) if len(head) > 1 else None
     unit = found[1].strip() if found else ''

@@ -10,12 +10,12 @@ their properties under ``tags``.
 from __future__ import annotations
 
 from collections.abc import Iterator
-import json
 import math
 from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.json_values import cell_of, parsed
 from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 6
@@ -35,10 +35,7 @@ def read_geojson(text: str, source: str) -> TextTable:
 
     Raises a `FormatError` for broken JSON, no features, or no feature with a place.
     """
-    try:
-        document = _object(json.loads(text))
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not GeoJSON: {error}', cure='save it again') from None
+    document = _object(parsed(text))
     records = [*_elements(document), *_features(document)]
     if not records:
         raise FormatError('no features', cure='export points with properties')
@@ -55,8 +52,8 @@ def _elements(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     for element in map(_object, _list(document.get('elements'))):
         tags = _object(element.get('tags'))
         if 'lat' in element and 'lon' in element and tags:
-            place = {'latitude': _text(element['lat']), 'longitude': _text(element['lon'])}
-            yield place | {f'tags.{name}': _text(each) for name, each in tags.items()}
+            place = {'latitude': cell_of(element['lat']), 'longitude': cell_of(element['lon'])}
+            yield place | {f'tags.{name}': cell_of(each) for name, each in tags.items()}
 
 
 def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
@@ -67,7 +64,7 @@ def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
         place = _place(_object(feature.get('geometry')).get('coordinates'))
         taken = _PLACES if place else ()
         cells = {name: each for name, each in properties.items() if name.lower() not in taken}
-        yield {name: _text(each) for name, each in cells.items()} | place
+        yield {name: cell_of(each) for name, each in cells.items()} | place
 
 
 def _flat(properties: dict[str, Any]) -> dict[str, Any]:
@@ -116,9 +113,3 @@ def _object(value: Any) -> dict[str, Any]:
 def _list(value: Any) -> list[Any]:
     """Return a list of JSON; an empty one in place of any other value."""
     return value if isinstance(value, list) else []
-
-
-def _text(cell: Any) -> str:
-    if cell is None or isinstance(cell, dict | list):
-        return ''
-    return str(cell).replace('\x1f', ' ').replace('\n', ' ')

@@ -91,9 +91,8 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     if _DIAMETER not in known:
         what = f'no feature {_DIAMETER} among {", ".join(known)}'
         raise FormatError(what, cure=f'call the diameter [mm] {_DIAMETER}')
-    at_tip = np.array([each.tip.diameter for each in segments])
-    at_base = np.array([each.base.diameter for each in segments])
-    at_base = np.where(at_base > 0.0, at_base, at_tip)
+    ends = [(each.base.diameter, each.tip.diameter) for each in segments]
+    diameter = np.array([(base if base > 0.0 else tip, tip) for base, tip in ends])
     n_placed = sum(vertex.is_placed for vertex in vertices)
     note = (
         f'{n_placed} vertices with a position, {len(vertices) - n_placed} without; '
@@ -102,7 +101,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     cylinders = Cylinders(
         np.array([each.base.position for each in segments]),
         np.array([each.tip.position for each in segments]),
-        np.stack([at_base, at_tip], axis=1),
+        diameter,
         np.array([each.parent for each in segments], dtype=np.int64),
         np.array([each.continues for each in segments], dtype=np.bool_),
         [each.tip.label for each in segments],
@@ -215,8 +214,7 @@ def _vertices(
         cure = 'such as /P1, <S2 or +A1'
         raise FormatError(f"'{code[:20]}' is not a code", where=where, cure=cure)
     found: list[_Vertex] = []
-    for part in parts:
-        edge, name = part.groups()
+    for edge, name in map(re.Match.groups, parts):
         symbol = name.rstrip('0123456789')
         if symbol not in scales:
             raise FormatError(f"no class '{symbol}'", where=where, cure='list it under CLASSES')

@@ -9,7 +9,6 @@ node ``p1``, at ``sx, sy, sz``, and goes ``length`` along ``ax, ay, az`` to node
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 import re
 from typing import Any
@@ -19,6 +18,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, inside
 from tree_sway.files.file_format import FileFormat, has_columns
+from tree_sway.files.json_values import parsed
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import finite, read_lines, read_text
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
@@ -36,7 +36,7 @@ def _is_other_json(head: str) -> bool:
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a file of treegraph."""
-    document = _parsed(read_text(path))
+    document = parsed(read_text(path))
     if not isinstance(document, dict) or 'cyls' not in document:
         has = f'keys {", ".join(map(repr, [*document][:8]))}'
         said = has if isinstance(document, dict) else 'a list'
@@ -44,7 +44,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         raise FormatError(f'JSON of {said}, which is no tree', cure=cure)
     table = document['cyls']
     with inside('cyls'):
-        table = _parsed(table) if isinstance(table, str) else table
+        table = parsed(table) if isinstance(table, str) else table
     return _joined(np.column_stack([_column(table, name) for name in _COLUMNS]))
 
 
@@ -67,13 +67,6 @@ def _joined(values: Floats) -> tuple[Cylinders, ...]:
     point[edges[:, 0]] = values[:, 2:5]
     made = cylinders_of_edges(point, edges, values[:, 9], of_nodes=False)
     return (made,)
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not JSON: {error}', cure='save it again') from None
 
 
 def _column(table: Any, name: str) -> Floats:
