@@ -86,8 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':
-        cure = 'write .obj files'
-        raise ParameterError(f"'{output}' is of no moment", where='--at', cure=cure)
+        raise ParameterError(f"'{output}' is of no moment", where='--at', cure='write .obj files')
     refuse_unused_wind(arguments)
     if arguments.at is None and (arguments.wind is not None or arguments.speed is not None):
         refuse_unused('--speed' if arguments.wind is None else '--wind', '--at SECONDS')

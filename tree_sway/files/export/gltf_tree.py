@@ -60,8 +60,11 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     Raises a `FormatError` for more segments than a skin can have joints.
     """
     if tree.n_segments > _MAX_JOINTS:
-        what = f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin'
-        raise FormatError(what, where=tree.name, cure='convert its trees one by one')
+        raise FormatError(
+            f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin',
+            where=tree.name,
+            cure='convert its trees one by one',
+        )
     document = GltfDocument(_GENERATOR)
     poses = tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))

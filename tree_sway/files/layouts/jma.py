@@ -45,8 +45,9 @@ def _read(lines: list[str], source: str) -> TextTable:
     head = [line.split(',') for line in lines[:first]]
     stations = {name for name in head[_STATIONS] if name.strip()}
     if len(stations) > 1:
-        what = f'several stations: {", ".join(sorted(stations)[:5])}'
-        raise FormatError(what, cure='download one at a time')
+        raise FormatError(
+            f'several stations: {", ".join(sorted(stations)[:5])}', cure='download one at a time'
+        )
     rows = _rows(lines, first, head[_ELEMENTS:])
     return table_of_lines(_NAMES, rows, source, _UNITS)
 

@@ -53,8 +53,10 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
         what = f'no message on {chosen}' + (f', {n_short} are too short' if rows else '')
         raise FormatError(what, cure='record while the sensor publishes')
     if len(frames) > 1:
-        what = f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}'
-        raise FormatError(what, cure='record each sensor on a topic of its own')
+        raise FormatError(
+            f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}',
+            cure='record each sensor on a topic of its own',
+        )
     epoch = rows[0][0] * 1e-9
     time = np.array([(stamp - rows[0][0]) * 1e-9 for stamp, _, _ in rows])
     values = np.stack([numbers for _, _, numbers in rows])

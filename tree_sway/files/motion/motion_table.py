@@ -108,8 +108,10 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
     if times is None or not np.isfinite(times.seconds).any():
         times = counted_times(table) or times
     if times is None or not picked:
-        what = f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}'
-        raise table.error(what, cure=_NAMES)
+        raise table.error(
+            f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}',
+            cure=_NAMES,
+        )
     table.refuse_several()
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
@@ -252,8 +254,10 @@ def _without_unit(
             said = f'no unit of {name} in the header: taken in deg/s, as it is up to {size:.4g}'
             return table.known_factor(quantity, 'deg/s'), said
     if size > most:
-        what = f'{name} without a unit is {size:.4g} {of}, which is no {unit}'
-        raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
+        raise table.error(
+            f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
+            cure=f'give its unit, as {name} [mg] or {name} [deg/s]',
+        )
     other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return 1.0, note
@@ -264,24 +268,31 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
     seconds = times.seconds
     is_time = np.isfinite(seconds)
     if not is_time.any():
-        what = f"no time in any row: the first is '{first_cell[:40]}'"
-        raise table.error(what, cure='give seconds or dates')
+        raise table.error(
+            f"no time in any row: the first is '{first_cell[:40]}'", cure='give seconds or dates'
+        )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
     if _are_most(steps < 0.0, 0.1):
-        what = f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows'
-        raise table.error(what, cure='put the rows in the order of time')
+        raise table.error(
+            f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows',
+            cure='put the rows in the order of time',
+        )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
     stands = (steps == 0.0) & changes
     if _are_most(stands, 0.5):
-        what = f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before'
-        raise table.error(what, cure='export times with fractions of a second')
+        raise table.error(
+            f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
+            cure='export times with fractions of a second',
+        )
     step = float(np.median(steps)) if len(steps) else 0.0
     if step > _SLOWEST or 0.0 < step <= _SHORTEST:
         size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
-        what = f'a sample every {step:.6g} s, too {size}'
-        cure = 'name the unit of time, as time [ms]; a sensor sends 20 samples per second or more'
-        raise table.error(what, cure=cure)
+        raise table.error(
+            f'a sample every {step:.6g} s, too {size}',
+            cure='name the unit of time, as time [ms]; a sensor sends 20 samples per second or '
+            'more',
+        )
 
 
 def _are_most(rows: NDArray[np.bool_], share: float) -> bool:

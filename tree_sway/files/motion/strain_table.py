@@ -72,20 +72,25 @@ def read_strain(path: Path) -> StrainRecord:
         rows.insert(0, head)
     size = max((len(row) for row in rows), default=0)
     if size < 3 or not size % 2:
-        what = f'{max(size - 1, 0)} columns beside the time'
-        cure = 'give the time, then two columns for each place: north side, east side'
-        raise FormatError(what, cure=cure)
+        raise FormatError(
+            f'{max(size - 1, 0)} columns beside the time',
+            cure='give the time, then two columns for each place: north side, east side',
+        )
     times = times_of([row[0] for row in rows])
     numbers = [[finite(cell) for cell in row[1:]] + [None] * (size - len(row)) for row in rows]
     values = np.array(numbers, dtype=float) * _factor(head)
     if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
-        what = f"no time in '{rows[0][0]}', or a column without numbers"
-        raise FormatError(what, cure='put the time first, and leave that pair out')
+        raise FormatError(
+            f"no time in '{rows[0][0]}', or a column without numbers",
+            cure='put the time first, and leave that pair out',
+        )
     away = np.abs(values - np.nanmedian(values, axis=0))
     if (largest := float(np.nanquantile(away, 0.99))) > _BROKEN:
-        what = f'changes of {largest:.3g} are no strain of wood'
-        cure = 'give strain, or its unit in the header, as north [microstrain]; calibrate voltages'
-        raise FormatError(what, cure=cure)
+        raise FormatError(
+            f'changes of {largest:.3g} are no strain of wood',
+            cure='give strain, or its unit in the header, as north [microstrain]; calibrate '
+            'voltages',
+        )
     notes = f'{path.name}: {size // 2} pairs of strain, north and east side', times.note
     pairs = values.reshape(len(rows), -1, 2)
     return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))
@@ -98,6 +103,8 @@ def _factor(head: Sequence[str]) -> float:
     if _MICRO.match(unit):
         return 1e-6
     if unit.lower() not in _UNITS:
-        cure = 'give strain as - or microstrain; calibrate voltages first'
-        raise FormatError(f"unknown unit of strain '{unit[:20]}'", cure=cure)
+        raise FormatError(
+            f"unknown unit of strain '{unit[:20]}'",
+            cure='give strain as - or microstrain; calibrate voltages first',
+        )
     return _UNITS[unit.lower()]

@@ -160,8 +160,10 @@ def _placed(inventory: Inventory, row: int, kind: GrownTree, key: str, yaw: floa
     height = float(inventory.height[row])
     scale = height / kind.tree.height
     if not SMALLEST <= scale <= LARGEST:
-        what = f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'"
-        raise ParameterError(what, cure=f'give {SMALLEST:g} to {LARGEST:g} times')
+        raise ParameterError(
+            f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'",
+            cure=f'give {SMALLEST:g} to {LARGEST:g} times',
+        )
     return PlacedTree(
         inventory.names[row],
         kind.tree,

@@ -76,8 +76,9 @@ def read_trees(
             tree = replace(each.tree, name=f'{each.tree.name}{number}')
             files[number - 1] = replace(each, tree=tree)
     if wanted.tree not in range(len(files) + 1):
-        cure = f'give 1 to {len(files)}, or 0 for all'
-        raise ParameterError(f'tree {wanted.tree} of {len(files)}', cure=cure)
+        raise ParameterError(
+            f'tree {wanted.tree} of {len(files)}', cure=f'give 1 to {len(files)}, or 0 for all'
+        )
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
     read = [wanted.applied(each, wood, in_leaf) for each in files]

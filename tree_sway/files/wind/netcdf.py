@@ -93,9 +93,10 @@ def _read(data: Any, point: tuple[float, float] | None) -> Arrays:
     is_polar = None in [found[each] for each in _COMPONENTS]
     if found['time'] is None or (is_polar and None in [found[each] for each in _POLAR]):
         said = [word for each, word in _WORDS.items() if found[each] is None]
-        what = f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}'
-        cure = 'choose the 10 m u and v components of wind, or its speed and direction'
-        raise FormatError(what, cure=cure)
+        raise FormatError(
+            f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
+            cure='choose the 10 m u and v components of wind, or its speed and direction',
+        )
     clock = data.variables[found['time']]
     names = _POLAR if is_polar else _COMPONENTS
     first, second = (data.variables[found[each]] for each in names)
@@ -161,8 +162,11 @@ def _series(variable: Any, kind: str, clock: Any, place: dict[str, int]) -> Floa
     unit = str(getattr(variable, 'units', _USUAL_UNITS[kind]))
     factor = unit_factor(kind, unit)
     if factor is None:
-        cure = f'use {", ".join([*UNITS[kind]][:12])}'
-        raise FormatError(f"unknown unit '{unit[:20]}'", where=variable.name, cure=cure)
+        raise FormatError(
+            f"unknown unit '{unit[:20]}'",
+            where=variable.name,
+            cure=f'use {", ".join([*UNITS[kind]][:12])}',
+        )
     index = tuple(
         slice(None) if name in clock.dimensions else place.get(name, 0)
         for name in variable.dimensions

@@ -107,8 +107,9 @@ def read_sensor_log(
             stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:
-        what = f'no sentence {" or ".join(kinds)}'
-        raise FormatError(what, cure="log the wind instrument's output")
+        raise FormatError(
+            f'no sentence {" or ".join(kinds)}', cure="log the wind instrument's output"
+        )
     best = next((kind for kind in there if found[kind].time), there[0])
     if found[best].time and all(stamps[best]):
         times = times_of(stamps[best])

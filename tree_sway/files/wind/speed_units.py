@@ -28,15 +28,17 @@ def speed_factor(
     for an unknown unit, and a `FormatError` where a known maker's file does not tell its unit.
     """
     if given is not None and unit_factor('speed', given) is None:
-        cure = f'use one of: {", ".join(UNITS["speed"])}'
-        raise ParameterError(f"speed_unit is '{given}'", cure=cure)
+        raise ParameterError(
+            f"speed_unit is '{given}'", cure=f'use one of: {", ".join(UNITS["speed"])}'
+        )
     if table.unit_of(index, quantity):
         return table.factor_of(index, quantity), ''
     maker = maker_of(table)
     unit = given or maker.get('gust' if quantity == 'gust' else 'speed')
     if unit == _ASKED:
-        what = f'a file of {maker["maker"]} does not say the unit of the speed'
-        raise table.error(what, cure=_CURE)
+        raise table.error(
+            f'a file of {maker["maker"]} does not say the unit of the speed', cure=_CURE
+        )
     if given is not None:
         note = f'speeds are taken in {given}, as given'
     elif unit:

@@ -80,9 +80,10 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     clock = time_columns(table)
     motion = [(i, found[0]) for i, name in enumerate(table.columns) if (found := motion_of(name))]
     if clock is None or not motion:
-        what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
-        cure = 'call the columns time, x, y or time, tilt_x or time, ax, ay in the header'
-        raise table.error(what, cure=cure)
+        raise table.error(
+            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
+            cure='call the columns time, x, y or time, tilt_x or time, ax, ay in the header',
+        )
     if 'seconds_elapsed' in table.columns:  # Sensor Logger has axes x, y, z for all its sensors
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
@@ -90,16 +91,20 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
         motion = [(i, quantity) for i, quantity in motion if quantity == 'acceleration']
         quantities = ['acceleration']
     if len(quantities) > 1:
-        what = f'{" and ".join(quantities)} in one file'
-        raise table.error(what, cure='keep the columns of one quantity')
+        raise table.error(
+            f'{" and ".join(quantities)} in one file', cure='keep the columns of one quantity'
+        )
     factors = [table.factor_of(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     with np.errstate(over='ignore'):
         is_plausible = np.abs(values) * factors <= MAX_VALUE
     for row, column in np.argwhere(~is_plausible)[:1]:
-        what = f'{columns[column]} is {values[row, column]:.3g}, which is implausible'
-        raise table.error(what, row, 'correct the cell or remove the row')
+        raise table.error(
+            f'{columns[column]} is {values[row, column]:.3g}, which is implausible',
+            row,
+            'correct the cell or remove the row',
+        )
     times = _times(table, *clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
@@ -110,9 +115,15 @@ def _times(table: TextTable, columns: list[int], join: Join | None, factor: floa
     times = row_times(table, columns, join, factor, rows).seconds
     stamps = table.cells(columns[0], rows)
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
-        what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
-        raise table.error(what, row, 'correct the cell or remove the row')
+        raise table.error(
+            f"time is '{stamps[row][:40]}', neither seconds nor a date",
+            row,
+            'correct the cell or remove the row',
+        )
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
-        what = f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}'
-        raise table.error(what, row + 1, 'put the rows in the order of time, each time once')
+        raise table.error(
+            f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
+            row + 1,
+            'put the rows in the order of time, each time once',
+        )
     return times

@@ -66,8 +66,11 @@ class Film:
         self._begun = self._capture.get(cv2.CAP_PROP_POS_MSEC)
         """The first picture, blue, green, red, (high, wide, 3)."""
         if not is_read:
-            cure = 'give camera:0, camera:FILE.mp4 or camera:rtsp://host/path'
-            raise ParameterError(f"no picture comes from '{source}'", where='--motion', cure=cure)
+            raise ParameterError(
+                f"no picture comes from '{source}'",
+                where='--motion',
+                cure='give camera:0, camera:FILE.mp4 or camera:rtsp://host/path',
+            )
 
     @property
     def size(self) -> tuple[int, int]:
@@ -90,8 +93,11 @@ class Film:
         picture = self.first.copy()
         _draw(self._cv2, picture, wood, _RED, 0)
         if not self._cv2.imwrite(path, picture):
-            cure = 'give a .png or .jpg in a folder that is there'
-            raise ParameterError(f"'{path}' cannot be written", where='--at', cure=cure)
+            raise ParameterError(
+                f"'{path}' cannot be written",
+                where='--at',
+                cure='give a .png or .jpg in a folder that is there',
+            )
 
     def sightings(self, tracker: PointTracker) -> Iterator[Sighting]:
         """Follow the points of a file's pictures, with times from its first one on in [s]."""

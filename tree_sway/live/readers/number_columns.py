@@ -37,8 +37,9 @@ def columns_of(text: str) -> tuple[str, ...]:
     names = tuple(name.strip() for name in text.split(',')) if text else ()
     unknown = [name for name in names if name not in COLUMNS]
     if unknown or (names and 'speed' not in names and not {'u', 'v'} <= set(names)):
-        what = f"columns are '{text}'"
-        raise ParameterError(what, cure=f'use speed, or u and v, among {", ".join(COLUMNS)}')
+        raise ParameterError(
+            f"columns are '{text}'", cure=f'use speed, or u and v, among {", ".join(COLUMNS)}'
+        )
     return names
 
 

@@ -125,8 +125,11 @@ def inventory_of(
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
     if not kept:
-        what = f'no tree is left: {columns.why_left_out() or "no row"}'
-        raise FormatError(what, where=table.source, cure='fill the cells, or remove the rows')
+        raise FormatError(
+            f'no tree is left: {columns.why_left_out() or "no row"}',
+            where=table.source,
+            cure='fill the cells, or remove the rows',
+        )
     tree_names = _names(columns, kept)
     z, yaw = (_optional(columns, each) for each in ('z', 'yaw'))
     models = columns.texts_of('model')

@@ -47,9 +47,11 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     loose = roots[roots != stem]
     largest = int(loose[np.argmax(volume[loose])])
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
-        what = f'{len(roots)} roots: a forest of trees that are not connected'
-        cure = 'give each tree its own file, or this cylinder a parent'
-        raise TreeError(what, where=cylinders.labels[largest], cure=cure)
+        raise TreeError(
+            f'{len(roots)} roots: a forest of trees that are not connected',
+            where=cylinders.labels[largest],
+            cure='give each tree its own file, or this cylinder a parent',
+        )
     on_stem = np.flatnonzero(root_of == stem)
     joined = parent.copy()
     farthest = 0.0

@@ -41,15 +41,18 @@ def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: 
     if len(edges) == 0:
         raise FormatError('no edges', cure='join the nodes of each segment')
     for row in np.flatnonzero(((edges < 0) | (edges >= n)).any(axis=1))[:1]:
-        what = f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes'
-        raise FormatError(what, cure='number the nodes from 0')
+        raise FormatError(
+            f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes',
+            cure='number the nodes from 0',
+        )
     graph = csr_array((np.ones(len(edges)), edges.T), shape=(n, n))
     _, part = connected_components(graph, directed=False)
     largest = np.argmax(np.bincount(part))
     inside = np.flatnonzero(part == largest)
     if np.count_nonzero(part[edges[:, 0]] == largest) >= len(inside):
-        what = 'edges that close a ring, where a tree has none'
-        raise FormatError(what, cure='remove one edge of the ring')
+        raise FormatError(
+            'edges that close a ring, where a tree has none', cure='remove one edge of the ring'
+        )
     root = inside[np.argmin(point[inside, 2])]
     order, before = breadth_first_order(graph, root, directed=False)
     place = np.full(n + 1, -1)  # with one for the parent of the root

@@ -45,8 +45,11 @@ def cylinders_of_nodes(
     above = number[inner]
     roots = np.flatnonzero(above < 0)
     if len(roots) == 0:
-        what = 'a root without other nodes'
-        raise FormatError(what, where=labels[0], cure='let at least one node hang on the root')
+        raise FormatError(
+            'a root without other nodes',
+            where=labels[0],
+            cure='let at least one node hang on the root',
+        )
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(

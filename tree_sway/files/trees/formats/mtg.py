@@ -85,12 +85,13 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     vertices = _parse(read_lines(path), str(path))
     segments = _segments(vertices)
     if not segments:
-        what = f'no two vertices with {", ".join(_POSITION)}'
-        raise FormatError(what, cure='digitise the tree')
+        raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
     known = list(dict.fromkeys(name for each in vertices for name in each.features))
     if _DIAMETER not in known:
-        what = f'no feature {_DIAMETER} among {", ".join(known)}'
-        raise FormatError(what, cure=f'call the diameter [mm] {_DIAMETER}')
+        raise FormatError(
+            f'no feature {_DIAMETER} among {", ".join(known)}',
+            cure=f'call the diameter [mm] {_DIAMETER}',
+        )
     ends = [(each.base.diameter, each.tip.diameter) for each in segments]
     diameter = np.array([(base if base > 0.0 else tip, tip) for base, tip in ends])
     n_placed = sum(vertex.is_placed for vertex in vertices)
@@ -211,8 +212,9 @@ def _vertices(
     """Return the vertices of a code, such as ``/P1/A1``, of which each refers to the last."""
     parts = list(_CODE.finditer(code))
     if not parts or ''.join(part[0] for part in parts) != code:
-        cure = 'such as /P1, <S2 or +A1'
-        raise FormatError(f"'{code[:20]}' is not a code", where=where, cure=cure)
+        raise FormatError(
+            f"'{code[:20]}' is not a code", where=where, cure='such as /P1, <S2 or +A1'
+        )
     found: list[_Vertex] = []
     for edge, name in map(re.Match.groups, parts):
         symbol = name.rstrip('0123456789')

@@ -47,14 +47,16 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     try:
         tables = _tables(data[body:], order, elements)
     except (ValueError, OverflowError, MemoryError):
-        what = 'other vertices or edges than its header says'
-        raise FormatError(what, cure=_AGAIN) from None
+        raise FormatError('other vertices or edges than its header says', cure=_AGAIN) from None
     names = [name for name, _ in elements['vertex'][1]]
     point = tables['vertex'][:, [names.index(axis) for axis in 'xyz']]
     radius = tables['vertex'][:, names.index('radius')]
     for row in np.flatnonzero(~np.isfinite(point.sum(axis=1) + radius))[:1]:
-        what = 'a place or a radius that is no number'
-        raise FormatError(what, where=f'vertex {row}', cure='remove it and its edges')
+        raise FormatError(
+            'a place or a radius that is no number',
+            where=f'vertex {row}',
+            cure='remove it and its edges',
+        )
     edges = tables['edge'][:, -2:].astype(np.int64)
     return (cylinders_of_edges(point, edges, radius, of_nodes=True),)
 

@@ -40,8 +40,11 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     if not isinstance(document, dict) or 'cyls' not in document:
         has = f'keys {", ".join(map(repr, [*document][:8]))}'
         said = has if isinstance(document, dict) else 'a list'
-        cure = "give a tree with 'branches' (doc/trees.md), or the file of treegraph with 'cyls'"
-        raise FormatError(f'JSON of {said}, which is no tree', cure=cure)
+        raise FormatError(
+            f'JSON of {said}, which is no tree',
+            cure="give a tree with 'branches' (doc/trees.md), or the file of treegraph with "
+            "'cyls'",
+        )
     table = document['cyls']
     with inside('cyls'):
         table = parsed(table) if isinstance(table, str) else table
@@ -58,8 +61,9 @@ def _joined(values: Floats) -> tuple[Cylinders, ...]:
     is_point = values[:, 8] == 0.0
     values[is_point, 5:8] = 0.0  # a cylinder without length has no direction
     for row, column in np.argwhere(~np.isfinite(values))[:1]:
-        what = f"no number in '{_COLUMNS[column]}'"
-        raise FormatError(what, where=f'cylinder {row}', cure='fit it again')
+        raise FormatError(
+            f"no number in '{_COLUMNS[column]}'", where=f'cylinder {row}', cure='fit it again'
+        )
     nodes, edges = np.unique(values[:, :2], return_inverse=True)
     edges = edges.reshape(-1, 2)
     point = np.empty((len(nodes), 3))
@@ -73,8 +77,10 @@ def _column(table: Any, name: str) -> Floats:
     """Return the values of a column, (n,), in the order of its rows; NaN where one is none."""
     cells = table.get(name) if isinstance(table, dict) else None
     if not isinstance(cells, dict) or cells.keys() != table['p1'].keys():
-        what = f"no column '{name}' in 'cyls', or one of other rows"
-        raise FormatError(what, cure='save it by treegraph again')
+        raise FormatError(
+            f"no column '{name}' in 'cyls', or one of other rows",
+            cure='save it by treegraph again',
+        )
     values = [finite(str(cells[row])) for row in table['p1']]
     return np.array([np.nan if each is None else each for each in values])
 

@@ -103,9 +103,10 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     if not tables:
         tables = list(_arrays(variables))
     if not tables:
-        what = "no struct with a field 'cylinder', and no array of cylinders"
-        cure = 'save the QSM struct of TreeQSM, or its columns as an array of 9 to 15'
-        raise FormatError(what, cure=cure)
+        raise FormatError(
+            "no struct with a field 'cylinder', and no array of cylinders",
+            cure='save the QSM struct of TreeQSM, or its columns as an array of 9 to 15',
+        )
     trees = []
     for name, table in tables:
         labels = [f'{name} cylinder {i + 1}' for i in range(len(table))]
@@ -183,8 +184,9 @@ def _table(name: str, fields: dict[str, Any]) -> Floats:
         if field not in fields:
             if field == 'extension':
                 continue  # continuations are found by the diameters, as without its column
-            cure = 'save the QSM struct of TreeQSM'
-            raise FormatError(f"{name} has no numbers '{field}'", cure=cure)
+            raise FormatError(
+                f"{name} has no numbers '{field}'", cure='save the QSM struct of TreeQSM'
+            )
         with inside(name):
             column = numbers(fields[field], field)
         if column.size % width:
@@ -217,12 +219,13 @@ def _indices(numbers: Floats, labels: list[str]) -> Ints:
     """Rows of parents and extensions, (1 or 2, n), from their numbers, (n, 1 or 2)."""
     is_whole = (numbers == np.round(numbers)) & (np.abs(numbers) <= _LARGEST_WHOLE)
     for row, column in np.argwhere(~is_whole)[:1]:
-        what = f'parent or extension is {numbers[row, column]:g}, not a whole number'
-        raise FormatError(what, where=labels[row])
+        raise FormatError(
+            f'parent or extension is {numbers[row, column]:g}, not a whole number',
+            where=labels[row],
+        )
     root = int(numbers[:, 0].min())
     if root not in (-1, 0):
-        cure = 'the root has parent 0, or -1'
-        raise FormatError(f'the smallest parent is {root}', cure=cure)
+        raise FormatError(f'the smallest parent is {root}', cure='the root has parent 0, or -1')
     first = root + 1
     return (numbers.astype(np.int64) - first).T
 

@@ -105,9 +105,11 @@ def species_of(document: YamlDocument) -> Species:
         ratio = wood.pop('damping_ratio')
         for state in ('damping_bare', 'damping_in_leaf'):
             if state in wood:
-                what = f'both damping_ratio and {state}'
-                cure = 'give damping_ratio only, or both states'
-                raise FormatError(what, where=document.where('wood', state), cure=cure)
+                raise FormatError(
+                    f'both damping_ratio and {state}',
+                    where=document.where('wood', state),
+                    cure='give damping_ratio only, or both states',
+                )
             wood[state] = ratio
     # A modulus from the file is measured, and not the estimate of the table.
     return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
