@@ -77,7 +77,9 @@ def test_a_tree_that_is_not_alive_is_left_out(tmp_path: Path, cells: tuple[str, 
     text = '\n'.join(['x,y,species,dbh [cm],CodeAlive', *rows, ''])
     scene = open_scene(written(tmp_path, text), warn=False)
     assert [each.name for each in scene.trees] == ['tree1', 'tree3']
-    assert any(f"1 dead or gone; line 3: CodeAlive is '{cells[1]}'" in each for each in scene.notes)
+    assert any(
+        f"1 dead or gone; line 3: CodeAlive is '{cells[1]}'" in each for each in scene.notes
+    )
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,9 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
             )
         names = [pattern]
     else:
-        names = [_NUMBER.sub(lambda found, k=k: found[0] % k, pattern) for k in range(count)]
+        before, after = _NUMBER.split(pattern)
+        (form,) = _NUMBER.findall(pattern)
+        names = [f'{before}{form % k}{after}' for k in range(count)]
     for name in names:
         if not may_overwrite:
             refuse_overwriting(name, '--output')

@@ -45,7 +45,7 @@ def _is_json(lines: Sequence[str]) -> bool:
     return first.startswith(('{', '[')) and not first.startswith('[0')
 
 
-def read_json_table(lines: list[str], source: str) -> TextTable:
+def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
     document = _document(lines)
     messages = document if isinstance(document, list) else [document]
@@ -247,4 +247,4 @@ def _unit(cell: Any) -> str:
     return cell if isinstance(cell, str) else ''
 
 
-JSON = Layout('json', _is_json, read_json_table)
+JSON = Layout('json', _is_json, _read_json_table)

@@ -51,7 +51,7 @@ def read_netcdf_wind(
     """
     point = [repr(degrees) for degrees in _point(at) or ()]
     cure = 'download it again'
-    found = bounded_arrays(winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
+    found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
     rows = WindRows(str(path), row_name='sample')
     velocity = found['velocity']
     good = np.isfinite(velocity).all(axis=1)
@@ -67,7 +67,7 @@ def read_netcdf_wind(
     return filled_means(record, turbulence, seed)
 
 
-def winds_of_netcdf(path: str, *at: str) -> Arrays:
+def _winds_of_netcdf(path: str, *at: str) -> Arrays:
     """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
     from netCDF4 import Dataset
 

@@ -18,7 +18,7 @@ from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.units import Velocity
 
-MAX_LINE = 1024
+_MAX_LINE = 1024
 """Largest length of a line [characters]."""
 
 
@@ -63,7 +63,7 @@ def line_of(
 
     `sent_sum` is its checksum, of one of these bodies, None without one.
     """
-    if length > MAX_LINE:
+    if length > _MAX_LINE:
         found: Velocity | str = f'a line of {length} characters'
     elif sent_sum is not None and sent_sum not in map(checksum_of, bodies):
         found = 'wrong checksum'

@@ -27,7 +27,7 @@ from tree_sway.files.row_times import Join, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
 
-MAX_VALUE = 1e12
+_MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
 
 
@@ -98,7 +98,7 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     with np.errstate(over='ignore'):
-        is_plausible = np.abs(values) * factors <= MAX_VALUE
+        is_plausible = np.abs(values) * factors <= _MAX_VALUE
     for row, column in np.argwhere(~is_plausible)[:1]:
         raise table.error(
             f'{columns[column]} is {values[row, column]:.3g}, which is implausible',
@@ -114,7 +114,7 @@ def _times(table: TextTable, columns: list[int], join: Join | None, factor: floa
     rows = list(range(len(table.texts)))
     times = row_times(table, columns, join, factor, rows).seconds
     stamps = table.cells(columns[0], rows)
-    for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
+    for row in np.flatnonzero(~(np.abs(times) <= _MAX_VALUE))[:1]:
         raise table.error(
             f"time is '{stamps[row][:40]}', neither seconds nor a date",
             row,

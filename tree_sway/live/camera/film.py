@@ -18,7 +18,7 @@ from tree_sway.extras import refuse_missing
 from tree_sway.live.camera.point_tracker import PointTracker, Sighting
 from tree_sway.twin.camera import Camera, DrawnWood
 
-PREFIX = 'camera:'
+_PREFIX = 'camera:'
 _BESIDE = 8
 """Width in pixels about the wood in which points are found."""
 _AGAIN = 3.0
@@ -29,7 +29,7 @@ _RED = (0, 0, 255)
 
 def is_camera(address: str) -> bool:
     """Whether an address of a sensor is that of a camera."""
-    return address.startswith(PREFIX)
+    return address.startswith(_PREFIX)
 
 
 class Film:
@@ -56,7 +56,7 @@ class Film:
         refuse_missing(['cv2'], f'simulate --motion {address}')
         cv2 = self._cv2 = import_module('cv2')
         self.name = address
-        source = address.removeprefix(PREFIX)
+        source = address.removeprefix(_PREFIX)
         self._source: int | str = int(source) if source.isdecimal() else source
         self.is_live = source.isdecimal() or '://' in source
         """Whether its pictures are of now."""

@@ -108,7 +108,7 @@ class PhyphoxPhone:
                 await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
 
     def _begin(self, config: Any) -> None:
-        self._buffers = buffers_of(config)
+        self._buffers = _buffers_of(config)
         if not self._buffers:
             title = str(object_of(config).get('title', ''))[:40]
             raise ConnectionError(
@@ -221,7 +221,7 @@ def _between(before: Sample, after: Sample, at: float) -> Numbers:
     return tuple(a + share * (b - a) for a, b in zip(before[1], after[1], strict=True))
 
 
-def buffers_of(config: Any) -> dict[str, Buffers]:
+def _buffers_of(config: Any) -> dict[str, Buffers]:
     """Return the buffers of acceleration and rate of an experiment, by ``/config``."""
     sources: dict[str, Buffers] = {}
     for each in map(object_of, list_of(object_of(config).get('inputs'))):

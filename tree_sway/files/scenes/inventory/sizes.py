@@ -20,9 +20,9 @@ from tree_sway.files.column_names import unit_factor
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.growth import height_of_stem
 
-TALLEST = 130.0
+_TALLEST = 130.0
 """Height that no tree exceeds [m]; the tallest known is 116 m."""
-THICKEST = 12.0
+_THICKEST = 12.0
 """Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
@@ -57,14 +57,14 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         columns.has_inches |= factor == _INCH
         own = values * factor / over
         _note_impossible(columns, index, own)
-        own[~((own > 0.0) & (own <= THICKEST))] = np.nan
+        own[~((own > 0.0) & (own <= _THICKEST))] = np.nan
         found = own if found is None else np.where(np.isnan(found), own, found)
     return found
 
 
 def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) -> None:
     """Say which stems are thicker than any tree's and so do not count."""
-    rows = np.flatnonzero(diameter > THICKEST).tolist()
+    rows = np.flatnonzero(diameter > _THICKEST).tolist()
     if not rows:
         return
     first = rows[0]
@@ -151,12 +151,12 @@ def heights_of(
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
     height = values * factor
-    for row in np.flatnonzero(height > TALLEST).tolist():
+    for row in np.flatnonzero(height > _TALLEST).tolist():
         detail = f'{name} is {values[row]:g}, a height of {height[row]:g} m'
         columns.leave_out(row, 'too high', f'{detail}; give its unit, as in height [cm]')
     for row in np.flatnonzero(height < 0.0).tolist():
         columns.leave_out(row, 'no height', f'a height of {height[row]:g} m')
-    height[~((height > 0.0) & (height <= TALLEST))] = np.nan
+    height[~((height > 0.0) & (height <= _TALLEST))] = np.nan
     return height
 
 

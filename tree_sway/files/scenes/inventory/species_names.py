@@ -19,7 +19,7 @@ from tree_sway.files.scenes.inventory.species_codes import (
     TITLES,
 )
 
-UNKNOWN = 'broadleaf'
+_UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
 """Trees of no known species."""
@@ -60,7 +60,7 @@ def species_of_rows(
     for name, count in counts.most_common():
         if name in given:
             continue
-        known[name], note = (species_named(UNKNOWN), '') if not name else species_like(name)
+        known[name], note = (species_named(_UNKNOWN), '') if not name else species_like(name)
         if not name:
             note = 'trees without a species are taken as a broadleaf of no known species'
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')

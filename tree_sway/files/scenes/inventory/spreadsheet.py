@@ -35,7 +35,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     without openpyxl.
     """
     cure = 'save it as .xlsx or .csv again'
-    arrays = bounded_arrays(rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
+    arrays = bounded_arrays(_rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
     sheets = [list(unpacked_rows(each)) for each in arrays.values()]
     tables = [
         (rows, number)
@@ -52,7 +52,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     return table_of_cells(rows[number], below, str(path), lines)
 
 
-def rows_of_spreadsheet(path: str) -> Arrays:
+def _rows_of_spreadsheet(path: str) -> Arrays:
     """Yield the rows of texts of each sheet."""
     from openpyxl import load_workbook
 

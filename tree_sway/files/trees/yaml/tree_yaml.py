@@ -56,7 +56,7 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     """Read a tree from YAML text; see `read_yaml_tree`."""
     document = read_yaml(text, source, tree_schema())
     values = document.values
-    species = species_of(document)
+    species = _species_of(document)
     name = values.get('name', default_name)
     tree = tree_from_segments(**branch_segments(document), name=name, species=species.key)
     learned = LearnedTree(**values['learned']) if 'learned' in values else None
@@ -89,10 +89,10 @@ def read_species(path: Path) -> Species:
     document = read_yaml(read_text(path), str(path), schema)
     if not {'species', 'wood'} & set(document.values):
         raise FormatError('no species and no wood', cure="add 'species' or 'wood' to it")
-    return species_of(document)
+    return _species_of(document)
 
 
-def species_of(document: YamlDocument) -> Species:
+def _species_of(document: YamlDocument) -> Species:
     """Return the table's species that a document names, with its wood in place of the table's."""
     values = document.values
     key = values.get('species', 'broadleaf')
