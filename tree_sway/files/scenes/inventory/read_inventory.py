@@ -168,10 +168,10 @@ def _leave_out_dead(columns: InventoryColumns) -> None:
         for row, text in enumerate(texts):
             if _DEAD.search(text) or (has_letters and text == 'D'):
                 columns.leave_out(row, 'dead or gone', columns.told(index, row))
-    index = columns.index_of('alive')
-    for row, text in enumerate(columns.texts_of('alive')):
-        if index is not None and text.lower() in _NOT:
-            columns.leave_out(row, 'dead or gone', columns.told(index, row))
+    for index in columns.table.find_all('alive'):
+        for row, text in enumerate(columns.texts(index)):
+            if text.lower() in _NOT:
+                columns.leave_out(row, 'dead or gone', columns.told(index, row))
 
 
 def _exposures(columns: InventoryColumns) -> list[str | None]:
