@@ -45,7 +45,9 @@ class TreeSwayError(Exception):
         return type(self)(self.what, where=where, cure=self.cure)
 
     def inside(self, whole: str) -> TreeSwayError:
-        """Return the error with its place as a part of a larger one, or of its option."""
+        """Return the error with its place as a part of a larger one, which it may name already."""
+        if self.where.startswith(shown(whole)):
+            return self
         if not self.where or whole == f'--{self.where}':
             return self.at(whole)
         return self.at(f'{whole}: {self.where}')

@@ -71,6 +71,33 @@ def test_a_dead_tree_of_forest_geo(
     )
 
 
+@pytest.mark.parametrize('cells', [('TRUE', 'FALSE'), ('1', '0'), ('yes', 'no')])
+def test_a_tree_that_is_not_alive_is_left_out(tmp_path: Path, cells: tuple[str, str]) -> None:
+    rows = [f'{i},0,oak,30,{each}' for i, each in enumerate((*cells, cells[0]))]
+    text = '\n'.join(['x,y,species,dbh [cm],CodeAlive', *rows, ''])
+    scene = open_scene(written(tmp_path, text), warn=False)
+    assert [each.name for each in scene.trees] == ['tree1', 'tree3']
+    assert any(
+        f"1 dead or gone; line 3: CodeAlive is '{cells[1]}'" in each for each in scene.notes
+    )
+
+
+@pytest.mark.parametrize(
+    ('head', 'row'),
+    [
+        ('time,wind speed [m/s],wind direction [deg]', '{},5,270'),
+        ('time,ax,ay,az', '{},0.1,0.2,9.8'),
+    ],
+)
+def test_a_table_over_time_is_named_where_a_tree_is_expected(
+    tmp_path: Path, head: str, row: str
+) -> None:
+    table = written(tmp_path, '\n'.join([head, *(row.format(i) for i in range(5)), '']))
+    for opened in (open_tree, open_scene):
+        with pytest.raises(FormatError, match=': a table of wind or of motion over time, not a'):
+            opened(table)
+
+
 def test_a_motion_that_was_simulated_is_no_tree(tmp_path: Path) -> None:
     table = tmp_path / 'sway.csv'
     seedling = str(HERE / 'data' / 'seedling.yaml')

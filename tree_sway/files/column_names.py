@@ -69,7 +69,7 @@ def folded(text: str) -> str:
     return ''.join(letter for letter in plain if letter.isalnum())
 
 
-def folded_unit(text: str) -> str:
+def _folded_unit(text: str) -> str:
     """Return a unit in lower case without spaces, with one sign for each of its parts."""
     unit = text.strip().lower().replace('º', '°').replace('ø', '°')
     unit = '°' if unit == '*' else unicodedata.normalize('NFKC', unit)  # HOBOlink has a star
@@ -77,10 +77,10 @@ def folded_unit(text: str) -> str:
 
 
 UNITS: dict[str, dict[str, float]] = {
-    kind: {folded_unit(unit): factor for unit, factor in units.items()}
+    kind: {_folded_unit(unit): factor for unit, factor in units.items()}
     for kind, units in _KNOWN['units'].items()
 }
-"""Units of each kind of quantity as `folded_unit` writes them, and their factors to SI."""
+"""Units of each kind of quantity as `_folded_unit` writes them, and their factors to SI."""
 
 SENDERS = tuple(map(folded, _KNOWN['senders']))
 """Names of what tells an instrument from another, folded."""
@@ -111,7 +111,7 @@ def unit_factor(kind: str, unit: str) -> float | None:
     scaled = _SCALED.fullmatch(unit.strip())
     if scaled is not None and kind in UNITS and (of_one := unit_factor(kind, scaled[2])):
         return float(scaled[1]) * of_one
-    return UNITS.get(kind, {}).get(folded_unit(unit))
+    return UNITS.get(kind, {}).get(_folded_unit(unit))
 
 
 def name_and_unit(column: str, kind: str) -> tuple[str, str]:

@@ -11,8 +11,9 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import motion_of, rank_of
 from tree_sway.files.foreign_file import foreign_file
+from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.text_file import read_head
 
 _POINTS = 8
@@ -21,6 +22,7 @@ _POINT = re.compile(r'\s*[-+]?\d+(\.\d+)?([\s,;]+[-+]?\d+(\.\d+)?){2,8}\s*')
 
 
 _OF_TREES = ('species', 'diameter', 'girth')
+_OF_WIND = ('wind_speed', 'wind_x')
 
 
 class UnknownFormatError(FormatError):
@@ -114,22 +116,18 @@ def format_of(
     head = read_head(path) if head is None else head
     what, cure = foreign_file(path, head) if kind == 'tree' and head else ('', '')
     if what:
-        raise FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
+        raise FormatError(f'{what}, not a {kind}', cure=cure)
     with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)
     for known in formats:
         if known.recognise(head):
             return known
     if any(known.recognise(with_points) for known in formats):
-        raise FormatError(
-            'numbers with a decimal comma', where=str(path), cure='export it with decimal points'
-        )
+        raise FormatError('numbers with a decimal comma', cure='export it with decimal points')
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
     if _is_header_alone(head):
-        raise FormatError(
-            'a header and no rows', where=str(path), cure='write rows below its header'
-        )
+        raise FormatError('a header and no rows', cure='write rows below its header')
     raise _unknown(path, kind, names)
 
 
@@ -148,10 +146,12 @@ def _is_cloud(head: str) -> bool:
     return len(lines) == _POINTS and all(map(_POINT.fullmatch, lines))
 
 
-def _names_trees(head: str) -> bool:
-    """Whether the first line names a column of species or of diameters."""
+def _names(head: str, quantities: Sequence[str], *, motion: bool = False) -> bool:
+    """Whether the first line names a column of some quantities, or of a motion with an axis."""
     cells = re.split('[,;\t]', head.partition('\n')[0])
-    return any(rank_of(cell, each) is not None for cell in cells for each in _OF_TREES)
+    if motion and any(found[2] for found in map(motion_of, cells) if found):
+        return True
+    return any(rank_of(cell, each) is not None for cell in cells for each in quantities)
 
 
 def _unknown(path: Path, kind: str, names: str) -> FormatError:
@@ -159,16 +159,20 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
     what, cure = foreign_file(path)
     if what:
         cures = filter(None, (cure, f'formats that are read: {names}'))
-        return FormatError(f'{what}, not a {kind}', where=str(path), cure='; '.join(cures))
+        return FormatError(f'{what}, not a {kind}', cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
     head = read_head(path) if kind == 'tree' else ''
     if _is_cloud(head):
         what, cure = foreign_file(Path('cloud.las'))
-        return FormatError(f'{what}, not a {kind}', where=str(path), cure=cure)
+        return FormatError(f'{what}, not a {kind}', cure=cure)
+    names_trees = _names(head, _OF_TREES)
+    if looks_like_wind(head) and _names(head, _OF_WIND, motion=True) and not names_trees:
+        what = 'a table of wind or of motion over time, not a tree'
+        return FormatError(what, cure='give it behind --wind or --motion, and a tree as TREE')
     if head:
         need = (
             'an inventory has columns for the place, the species, and the height or dbh; a tree '
             'as a table has segment, parent, x0, y0, z0, x1, y1, z1, d0, d1 [m]'
         )
-        cure = f'{need}; {cure}' if _names_trees(head) else f'{cure}; {need}'
-    return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)
+        cure = f'{need}; {cure}' if names_trees else f'{cure}; {need}'
+    return UnknownFormatError(f'a file of an unknown {kind} format', cure=cure)

@@ -4,10 +4,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
 import os
 from pathlib import Path
+from typing import Concatenate, ParamSpec, TypeVar
 
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, inside
+
+P = ParamSpec('P')
+T = TypeVar('T')
 
 
 def path_of(name: str | Path) -> Path:
@@ -30,6 +36,18 @@ def path_of(name: str | Path) -> Path:
         reason = error.strerror if isinstance(error, OSError) else error
         raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
     return path
+
+
+def of_file(read: Callable[Concatenate[Path, P], T]) -> Callable[Concatenate[str | Path, P], T]:
+    """Let a reader take its file as text, and its errors name the file where they do not."""
+
+    @wraps(read)
+    def named(path: str | Path, *arguments: P.args, **options: P.kwargs) -> T:
+        file = path_of(path)
+        with inside(str(file)):
+            return read(file, *arguments, **options)
+
+    return named  # type: ignore[return-value]
 
 
 def is_file(path: Path) -> bool:

@@ -91,8 +91,10 @@ class TextTable:
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
-        what = f"no column '{name}' among {', '.join(self.columns[:20])}"
-        raise self.error(what, cure='export it with its header line, unchanged')
+        raise self.error(
+            f"no column '{name}' among {', '.join(self.columns[:20])}",
+            cure='export it with its header line, unchanged',
+        )
 
     def known_factor(self, kind: str, unit: str) -> float:
         """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
@@ -102,8 +104,11 @@ class TextTable:
             usual: dict[float, str] = {}
             for name, each in UNITS[kind].items():
                 usual.setdefault(each, name)
-            cure = f'use {", ".join([*usual.values()][:_MOST_UNITS])}'
-            raise FormatError(what, where=f'{self.source}:{self.unit_line}', cure=cure)
+            raise FormatError(
+                what,
+                where=f'{self.source}:{self.unit_line}',
+                cure=f'use {", ".join([*usual.values()][:_MOST_UNITS])}',
+            )
         return factor
 
     def find(self, quantity: str) -> Column | None:
@@ -186,8 +191,10 @@ class TextTable:
                 rows = [row for row in map(self.split, self.texts) if len(row) == size]
                 found = sorted({row[index] for row in rows} - {'', name})
                 if len(found) > 1:
-                    what = f'rows of {len(found)} instruments: {", ".join(found[:4])}'
-                    raise self.error(what, cure='write a table for each')
+                    raise self.error(
+                        f'rows of {len(found)} instruments: {", ".join(found[:4])}',
+                        cure='write a table for each',
+                    )
 
     def family(
         self, number: str, parent: str, none: Sequence[int], what: str
@@ -304,13 +311,19 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     filled = list(filter(None, split_row(header, separator)))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
     if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):
-        what = f"no header: the first line, '{header[:40]}', has no names"
-        raise FormatError(what, where=f'{source}:{numbers[0]}', cure=_NAME)
+        raise FormatError(
+            f"no header: the first line, '{header[:40]}', has no names",
+            where=f'{source}:{numbers[0]}',
+            cure=_NAME,
+        )
     if any('"' in text for text in texts):
         numbers, texts = whole_rows(numbers, texts, separator)
         if len(texts) < 2:
-            what = 'no header and rows: a quote is open from the header to the end'
-            raise FormatError(what, where=f'{source}:{numbers[0]}', cure='close it in the header')
+            raise FormatError(
+                'no header and rows: a quote is open from the header to the end',
+                where=f'{source}:{numbers[0]}',
+                cure='close it in the header',
+            )
     # A line of one cell is a remark, with numbers of its own.
     first = '\n'.join(text for text in texts[1:50] if separator in text.rstrip(separator))
     if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):
@@ -323,9 +336,11 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     table = TextTable(columns, numbers[1:], texts[1:], split, source, first_line, first_line)
     long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
     if 2 * len(long) > len(table.texts):
-        what = f'more cells than the {len(columns)} columns of the header, as in most rows'
-        cure = 'name every column right above the rows, or export decimal commas as points'
-        raise table.error(what, long[0], cure)
+        raise table.error(
+            f'more cells than the {len(columns)} columns of the header, as in most rows',
+            long[0],
+            'name every column right above the rows, or export decimal commas as points',
+        )
     return table
 
 

@@ -29,19 +29,21 @@ _STAMP = re.compile(
     r'(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?', re.ASCII
 )
 _MONTHS = 'jan feb mar apr may jun jul aug sep oct nov dec'.split()
-_DATE = (
-    r'(?:(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)'
-    r'|(?P<first>\d\d?)(?P<sign>[-/.])(?P<second>\d\d?)[-/.](?P<last>\d{4}|\d\d)'
-    r'|(?P<year8>\d{4})(?P<month8>\d\d)(?P<day8>\d\d)'
-    r'|(?P<day_n>\d\d?)[- ](?P<name>[A-Za-z]{3})[a-z]*[-, ]+(?P<year_n>\d{4})'
-    r'|(?P<name_m>[A-Za-z]{3})[a-z]* (?P<day_m>\d\d?),? (?P<year_m>\d{4}))'
+_DATES = (
+    r'(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)',
+    r'(?P<first>\d\d?)(?P<sign>[-/.])(?P<second>\d\d?)[-/.](?P<year>\d{4}|\d\d)',
+    r'(?P<year>\d{4})(?P<month>\d\d)(?P<day>\d\d)',
+    r'(?P<day>\d\d?)[- ](?P<month>[A-Za-z]{3})[a-z]*[-, ]+(?P<year>\d{4})',
+    r'(?P<month>[A-Za-z]{3})[a-z]* (?P<day>\d\d?),? (?P<year>\d{4})',
 )
 _CLOCK = (
     r'(?:[T,_: ]*(?P<hour>\d\d?)(?::?(?P<minute>\d\d))?(?::?(?P<seconds>\d\d(?:[.,:]\d+)?))?'
     r'\s*(?P<half>[apAP]\.?(?:[mM]\.?)?)?)?'
 )
 _ZONE = r'\s*(?P<zone>Z|UTC|GMT|[+-]\d\d(?::?\d\d)?)?'
-_ANY = re.compile(_DATE + _CLOCK + _ZONE, re.ASCII)
+_FORMS = tuple(re.compile(date + _CLOCK + _ZONE, re.ASCII) for date in _DATES)
+_ORDERED = _FORMS[1]
+"""Dates such as 3/1/24, of which the order tells day and month."""
 _DIGITS = re.compile(r'(19|20)\d\d(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])([01]\d|2[0-4])?(\d\d){0,2}')
 _SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
 """Least number that is a time since 1970, and its unit in [s]: each is of 1973 or later."""
@@ -187,12 +189,10 @@ def _clocks(texts: Sequence[str]) -> Times:
 def _order(texts: Sequence[str]) -> tuple[bool, str]:
     """Whether dates such as 3/1/24 have the month first, and what was assumed."""
     first = next((text for text in texts if text), '')
-    match = _ANY.fullmatch(first)
-    if match is None or match['first'] is None:
+    match = _ORDERED.fullmatch(first)
+    if match is None or match['sign'] == '.':
         return False, ''
-    if match['sign'] == '.':
-        return False, ''
-    found = [each for text in texts if (each := _ANY.fullmatch(text)) and each['first']]
+    found = [each for text in texts if (each := _ORDERED.fullmatch(text))]
     if any(int(each['first']) > 12 for each in found):
         return False, ''
     if any(int(each['second']) > 12 for each in found):
@@ -218,8 +218,8 @@ def _microseconds(stamp: str, is_month_first: bool) -> int:
         with suppress(ValueError):  # 24:00, a month 13 or a February 30
             microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
             return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
-    general = _ANY.fullmatch(stamp)
-    return _NONE if general is None else _general(general, is_month_first)
+    forms = (form.fullmatch(stamp) for form in _FORMS)
+    return max((_general(each, is_month_first) for each in forms if each), default=_NONE)
 
 
 def _general(match: re.Match[str], is_month_first: bool) -> int:
@@ -245,20 +245,15 @@ def _general(match: re.Match[str], is_month_first: bool) -> int:
 
 
 def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, int, int]:
-    for name in ('name', 'name_m'):
-        if match[name]:
-            letter = '_n' if name == 'name' else '_m'
-            month = _MONTHS.index(match[name].lower()) + 1
-            return int(match[f'year{letter}']), month, int(match[f'day{letter}'])
-    for suffix in ('', '8'):
-        if match[f'year{suffix}']:
-            return tuple(int(match[f'{part}{suffix}']) for part in ('year', 'month', 'day'))  # type: ignore[return-value]
-    year = int(match['last'])
-    if len(match['last']) == 2:
+    year = int(match['year'])
+    if len(match['year']) == 2:
         year += 2000 if year < 70 else 1900
-    one = int(match['first'])
-    two = int(match['second'])
-    return (year, one, two) if is_month_first else (year, two, one)
+    if match.re is _ORDERED:
+        one, two = int(match['first']), int(match['second'])
+        return (year, one, two) if is_month_first else (year, two, one)
+    month = match['month'].lower()
+    number = _MONTHS.index(month) + 1 if month.isalpha() else int(month)
+    return year, number, int(match['day'])
 
 
 def _offset(zone: str) -> int:

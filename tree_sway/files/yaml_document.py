@@ -94,8 +94,9 @@ def read_yaml(
         where = f'{source}:{mark.line + 1}' if mark is not None else source
         raise FormatError(f'not YAML: {error.problem}', where=where, cure='correct it') from None
     except yaml.YAMLError as error:
-        what = f'not YAML: {str(error).splitlines()[0]}'
-        raise FormatError(what, where=source, cure='restore it from a copy') from None
+        raise FormatError(
+            f'not YAML: {str(error).splitlines()[0]}', where=source, cure='restore it from a copy'
+        ) from None
     if root is None:
         raise FormatError('no document', where=source, cure=f'describe {expected} in it')
     document = YamlDocument(_value(root, schema, schema, source), source, root, schema)
@@ -139,11 +140,17 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         for key, child in node.value:
             line = key.start_mark.line + 1
             if not isinstance(key, yaml.ScalarNode):
-                what = f'{_KINDS[_TYPES[type(key)]]} as a key'
-                raise FormatError(what, where=f'{source}:{line}', cure='use a word as the key')
+                raise FormatError(
+                    f'{_KINDS[_TYPES[type(key)]]} as a key',
+                    where=f'{source}:{line}',
+                    cure='use a word as the key',
+                )
             if key.value in values:
-                what = f"key '{key.value}' occurs twice, first in line {lines[key.value]}"
-                raise FormatError(what, where=f'{source}:{line}', cure='remove one of them')
+                raise FormatError(
+                    f"key '{key.value}' occurs twice, first in line {lines[key.value]}",
+                    where=f'{source}:{line}',
+                    cure='remove one of them',
+                )
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
             lines[key.value] = child.start_mark.line + 1
         return values

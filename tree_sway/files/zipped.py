@@ -33,18 +33,19 @@ def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
             files = [each for each in archive.infolist() if not each.is_dir()]
             found = [each for each in files if Path(each.filename).suffix.lower() in _SUFFIXES]
             if not found or len(files) > _MOST_FILES:
-                what = f'a zip of {len(files)} files, {len(found)} of them tables'
-                raise FormatError(what, where=str(path), cure=cure)
+                raise FormatError(
+                    f'a zip of {len(files)} files, {len(found)} of them tables', cure=cure
+                )
             left = _MOST_BYTES
             for each in found:
                 with archive.open(each) as packed:
                     data = packed.read(left + 1)
                 left -= len(data)
                 if left < 0:
-                    what = f'tables of more than {_MOST_BYTES >> 20} MiB in a zip'
-                    raise FormatError(what, where=str(path), cure=cure)
+                    raise FormatError(
+                        f'tables of more than {_MOST_BYTES >> 20} MiB in a zip', cure=cure
+                    )
                 name = f'{path}/{each.filename}'
                 yield name, table_lines(decoded(data, 'replace'), Path(name))
     except (BadZipFile, OSError, RuntimeError, NotImplementedError, EOFError, zlib.error) as error:
-        what = f'a zip that cannot be read: {reason_of(error)}'
-        raise FormatError(what, where=str(path), cure=cure) from None
+        raise FormatError(f'a zip that cannot be read: {reason_of(error)}', cure=cure) from None

@@ -7,7 +7,7 @@ from __future__ import annotations
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.stream_lines import Question
 
-SILENCE = 10.0
+_SILENCE = 10.0
 """Time [s] without a message after which a connection is made again."""
 
 
@@ -23,6 +23,6 @@ def question_of(address: SourceAddress) -> Question:
     return Question(f'{text}{end}'.encode(), every)
 
 
-def silence_of(address: SourceAddress, default: float = SILENCE) -> float:
+def silence_of(address: SourceAddress, default: float = _SILENCE) -> float:
     """Read the option ``silence`` [s]."""
     return address.number('silence', default, 0.1, 86_400.0)

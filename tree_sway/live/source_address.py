@@ -149,7 +149,10 @@ def read_source_address(text: str) -> SourceAddress:
     except ValueError as error:
         raise ParameterError(f'not an address ({error})', where=text) from None
     if scheme is None:
-        what = f"'{text}' does not begin with a kind of source"
-        raise ParameterError(what, where='sensor', cure=f'give {_meant(text)}')
+        raise ParameterError(
+            f"'{text}' does not begin with a kind of source",
+            where='sensor',
+            cure=f'give {_meant(text)}',
+        )
     options = dict(parse_qsl(parts.fragment or parts.query, keep_blank_values=True))
     return SourceAddress(text, scheme[1], parts, options)

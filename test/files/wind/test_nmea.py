@@ -73,7 +73,7 @@ def test_left_and_right_of_the_bow(body, velocity):
         ('$IIVWR,190.0,L,5.0,M', "no usable angle up to 180: '190.0'"),
         ('$IIVWR,90.0,X,5.0,M', "no side L or R: 'X'"),
         ('$IIVWR,90.0,R,5.0,C', 'no speed with a unit'),
-        ('$IIVWT,90.0,R,-5.0,M', 'speed is -5 m/s'),
+        ('$IIVWT,90.0,R,-5.0,M', "no usable speed: '-5.0'"),
         ('$IIMWV,,R,12.0,N,A', 'no angle, the field is empty'),
         ('$IIMWV,270,R,,N,A', 'no speed, the field is empty'),
         ('$IIMWV,270,R,12.0,X,A', "no unit K, M, N or S: 'X'"),

@@ -142,8 +142,11 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
         if not 0.0 < value < math.inf:
-            what = f'{value:g} is not a finite number above 0'
-            raise ParameterError(what, where=f'--{name}', cure='give an SI value')
+            raise ParameterError(
+                f'{value:g} is not a finite number above 0',
+                where=f'--{name}',
+                cure='give an SI value',
+            )
     return changed
 
 

@@ -86,8 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':
-        cure = 'write .obj files'
-        raise ParameterError(f"'{output}' is of no moment", where='--at', cure=cure)
+        raise ParameterError(f"'{output}' is of no moment", where='--at', cure='write .obj files')
     refuse_unused_wind(arguments)
     if arguments.at is None and (arguments.wind is not None or arguments.speed is not None):
         refuse_unused('--speed' if arguments.wind is None else '--wind', '--at SECONDS')
@@ -116,10 +115,8 @@ def run(arguments: argparse.Namespace) -> int:
         species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, species, leaves)
-    written = str(paths[0]) if suffix == '.obj' else output
-    if count > 1:
-        written = f'{paths[0]} to {paths[-1].name}, {count} moments'
-    print(what_was_written(written, scene.tree))
+    written = f'{paths[0]} to {paths[-1].name}, {count} moments' if count > 1 else paths[0]
+    print(what_was_written(str(written), scene.tree))
     return 0
 
 
@@ -174,10 +171,8 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
     if suffix in (MODEL_SUFFIX, NATIVE_SUFFIX):
         with waiting('preparing the tree'):
             model = prepare(scene.tree, scene.species, solved(settings))
-        if suffix == MODEL_SUFFIX:
-            write_model(arguments.output, model)
-            return
-        write_native_model(arguments.output, model)
+        write = write_model if suffix == MODEL_SUFFIX else write_native_model
+        write(arguments.output, model)
         return
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)

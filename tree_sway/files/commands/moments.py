@@ -34,8 +34,11 @@ def moments_of(text: str) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) not in (1, 3) or not all(map(math.isfinite, numbers)):
-        cure = 'give a time such as 5, or from, to and every such as 0:10:0.1'
-        raise ParameterError(f"'{text}' names no moments", where='--at', cure=cure)
+        raise ParameterError(
+            f"'{text}' names no moments",
+            where='--at',
+            cure='give a time such as 5, or from, to and every such as 0:10:0.1',
+        )
     start = within('--at', numbers[0], 0.0, _LATEST, 's')
     if len(numbers) == 1:
         return [start]
@@ -59,15 +62,16 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
     """
     if len(_NUMBER.findall(pattern)) != 1:
         if count > 1:
-            cure = 'name files with a number in their names, such as scene_%03d.obj'
-            raise ParameterError(f'{count} moments in one file', where=pattern, cure=cure)
+            raise ParameterError(
+                f'{count} moments in one file',
+                where=pattern,
+                cure='name files with a number in their names, such as scene_%03d.obj',
+            )
         names = [pattern]
     else:
-        found = _NUMBER.search(pattern)
-        assert found is not None
-        before = pattern[: found.start()]
-        after = pattern[found.end() :]
-        names = [f'{before}{found[0] % k}{after}' for k in range(count)]
+        before, after = _NUMBER.split(pattern)
+        (form,) = _NUMBER.findall(pattern)
+        names = [f'{before}{form % k}{after}' for k in range(count)]
     for name in names:
         if not may_overwrite:
             refuse_overwriting(name, '--output')

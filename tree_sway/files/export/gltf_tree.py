@@ -60,8 +60,11 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     Raises a `FormatError` for more segments than a skin can have joints.
     """
     if tree.n_segments > _MAX_JOINTS:
-        what = f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin'
-        raise FormatError(what, where=tree.name, cure='convert its trees one by one')
+        raise FormatError(
+            f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin',
+            where=tree.name,
+            cure='convert its trees one by one',
+        )
     document = GltfDocument(_GENERATOR)
     poses = tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
@@ -79,10 +82,8 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
             material,
             tree.species,
             mesh,
-            POSITION=document.add_array(
-                points.astype(np.float32), target=ARRAY_BUFFER, bounds=True
-            ),
-            NORMAL=document.add_array(normals.astype(np.float32), target=ARRAY_BUFFER),
+            POSITION=_add_floats(document, points, bounds=True),
+            NORMAL=_add_floats(document, normals),
         )
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
@@ -123,9 +124,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
     size = _MOVED * float((high - low)[:2].min())
     middle = 0.5 * (low + high)
-    greatest = np.array([[np.abs(change).max() for change in each] for each in changes]).max(
-        axis=0
-    )
+    greatest = np.max([[np.abs(change).max() for change in each] for each in changes], axis=0)
     unit = storm * size / greatest
     names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
     primitives = []
@@ -135,13 +134,11 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
             material,
             tree.species,
             mesh,
-            POSITION=document.add_array(
-                ((points - middle) / size).astype(np.float32), target=ARRAY_BUFFER, bounds=True
-            ),
-            NORMAL=_add_shares(document, _normals(mesh, rest), np.int8),
+            POSITION=_add_floats(document, (points - middle) / size, bounds=True),
+            NORMAL=_add_shares(document, _normals(mesh, rest)),
         )
         primitive['targets'] = [
-            {'POSITION': _add_shares(document, change / most, np.int8, bounds=True)}
+            {'POSITION': _add_shares(document, change / most, bounds=True)}
             for change, most in zip(moved, greatest, strict=True)
         ]
         primitives.append(primitive)
@@ -182,10 +179,14 @@ def _normals(mesh: TreeMesh, poses: Floats) -> Floats:
     return np.asarray(Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals))
 
 
-def _add_shares(document: GltfDocument, values: Floats, kind: Any, **options: bool) -> int:
-    """Add values of vertices, within -1 .. 1, as whole numbers."""
-    most = np.iinfo(kind).max
-    whole = np.rint(np.clip(values, -1.0, 1.0) * most).astype(kind)
+def _add_floats(document: GltfDocument, values: Floats, **options: bool) -> int:
+    """Add values of vertices in single precision."""
+    return document.add_array(values.astype(np.float32), target=ARRAY_BUFFER, **options)
+
+
+def _add_shares(document: GltfDocument, values: Floats, **options: bool) -> int:
+    """Add values of vertices, within -1 .. 1, as whole numbers of a byte."""
+    whole = np.rint(np.clip(values, -1.0, 1.0) * 127).astype(np.int8)
     return document.add_array(whole, target=ARRAY_BUFFER, is_share=True, **options)
 
 
@@ -201,7 +202,7 @@ def _primitive(
     return {
         'attributes': {
             **attributes,
-            'TEXCOORD_0': document.add_array(mesh.texture.astype(np.float32), target=ARRAY_BUFFER),
+            'TEXCOORD_0': _add_floats(document, mesh.texture),
         },
         'indices': document.add_array(
             mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
@@ -238,8 +239,9 @@ def _swung(
     """Poses with one coordinate at plus and at minus a share of its unit."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
-    there = simulator.place_rotations(basis.rotations(coordinates)).copy()
-    return there, simulator.place_rotations(basis.rotations(-coordinates)).copy()
+    rotations = basis.rotations(coordinates), basis.rotations(-coordinates)
+    there, back = (simulator.place_rotations(each).copy() for each in rotations)
+    return there, back
 
 
 def _change(material: str, mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:

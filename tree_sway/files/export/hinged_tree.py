@@ -128,30 +128,29 @@ def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) 
     if has_twist_and_weight:
         moment, weight_stiffness = _weight(tree, bodies, hinges)
     circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
+    stiffness = sparse.diags(springs.ravel()).tocsc()
     factor, share = _factor_on_springs(
-        springs, weight_stiffness, mass_matrix, circular_frequency**2
+        stiffness, weight_stiffness, mass_matrix, circular_frequency**2
     )
     damping_ratio = simulator.check_tuning().damping_ratio
     damping_time = 2.0 * damping_ratio / (circular_frequency * share)
-    fastest = factor * _fastest(springs, mass_matrix)
+    fastest = factor * _fastest(stiffness, mass_matrix)
     limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(fastest))
-    stiffness = factor * springs
+    springs = factor * springs
     return HingedTree(
         names=plain_names(tree),
         poses=poses_on_parents(tree, tree.rest_poses),
-        mass=bodies.mass,
-        centre=bodies.centre,
-        inertia=bodies.inertia,
-        stiffness=stiffness,
-        reference=-moment / stiffness,
+        stiffness=springs,
+        reference=-moment / springs,
         drag_area=_drag_area(simulator),
         damping_time=damping_time,
         largest_step=_MARGIN * limit,
+        **bodies._asdict(),
     )
 
 
 def _factor_on_springs(
-    springs: Floats,
+    stiffness: sparse.csc_matrix,
     weight_stiffness: sparse.csc_matrix,
     mass_matrix: sparse.csc_matrix,
     wanted: float,
@@ -163,7 +162,6 @@ def _factor_on_springs(
     mode. The second figure is the share of the mode's stiffness that springs have; the rest, below
     0 where the tree stands, is that of the weight. A `TreeError` if none is found.
     """
-    stiffness = sparse.diags(springs.ravel()).tocsc()
     factor = 1.0
     for _ in range(_MOST_TRIALS):
         total = factor * stiffness + weight_stiffness
@@ -178,9 +176,8 @@ def _factor_on_springs(
     )
 
 
-def _fastest(springs: Floats, mass_matrix: sparse.csc_matrix) -> float:
+def _fastest(stiffness: sparse.csc_matrix, mass_matrix: sparse.csc_matrix) -> float:
     """Highest squared circular frequency [1/s^2] on springs."""
-    stiffness = sparse.diags(springs.ravel()).tocsc()
     # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
     factors = splu(
         mass_matrix, 'MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options={'SymmetricMode': True}
@@ -221,15 +218,20 @@ class _Points(NamedTuple):
     part: Floats
     diameter: Floats
 
-    @classmethod
-    def of(cls, tree: Tree) -> _Points:
-        """Return the points of a tree."""
-        point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
-        share = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])[None]
-        part = tree.length[:, None, None] * 0.25 * weight
-        taper = tree.tip_diameter - tree.base_diameter
-        diameter = tree.base_diameter[:, None, None] + taper[:, None, None] * share
-        return cls(share, part, diameter)
+
+def _points(tree: Tree) -> _Points:
+    """Return the points of a tree."""
+    point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
+    share = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])[None]
+    length, base, tip = (
+        each[:, None, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
+    )
+    return _Points(share, length * 0.25 * weight, base + (tip - base) * share)
+
+
+def _frames(tree: Tree) -> Floats:
+    """Axes of the segments at rest in the columns of matrices, (n, 3, 3)."""
+    return np.asarray(Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix())
 
 
 def _springs(tree: Tree, wood: Species, root_stiffness: float, n_axes: int) -> Floats:
@@ -244,7 +246,7 @@ def _springs(tree: Tree, wood: Species, root_stiffness: float, n_axes: int) -> F
 
 def _compliance(tree: Tree, modulus: float) -> Floats:
     """Rotation of each hinge per moment [rad/N/m], (n,)."""
-    points = _Points.of(tree)
+    points = _points(tree)
     bend = points.part / (modulus * round_section(points.diameter))
     parent = tree.segment_parent
     branch = tree.branch_of_segment
@@ -269,7 +271,7 @@ class _Bodies(NamedTuple):
 
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     """Bodies of the segments with leaves of a mass per length [kg/m], (n,)."""
-    points = _Points.of(tree)
+    points = _points(tree)
     along = tree.length[:, None, None] * points.share
     wood = density * np.pi / 4.0 * points.diameter**2 * points.part
     total = wood + leaf_line[:, None, None] * points.part
@@ -295,7 +297,7 @@ class _Hinges(NamedTuple):
     @classmethod
     def of(cls, tree: Tree, n_axes: int) -> _Hinges:
         """Return the hinges of a tree about y, z and, of three, x of its segments."""
-        frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
+        frame = _frames(tree)
         axes = np.stack([frame[:, :, 1], frame[:, :, 2], frame[:, :, 0]], axis=1)[:, :n_axes]
         chains: list[list[int]] = []
         for segment, parent in enumerate(tree.segment_parent.tolist()):
@@ -312,8 +314,7 @@ class _Hinges(NamedTuple):
 
 def _levers(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> Floats:
     """Centres of the bodies from the hinges that carry them [m], (p, 3)."""
-    along = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
-    centre = tree.start + bodies.centre[:, None] * along
+    centre = tree.start + bodies.centre[:, None] * _frames(tree)[:, :, 0]
     return np.asarray(centre[hinges.body] - tree.start[hinges.hinge])
 
 
@@ -325,11 +326,10 @@ def _mass_matrix(tree: Tree, bodies: _Bodies, hinges: _Hinges) -> sparse.csc_mat
     root to each body.
     """
     n = tree.n_segments
-    frame = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
     axes = hinges.axes[hinges.hinge]
     lever = _levers(tree, bodies, hinges)
     speed = np.cross(axes, lever[:, None])
-    spin = np.einsum('kij,khi->khj', frame[hinges.body], axes)  # about the body's own axes
+    spin = np.einsum('kij,khi->khj', _frames(tree)[hinges.body], axes)  # about the body's own axes
     column = hinges.numbers(hinges.hinge).ravel()
     row = np.repeat(hinges.body, axes.shape[1])
     size = axes.shape[1] * n

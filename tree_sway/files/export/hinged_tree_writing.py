@@ -39,9 +39,6 @@ _BODY = """\
 {joints}
 <geom fromto="0 0 0 {length} 0 0" size="{radius}" fluidcoef="{drag} 0 0 0 0"/>"""
 
-_JOINT = """\
-<joint name="{name}_{axis}" axis="{along}" stiffness="{stiffness}" springref="{reference}" \
-damping="{damping}"/>"""
 _AXES = {'y': '0 1 0', 'z': '0 0 1', 'x': '1 0 0'}
 """Axes of the hinges of a segment in its frame, in the order of `HingedTree.stiffness`."""
 
@@ -78,35 +75,34 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
         text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
         inside[int(tree.segment_parent[body])].append(text)
     # Geometries collide where a bit of one is in the other's mask: segments have none.
-    return '\n'.join(
-        [
-            f'<mujoco model={_quoted(tree.name)}>',
-            _comment(simulator, hinged),
-            '<compiler angle="radian"/>',
-            f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler" '
-            f'density="{AIR_DENSITY:g}" wind="0 0 0"/>',
-            '<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1" '
-            'fluidshape="ellipsoid"/></default>',
-            '<worldbody>',
-            *inside[-1],
-            '</worldbody>\n</mujoco>\n',
-        ]
-    )
+    bodies = '\n'.join(inside[-1])
+    step = min(_USUAL_STEP, hinged.largest_step)
+    return f"""\
+<mujoco model={_quoted(tree.name)}>
+{_comment(simulator, hinged)}
+<compiler angle="radian"/>
+<option timestep="{step:g}" integrator="Euler" density="{AIR_DENSITY:g}" wind="0 0 0"/>
+<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1" fluidshape="ellipsoid"/></default>
+<worldbody>
+{bodies}
+</worldbody>
+</mujoco>
+"""
 
 
 def sdf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
     tree = simulator.tree
     hinged = hinged_tree(simulator, has_twist_and_weight=False)
-    return '\n'.join(
-        [
-            '<sdf version="1.9">',
-            _comment(simulator, hinged),
-            f'<model name={_quoted(tree.name)}>',
-            *(_LINK.format_map(values) for values in _values(tree, hinged)),
-            '</model>\n</sdf>\n',
-        ]
-    )
+    links = '\n'.join(_LINK.format_map(values) for values in _values(tree, hinged))
+    return f"""\
+<sdf version="1.9">
+{_comment(simulator, hinged)}
+<model name={_quoted(tree.name)}>
+{links}
+</model>
+</sdf>
+"""
 
 
 def _quoted(name: str) -> str:
@@ -147,17 +143,13 @@ def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
 
 def _joints(hinged: HingedTree, segment: int) -> str:
     """Return the joints of a segment as MJCF."""
-    stiffness = hinged.stiffness[segment]
-    reference = hinged.reference[segment]
-    joints = []
-    for hinge, (axis, along) in enumerate(_AXES.items()):
-        values = {
-            'stiffness': _text(stiffness[hinge]),
-            'damping': _text(hinged.damping_time * stiffness[hinge]),
-            'reference': _text(reference[hinge]),
-        }
-        joints.append(_JOINT.format(name=hinged.names[segment], axis=axis, along=along, **values))
-    return '\n'.join(joints)
+    pairs = zip(hinged.stiffness[segment], hinged.reference[segment], strict=True)
+    return '\n'.join(
+        f'<joint name="{hinged.names[segment]}_{axis}" axis="{along}" '
+        f'stiffness="{_text(stiffness)}" springref="{_text(reference)}" '
+        f'damping="{_text(hinged.damping_time * stiffness)}"/>'
+        for (axis, along), (stiffness, reference) in zip(_AXES.items(), pairs, strict=True)
+    )
 
 
 def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:

@@ -33,11 +33,16 @@ def refuse_no_table(path: Path) -> None:
     """
     suffix = path.suffix.lower()
     if suffix not in _TABLE_SUFFIXES:
-        cure = f'end it with one of: {", ".join(_TABLE_SUFFIXES)}'
-        raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
+        raise FormatError(
+            f"'{path.suffix}' is no table",
+            where=str(path),
+            cure=f'end it with one of: {", ".join(_TABLE_SUFFIXES)}',
+        )
     if suffix == '.parquet' and find_spec('pyarrow') is None:
-        cure = f'{cure_of_missing("pyarrow")}; or end the name with .csv'
-        raise MissingDependencyError('Parquet needs pyarrow', cure=cure)
+        raise MissingDependencyError(
+            'Parquet needs pyarrow',
+            cure=f'{cure_of_missing("pyarrow")}; or end the name with .csv',
+        )
 
 
 def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:

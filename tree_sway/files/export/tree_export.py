@@ -56,8 +56,11 @@ def write_tree(
         tree, species = tree_and_species(tree, species)
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
-        what = f"cannot write '{Path(path).suffix}'"
-        raise FormatError(what, where=str(path), cure=f'use {", ".join(SUFFIXES)}')
+        raise FormatError(
+            f"cannot write '{Path(path).suffix}'",
+            where=str(path),
+            cure=f'use {", ".join(SUFFIXES)}',
+        )
     if suffix == '.glb':
         from tree_sway.files.export.gltf_tree import skinned_tree  # it takes long to load
 

@@ -65,7 +65,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     around = np.stack([np.zeros(SIDES), np.cos(angle), np.sin(angle)], axis=1)
     base = 0.5 * tree.base_diameter
     tip = 0.5 * tree.tip_diameter
-    rings = np.stack([base[:, None, None] * around, tip[:, None, None] * around], axis=1)
+    rings = np.stack([base, tip], axis=1)[:, :, None, None] * around
     rings[:, 1, :, 0] = tree.length[:, None]
     slope = np.arctan2(base - tip, tree.length)[:, None, None]
     outward = np.cos(slope) * around + np.sin(slope) * np.array([1.0, 0.0, 0.0])
@@ -78,14 +78,12 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
-    first = np.zeros_like(fan)
-    last = np.full_like(fan, SIDES)
     triangles = np.vstack(
         [
             np.stack([i, j, j + SIDES], axis=1),
             np.stack([i, j + SIDES, i + SIDES], axis=1),
-            np.stack([first, fan + 1, fan], axis=1),
-            np.stack([last, last + fan, last + fan + 1], axis=1),
+            np.stack([0 * fan, fan + 1, fan], axis=1),
+            np.stack([0 * fan, fan, fan + 1], axis=1) + SIDES,
         ]
     )
     return TreeMesh(

@@ -49,37 +49,53 @@ def usd_of_tree(
     rest = tree.rest_poses
     name = plain_name(tree.name)
     look = look_of(tree.species)
-    joints = f'uniform token[] joints = {_strings(_paths(tree))}'
-    last = len(frames) - 1
-    parts = [
-        f'#usda 1.0\n(\n    defaultPrim = "{name}"\n    upAxis = "Z"\n    metersPerUnit = 1\n'
-        f'    timeCodesPerSecond = {RATE}\n    startTimeCode = 0\n    endTimeCode = {last}\n)\n',
-        f'def SkelRoot "{name}" (prepend apiSchemas = ["SkelBindingAPI"])\n{{',
-        'def Skeleton "Skeleton" (prepend apiSchemas = ["SkelBindingAPI", '
-        '"DynamicWindSkeletonAPI"])\n{',
-        joints,
-        f'uniform matrix4d[] bindTransforms = {_matrices(rest)}',
-        f'uniform matrix4d[] restTransforms = {_matrices(poses_on_parents(tree, rest))}',
-        f'rel skel:animationSource = </{name}/Sway>',
-        *_wind_attributes(simulator),
-        '}\ndef SkelAnimation "Sway"\n{',
-        joints,
-        # A segment has a fixed place on its parent, and rotates there.
-        f'float3[] translations = {_tuples(frames[0][:, :3])}',
-        f'half3[] scales = {_tuples(np.ones((tree.n_segments, 3)))}',
-        'quatf[] rotations.timeSamples = {',
-        *(f'{k}: {_tuples(frame[:, [6, 3, 4, 5]], "%.4f")},' for k, frame in enumerate(frames)),
-        '}\n}',
-        'def Scope "Looks"\n{',
-        _material('Wood', pictures[0], look.bark, name),
-        *([_material('Leaves', pictures[1], (1.0, 1.0, 1.0), name)] if leaves is not None else []),
-        '}',
-        _mesh('Wood', wood_mesh(tree), rest, look.bark, name),
-    ]
+    joints = _strings(_paths(tree))
+    turns = (_tuples(frame[:, [6, 3, 4, 5]], '%.4f') for frame in frames)
+    samples = '\n'.join(f'{number}: {turn},' for number, turn in enumerate(turns))
+    materials = _material('Wood', pictures[0], look.bark, name)
+    meshes = _mesh('Wood', wood_mesh(tree), rest, look.bark, name)
     if leaves is not None:
+        materials += '\n' + _material('Leaves', pictures[1], (1.0, 1.0, 1.0), name)
         crown = crown_mesh(tree, leaves, look.spray, _SHOOTS)
-        parts.append(_mesh('Leaves', crown, rest, look.green, name))
-    return '\n'.join([*parts, '}\n'])
+        meshes += '\n' + _mesh('Leaves', crown, rest, look.green, name)
+    # A segment has a fixed place on its parent, and rotates there.
+    return f"""\
+#usda 1.0
+(
+    defaultPrim = "{name}"
+    upAxis = "Z"
+    metersPerUnit = 1
+    timeCodesPerSecond = {RATE}
+    startTimeCode = 0
+    endTimeCode = {len(frames) - 1}
+)
+
+def SkelRoot "{name}" (prepend apiSchemas = ["SkelBindingAPI"])
+{{
+def Skeleton "Skeleton" (prepend apiSchemas = ["SkelBindingAPI", "DynamicWindSkeletonAPI"])
+{{
+uniform token[] joints = {joints}
+uniform matrix4d[] bindTransforms = {_matrices(rest)}
+uniform matrix4d[] restTransforms = {_matrices(poses_on_parents(tree, rest))}
+rel skel:animationSource = </{name}/Sway>
+{_wind_attributes(simulator)}
+}}
+def SkelAnimation "Sway"
+{{
+uniform token[] joints = {joints}
+float3[] translations = {_tuples(frames[0][:, :3])}
+half3[] scales = {_tuples(np.ones((tree.n_segments, 3)))}
+quatf[] rotations.timeSamples = {{
+{samples}
+}}
+}}
+def Scope "Looks"
+{{
+{materials}
+}}
+{meshes}
+}}
+"""
 
 
 def _paths(tree: Tree) -> list[str]:
@@ -119,19 +135,16 @@ def influences(simulator: SwaySimulator) -> Floats:
     return np.asarray(mean / mean.max())
 
 
-def _wind_attributes(simulator: SwaySimulator) -> list[str]:
-    groups = branch_groups(simulator.tree)
+def _wind_attributes(simulator: SwaySimulator) -> str:
     found = influences(simulator)
-    values = {
-        'token[] unreal:dynamicWind:jointNames': _strings(plain_names(simulator.tree)),
-        'int[] unreal:dynamicWind:jointSimulationGroups': groups.tolist(),
-        'float[] unreal:dynamicWind:simulationGroupInfluences': found.round(4).tolist(),
-        'float[] unreal:dynamicWind:simulationGroupShiftTops': [0.0] * len(found),
-        'int[] unreal:dynamicWind:trunkSimulationGroups': [0],
-        'bool unreal:dynamicWind:isGroundCover': 'false',
-        'float unreal:dynamicWind:gustAttenuation': 0.0,
-    }
-    return [f'uniform {name} = {value}' for name, value in values.items()]
+    return f"""\
+uniform token[] unreal:dynamicWind:jointNames = {_strings(plain_names(simulator.tree))}
+uniform int[] unreal:dynamicWind:jointSimulationGroups = {branch_groups(simulator.tree).tolist()}
+uniform float[] unreal:dynamicWind:simulationGroupInfluences = {found.round(4).tolist()}
+uniform float[] unreal:dynamicWind:simulationGroupShiftTops = {[0.0] * len(found)}
+uniform int[] unreal:dynamicWind:trunkSimulationGroups = [0]
+uniform bool unreal:dynamicWind:isGroundCover = false
+uniform float unreal:dynamicWind:gustAttenuation = 0.0"""
 
 
 def _mesh(
@@ -141,56 +154,61 @@ def _mesh(
     points = mesh.placed(poses)
     normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
     one_each = 'elementSize = 1\n    interpolation = "vertex"'
-    return '\n'.join(
-        [
-            f'def Mesh "{kind}" (prepend apiSchemas = '
-            '["SkelBindingAPI", "MaterialBindingAPI"])\n{',
-            f'rel material:binding = </{root}/Looks/{kind}>',
-            f'float3[] extent = {_tuples(np.array([points.min(axis=0), points.max(axis=0)]))}',
-            f'bool doubleSided = {int(kind == "Leaves")}',
-            'uniform token subdivisionScheme = "none"',
-            f'int[] faceVertexCounts = {[3] * len(mesh.triangles)}',
-            f'int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}',
-            f'point3f[] points = {_tuples(points)}',
-            f'normal3f[] normals = {_tuples(normals)} (interpolation = "vertex")',
-            f'texCoord2f[] primvars:st = {_tuples(mesh.texture)} (interpolation = "vertex")',
-            f'color3f[] primvars:displayColor = {_tuples(np.array([color]))}',
-            f'int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})',
-            f'float[] primvars:skel:jointWeights = {[1] * len(mesh.segment)} ({one_each})',
-            f'rel skel:skeleton = </{root}/Skeleton>\n}}',
-        ]
-    )
+    return f"""\
+def Mesh "{kind}" (prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"])
+{{
+rel material:binding = </{root}/Looks/{kind}>
+float3[] extent = {_tuples(np.array([points.min(axis=0), points.max(axis=0)]))}
+bool doubleSided = {int(kind == 'Leaves')}
+uniform token subdivisionScheme = "none"
+int[] faceVertexCounts = {[3] * len(mesh.triangles)}
+int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}
+point3f[] points = {_tuples(points)}
+normal3f[] normals = {_tuples(normals)} (interpolation = "vertex")
+texCoord2f[] primvars:st = {_tuples(mesh.texture)} (interpolation = "vertex")
+color3f[] primvars:displayColor = {_tuples(np.array([color]))}
+int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})
+float[] primvars:skel:jointWeights = {[1] * len(mesh.segment)} ({one_each})
+rel skel:skeleton = </{root}/Skeleton>
+}}"""
 
 
 def _material(kind: str, picture: str, color: tuple[float, float, float], root: str) -> str:
     """Write a surface with a picture times a colour, cut out by its alpha for leaves."""
     here = f'/{root}/Looks/{kind}'
     linear = ', '.join(f'{c**2.2:.3f}' for c in color)
-    opacity = [
-        f'float inputs:opacity.connect = <{here}/Picture.outputs:a>',
-        'float inputs:opacityThreshold = 0.2',
-    ]
-    return '\n'.join(
-        [
-            f'def Material "{kind}"\n{{',
-            f'token outputs:surface.connect = <{here}/Surface.outputs:surface>',
-            'def Shader "Surface"\n{',
-            'uniform token info:id = "UsdPreviewSurface"',
-            f'color3f inputs:diffuseColor.connect = <{here}/Picture.outputs:rgb>',
-            *(opacity if kind == 'Leaves' else []),
-            'float inputs:roughness = 1\ntoken outputs:surface\n}',
-            'def Shader "Picture"\n{',
-            'uniform token info:id = "UsdUVTexture"',
-            f'asset inputs:file = @{picture}@',
-            f'float4 inputs:scale = ({linear}, 1)',
-            f'float2 inputs:st.connect = <{here}/Place.outputs:result>',
-            'token inputs:wrapS = "repeat"\ntoken inputs:wrapT = "repeat"',
-            'float3 outputs:rgb\nfloat outputs:a\n}',
-            'def Shader "Place"\n{',
-            'uniform token info:id = "UsdPrimvarReader_float2"',
-            'string inputs:varname = "st"\nfloat2 outputs:result\n}\n}',
-        ]
-    )
+    opacity = f"""
+float inputs:opacity.connect = <{here}/Picture.outputs:a>
+float inputs:opacityThreshold = 0.2"""
+    return f"""\
+def Material "{kind}"
+{{
+token outputs:surface.connect = <{here}/Surface.outputs:surface>
+def Shader "Surface"
+{{
+uniform token info:id = "UsdPreviewSurface"
+color3f inputs:diffuseColor.connect = <{here}/Picture.outputs:rgb>{opacity * (kind == 'Leaves')}
+float inputs:roughness = 1
+token outputs:surface
+}}
+def Shader "Picture"
+{{
+uniform token info:id = "UsdUVTexture"
+asset inputs:file = @{picture}@
+float4 inputs:scale = ({linear}, 1)
+float2 inputs:st.connect = <{here}/Place.outputs:result>
+token inputs:wrapS = "repeat"
+token inputs:wrapT = "repeat"
+float3 outputs:rgb
+float outputs:a
+}}
+def Shader "Place"
+{{
+uniform token info:id = "UsdPrimvarReader_float2"
+string inputs:varname = "st"
+float2 outputs:result
+}}
+}}"""
 
 
 def _matrices(poses: Floats) -> str:

@@ -44,8 +44,11 @@ def yaml_of_tree(
 
     """
     if np.count_nonzero(tree.branch_parent < 0) > 1:
-        cure = 'convert its trees one by one, or write .glb'
-        raise FormatError('a forest as the YAML of one tree', where=tree.name, cure=cure)
+        raise FormatError(
+            'a forest as the YAML of one tree',
+            where=tree.name,
+            cure='convert its trees one by one, or write .glb',
+        )
     species = species_named(tree.species) if species is None else species
     wood = _wood(species)
     content = {

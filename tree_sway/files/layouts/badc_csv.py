@@ -23,10 +23,7 @@ _UNIT = 3
 
 
 def _is_badc(lines: Sequence[str]) -> bool:
-    if not lines:
-        return False
-    first = lines[0].replace(' ', '').lower()
-    return first.startswith(_FIRST)
+    return lines[0].replace(' ', '').lower().startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:

@@ -11,6 +11,7 @@ Climate Complex Data Documentation for ISD, 2018).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
 from tree_sway.files.layouts.layout import Layout
@@ -24,8 +25,6 @@ _WRONG = ('3', '7')
 
 
 def _has_wnd(lines: Sequence[str]) -> bool:
-    if not lines:
-        return False
     names = lines[0].replace('"', '').split(',')
     return {'STATION', 'DATE', 'WND'} <= set(names)
 
@@ -49,10 +48,8 @@ def _rows(lines: Sequence[str]) -> Iterator[NumberedRow]:
 
 def _wind(cell: str) -> tuple[str, str]:
     """Speed and direction of the five fields of a wind; empty where missing or wrong."""
-    fields = cell.split(',')
-    direction, good_direction, kind, speed, good_speed = (
-        cell_at(fields, place) for place in range(5)
-    )
+    fields = map(str.strip, [*cell.split(','), *4 * ['']])
+    direction, good_direction, kind, speed, good_speed = islice(fields, 5)
     if good_speed in _WRONG:
         return '', ''
     if kind == _CALM:

@@ -35,18 +35,19 @@ _DOUBTFUL = ('0', '1', '2')
 
 
 def _is_jma(lines: Sequence[str]) -> bool:
-    return bool(lines) and lines[0].startswith(_FIRST)
+    return lines[0].startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
     first = next((number for number, line in enumerate(lines) if _ROW.match(line)), 0)
     if first <= _ELEMENTS:
-        raise FormatError('a file of JMA without rows', where=source)
+        raise FormatError('a file of JMA without rows')
     head = [line.split(',') for line in lines[:first]]
     stations = {name for name in head[_STATIONS] if name.strip()}
     if len(stations) > 1:
-        what = f'several stations: {", ".join(sorted(stations)[:5])}'
-        raise FormatError(what, where=source, cure='download one at a time')
+        raise FormatError(
+            f'several stations: {", ".join(sorted(stations)[:5])}', cure='download one at a time'
+        )
     rows = _rows(lines, first, head[_ELEMENTS:])
     return table_of_lines(_NAMES, rows, source, _UNITS)
 

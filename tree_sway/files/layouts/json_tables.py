@@ -12,11 +12,11 @@ of states. The longest of these in the document is the table.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-import json
 from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.json_values import cell_of, object_of, parsed
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -45,19 +45,18 @@ def _is_json(lines: Sequence[str]) -> bool:
     return first.startswith(('{', '[')) and not first.startswith('[0')
 
 
-def read_json_table(lines: list[str], source: str) -> TextTable:
+def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
-    try:
-        document = _document(lines)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not JSON: {error}', where=source, cure='save it again whole') from None
+    document = _document(lines)
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     if not tables:
-        cure = 'give columns or records with a time, a speed and a direction'
-        raise FormatError('no table in the JSON', where=source, cure=cure)
+        raise FormatError(
+            'no table in the JSON',
+            cure='give columns or records with a time, a speed and a direction',
+        )
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     return max(winds or tables, key=lambda table: len(table.texts))
@@ -87,21 +86,22 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
             wind = [(*each[:2], names[each[2]], each[3]) for each in found if each[2] in names]
             return wide_table(wind, source, 'time', units)
     if found:
-        what = f'no true wind among the paths {", ".join(sorted(there)[:8])}'
-        cure = f'record {SIGNALK_WIND}directionTrue and speedOverGround or speedTrue'
-        raise FormatError(what, where=source, cure=cure)
+        raise FormatError(
+            f'no true wind among the paths {", ".join(sorted(there)[:8])}',
+            cure=f'record {SIGNALK_WIND}directionTrue and speedOverGround or speedTrue',
+        )
     return None
 
 
 def _document(lines: list[str]) -> Any:
     """Return a document of several lines, or a list of those that are one each."""
     try:
-        return json.loads('\n'.join(lines))
-    except ValueError:
+        return parsed('\n'.join(lines))
+    except FormatError:
         filled = [line for line in lines if line.strip()]
         if not filled[0].rstrip().endswith('}'):
             raise
-        return [json.loads(line) for line in filled]
+        return [parsed(line) for line in filled]
 
 
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:
@@ -116,8 +116,7 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         if table is not None:
             yield table
         for name, each in node.items():
-            below = node.get(f'{name}_units', _said_units(node))
-            own_units = below if isinstance(below, dict) else {}
+            own_units = object_of(node.get(f'{name}_units', _said_units(node)))
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
         states = _lists_of_states(node)
@@ -131,8 +130,7 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
 
 def _said_units(node: dict[str, Any]) -> Cells:
     """System of units that the metadata of weather.com's history gives (e, m, h or s)."""
-    inside = node.get('metadata')
-    system = inside.get('units') if isinstance(inside, dict) else None
+    system = object_of(node.get('metadata')).get('units')
     return {'*': system} if isinstance(system, str) else {}
 
 
@@ -233,8 +231,7 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
         name = ''
         for state in states:
             name = _text(state.get('entity_id', name))
-            attributes = state.get('attributes')
-            if isinstance(attributes, dict):
+            if attributes := object_of(state.get('attributes')):
                 unit_of.setdefault(name, _unit(attributes.get('unit_of_measurement')))
             time = _text(state.get('last_changed', state.get('last_updated')))
             if state['state'] not in ('unavailable', 'unknown'):
@@ -243,13 +240,11 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
 
 
 def _text(cell: Any) -> str:
-    if cell is None or isinstance(cell, dict | list | bool):
-        return ''
-    return str(cell).replace('\x1f', ' ').replace('\n', ' ')
+    return '' if isinstance(cell, bool) else cell_of(cell)
 
 
 def _unit(cell: Any) -> str:
     return cell if isinstance(cell, str) else ''
 
 
-JSON = Layout('json', _is_json, read_json_table)
+JSON = Layout('json', _is_json, _read_json_table)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tree_sway.errors import inside
 from tree_sway.files.layouts.badc_csv import BADC_CSV
 from tree_sway.files.layouts.isd import ISD_CSV
 from tree_sway.files.layouts.jma import JMA
@@ -19,7 +20,7 @@ from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
-LAYOUTS = (
+_LAYOUTS = (
     *(JSON, WEATHERLINK_TEXT, ISD_CSV, BADC_CSV, JMA, METEOBLUE, MONITOR),
     *LINES,
     *LONG,
@@ -29,20 +30,21 @@ LAYOUTS = (
 _HEAD = 200
 
 
-def layout_of(lines: Sequence[str]) -> Layout | None:
+def _layout_of(lines: Sequence[str]) -> Layout | None:
     """Return the layout of a table by its first lines; None if it is none."""
-    return next((layout for layout in LAYOUTS if layout.recognise(lines)), None)
+    return next((layout for layout in _LAYOUTS if layout.recognise(lines or [''])), None)
 
 
 def table_of(lines: list[str], source: str) -> TextTable:
     """Return the table of a file's lines; a `FormatError` if they are none."""
-    return (layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
+    with inside(source):
+        return (_layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
 
 
 def looks_like_wind(head: str) -> bool:
     """Whether the beginning of a file is that of a table of wind."""
     lines = head.replace('\r\n', '\n').replace('\r', '\n').split('\n')
-    found = layout_of(lines[:_HEAD])
+    found = _layout_of(lines[:_HEAD])
     if found is JSON:
         return any(word in head.lower() for word in ('wind', 'wd', '"obs'))
     return found is not None

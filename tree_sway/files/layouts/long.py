@@ -43,56 +43,43 @@ def wide_table(
     for line, time, name, value in values:
         by_time.setdefault(time, {})[name] = value
         lines.setdefault(time, line)
-    times = sorted(by_time)
     names = list(dict.fromkeys(chain.from_iterable(by_time.values())))
     newest = dict.fromkeys(names, '')
     rows = []
-    for time in times:
-        newest.update(by_time[time])
+    for time in sorted(by_time):
+        newest |= by_time[time]
         rows.append([time, *newest.values()])
     # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
     short = [_STATION.sub('', name, count=1) for name in names]
     is_clear = len(set(short)) == len(short)
     columns = short if is_clear else names
-    numbers = [lines[time] for time in times]
-    known_units = unit_of or {}
-    units = [known_units.get(name, '') for name in names]
+    numbers = [lines[time] for time in sorted(by_time)]
+    units = [(unit_of or {}).get(name, '') for name in names]
     return table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
 
 
-def _split(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, list[int]] | None:
-    """Line of the header, and the places of the wanted columns in it."""
-    for number, line in enumerate(lines[:10]):
-        if line.startswith('#'):
-            continue
-        cells = list(split_row(line, ','))
-        if set(wanted) <= set(cells):
-            return number, [cells.index(name) for name in wanted]
-    return None
-
-
 def _read(lines: list[str], source: str, wanted: Sequence[str]) -> TextTable:
-    found = _split(lines, wanted)
-    assert found is not None
-    _, places = found
-    return wide_table(_values(lines, places, wanted), source, wanted[0])
+    return wide_table(_values(lines, wanted), source, wanted[0])
 
 
-def _values(lines: list[str], places: list[int], wanted: Sequence[str]) -> Iterable[Value]:
+def _values(lines: list[str], wanted: Sequence[str]) -> Iterable[Value]:
+    places = list[int]()
     for number, line in enumerate(lines, start=1):
         cells = split_row(line, ',')
-        if line.startswith('#') or len(cells) <= max(places):
-            continue
-        if all(name in cells for name in wanted):  # a further header, of another table
+        if _is_header(line, wanted):  # there is one above each of several tables
             places = [list(cells).index(name) for name in wanted]
-            continue
-        time, name, value = (cells[place] for place in places)
-        if value not in _NO_STATE:
-            yield number, time, name, value
+        elif places and not line.startswith('#') and len(cells) > max(places):
+            time, name, value = (cells[place] for place in places)
+            if value not in _NO_STATE:
+                yield number, time, name, value
+
+
+def _is_header(line: str, wanted: Sequence[str]) -> bool:
+    return not line.startswith('#') and set(wanted) <= set(split_row(line, ','))
 
 
 def _is_long(lines: Sequence[str], wanted: Sequence[str]) -> bool:
-    return _split(lines, wanted) is not None
+    return any(_is_header(line, wanted) for line in lines[:10])
 
 
 LONG = tuple(

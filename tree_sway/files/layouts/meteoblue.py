@@ -22,7 +22,7 @@ _HEAD = 20
 
 def _header(lines: Sequence[str]) -> int | None:
     """Row of the names, below that of the places; None without them."""
-    if not lines or not lines[0].startswith('location,'):
+    if not lines[0].startswith('location,'):
         return None
     head = enumerate(lines[:_HEAD])
     return next((number for number, line in head if line.startswith('timestamp,')), None)

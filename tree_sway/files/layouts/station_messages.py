@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from tree_sway.files.json_values import list_of, object_of
 from tree_sway.tables import table_beside
 
 _TYPES = {each['type']: each for each in table_beside(__file__, 'station_messages.csv')}
@@ -36,23 +37,20 @@ class PathValue(NamedTuple):
 
 def tempest_values(message: Any) -> dict[str, Any] | None:
     """Return the time and wind of a Tempest's message by name; None for any other message."""
-    kind = message.get('type') if isinstance(message, dict) else None
+    kind = object_of(message).get('type')
     places = _TYPES.get(kind) if isinstance(kind, str) else None
     if places is None:
         return None
-    cells = message.get(places['list'])
-    if isinstance(cells, list) and cells and isinstance(cells[0], list):
+    cells = list_of(message.get(places['list']))
+    if cells and isinstance(cells[0], list):
         cells = cells[0]
-    found = cells if isinstance(cells, list) else []
-    return {name: found[places[name]] if places[name] < len(found) else None for name in _VALUES}
+    return {name: cells[places[name]] if places[name] < len(cells) else None for name in _VALUES}
 
 
 def signalk_values(message: Any) -> Iterator[PathValue]:
     """Yield the values of a delta; nothing of any other message."""
-    updates = message.get('updates') if isinstance(message, dict) else None
-    for update in updates if isinstance(updates, list) else ():
-        values = update.get('values') if isinstance(update, dict) else None
-        for each in values if isinstance(values, list) else ():
-            if isinstance(each, dict) and isinstance(each.get('path'), str):
+    for update in map(object_of, list_of(object_of(message).get('updates'))):
+        for each in map(object_of, list_of(update.get('values'))):
+            if isinstance(each.get('path'), str):
                 source, time = (str(update.get(name, '')) for name in ('$source', 'timestamp'))
                 yield PathValue(each['path'], each.get('value'), source, time)

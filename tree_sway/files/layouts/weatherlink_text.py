@@ -22,9 +22,7 @@ _WORD = re.compile(r'\S+')
 
 
 def _has_two_lines(lines: Sequence[str]) -> bool:
-    if len(lines) < 3 or 'Wind' not in lines[0]:
-        return False
-    return _NAMES.match(lines[1]) is not None
+    return len(lines) > 2 and 'Wind' in lines[0] and _NAMES.match(lines[1]) is not None
 
 
 def _read(lines: list[str], source: str) -> TextTable:

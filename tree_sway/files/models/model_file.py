@@ -24,8 +24,8 @@ from tree_sway.core.model import SwayModel
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree, tree_in_order
-from tree_sway.errors import FormatError, inside, TreeSwayError
-from tree_sway.files.paths import path_of
+from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.files.paths import of_file
 
 SUFFIX = '.npz'
 
@@ -47,7 +47,8 @@ _FARTHEST = 1e9
 """Bound of all numbers of a tree: coordinates in [m], diameters in [m], indices."""
 
 
-def read_model(path: str | Path) -> SwayModel:
+@of_file
+def read_model(path: Path) -> SwayModel:
     """
     Read a model that `write_model` wrote.
 
@@ -57,24 +58,22 @@ def read_model(path: str | Path) -> SwayModel:
         A file that is none, of another version, damaged, too large, or whose arrays do not fit.
 
     """
-    where = path_of(path)
-    with inside(str(where)):
-        arrays = _read_arrays(where)
-        about = _read_about(arrays.pop('about', np.array('')))
-        try:
-            tree = _tree(about, {name: arrays.pop(f'tree_{name}') for name in TREE})
-            leaves = {name: arrays.pop(name) for name in LEAVES if name in arrays}
-            species = _made(Species, about['species'])
-            settings = replace(_made(Settings, about['settings']), **leaves)
-            model = SwayModel.of_arrays(arrays, tree, species, settings)
-            digest = model.digest()
-        except FormatError:
-            raise
-        except (LookupError, TypeError, ValueError, OverflowError, TreeSwayError) as error:
-            raise _damaged(f'its tree, settings or arrays: {error}') from None
-        if digest != about.get('digest'):
-            raise _damaged('numbers that are not those that were written')
-        return model
+    arrays = _read_arrays(path)
+    about = _read_about(arrays.pop('about', np.array('')))
+    try:
+        tree = _tree(about, {name: arrays.pop(f'tree_{name}') for name in TREE})
+        leaves = {name: arrays.pop(name) for name in LEAVES if name in arrays}
+        species = _made(Species, about['species'])
+        settings = replace(_made(Settings, about['settings']), **leaves)
+        model = SwayModel.of_arrays(arrays, tree, species, settings)
+        digest = model.digest()
+    except FormatError:
+        raise
+    except (LookupError, TypeError, ValueError, OverflowError, TreeSwayError) as error:
+        raise _damaged(f'its tree, settings or arrays: {error}') from None
+    if digest != about.get('digest'):
+        raise _damaged('numbers that are not those that were written')
+    return model
 
 
 def _read_arrays(path: Path) -> dict[str, NDArray[Any]]:

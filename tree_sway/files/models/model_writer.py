@@ -71,8 +71,11 @@ def write_native_model(path: str | Path, model: SwayModel) -> None:
     """
     refuse_other_kind('model', model, SwayModel, 'give the result of prepare')
     if not model.has_table:
-        what = f"model '{model.settings.model}' has no table to solve it by"
-        raise ParameterError(what, where='model', cure=f'give a number, such as {USUAL}')
+        raise ParameterError(
+            f"model '{model.settings.model}' has no table to solve it by",
+            where='model',
+            cure=f'give a number, such as {USUAL}',
+        )
     with whole_file(path) as partial:
         partial.write_bytes(bytes_of(model.native_arrays()))
 

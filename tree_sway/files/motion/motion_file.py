@@ -36,6 +36,5 @@ def read_motion(path: str | Path, topic: str | None = None) -> MotionRecord:
         path, _, behind = path.partition('?topic=')
         topic = behind or None
     file = path_of(path)
-    if file.is_dir() or file.suffix in _BAGS:
-        return read_imu_bag(file, topic)
-    return read_motion_table(file)
+    is_bag = file.is_dir() or file.suffix in _BAGS
+    return read_imu_bag(file, topic) if is_bag else read_motion_table(file)

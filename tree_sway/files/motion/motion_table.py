@@ -35,6 +35,7 @@ from tree_sway.files.column_names import (
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
@@ -66,6 +67,7 @@ _NAMES = (
 )
 
 
+@of_file
 def read_motion_table(path: Path) -> MotionRecord:
     """
     Read a table of a motion sensor, or the tables of a zip, such as a phone's.
@@ -106,8 +108,10 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
     if times is None or not np.isfinite(times.seconds).any():
         times = counted_times(table) or times
     if times is None or not picked:
-        what = f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}'
-        raise table.error(what, cure=_NAMES)
+        raise table.error(
+            f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}',
+            cure=_NAMES,
+        )
     table.refuse_several()
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
@@ -166,16 +170,10 @@ def _joined(records: Sequence[MotionRecord], source: str) -> MotionRecord:
         for quantity in _AXES:
             values = getattr(each, quantity)
             if found[quantity] is None and values is not None:
-                shift = 0.0
-                if first.epoch is not None and each.epoch is not None:
-                    shift = each.epoch - first.epoch
-                found[quantity] = np.stack(
-                    [
-                        np.interp(first.time, each.time + shift, axis, np.nan, np.nan)
-                        for axis in values.T
-                    ],
-                    axis=1,
-                )
+                are_dated = first.epoch is not None and each.epoch is not None
+                clock = each.times_after(first.epoch) if are_dated else each.time
+                axes = [np.interp(first.time, clock, axis, np.nan, np.nan) for axis in values.T]
+                found[quantity] = np.stack(axes, axis=1)
                 notes += each.notes
     return replace(first, source=source, notes=tuple(notes), **found)
 
@@ -229,17 +227,12 @@ def _gravity(values: Floats) -> tuple[str, ...]:
     return tuple(unit for unit, each in units if _GRAVITY[0] < size * each < _GRAVITY[1])
 
 
-def _size(values: Floats) -> float:
-    """Return the median length of vectors; 0 without one."""
-    size = np.linalg.norm(values, axis=1)
-    return float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0
-
-
-def _largest(values: Floats) -> float:
-    """Return the length of the largest vectors; 0 without one."""
+def _size(values: Floats, share: float = 0.5) -> float:
+    """Return the length of vectors that a share of them stays below; 0 without one."""
     size = np.linalg.norm(values, axis=1)
     size = size[np.isfinite(size)]
-    return float(np.quantile(size, _LARGEST, method='lower')) if len(size) else 0.0
+    method = 'lower' if share == _LARGEST else 'linear'
+    return float(np.quantile(size, share, method=method)) if len(size) else 0.0
 
 
 def _without_unit(
@@ -255,14 +248,16 @@ def _without_unit(
         return _UNITS[told], said if told else ''
     of, size = 'as a median', _size(values)
     if quantity == 'rate':
-        of, size = 'at most', _largest(values)
+        of, size = 'at most', _size(values, _LARGEST)
         is_count = (values[np.isfinite(values)] % 1.0 == 0.0).all()
         if most < size <= np.degrees(most) and not is_count:
             said = f'no unit of {name} in the header: taken in deg/s, as it is up to {size:.4g}'
             return table.known_factor(quantity, 'deg/s'), said
     if size > most:
-        what = f'{name} without a unit is {size:.4g} {of}, which is no {unit}'
-        raise table.error(what, cure=f'give its unit, as {name} [mg] or {name} [deg/s]')
+        raise table.error(
+            f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
+            cure=f'give its unit, as {name} [mg] or {name} [deg/s]',
+        )
     other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return 1.0, note
@@ -273,24 +268,31 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
     seconds = times.seconds
     is_time = np.isfinite(seconds)
     if not is_time.any():
-        what = f"no time in any row: the first is '{first_cell[:40]}'"
-        raise table.error(what, cure='give seconds or dates')
+        raise table.error(
+            f"no time in any row: the first is '{first_cell[:40]}'", cure='give seconds or dates'
+        )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
     if _are_most(steps < 0.0, 0.1):
-        what = f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows'
-        raise table.error(what, cure='put the rows in the order of time')
+        raise table.error(
+            f'time goes back in {np.count_nonzero(steps < 0.0)} of {len(rows)} rows',
+            cure='put the rows in the order of time',
+        )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
     stands = (steps == 0.0) & changes
     if _are_most(stands, 0.5):
-        what = f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before'
-        raise table.error(what, cure='export times with fractions of a second')
+        raise table.error(
+            f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
+            cure='export times with fractions of a second',
+        )
     step = float(np.median(steps)) if len(steps) else 0.0
     if step > _SLOWEST or 0.0 < step <= _SHORTEST:
         size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
-        what = f'a sample every {step:.6g} s, too {size}'
-        cure = 'name the unit of time, as time [ms]; a sensor sends 20 samples per second or more'
-        raise table.error(what, cure=cure)
+        raise table.error(
+            f'a sample every {step:.6g} s, too {size}',
+            cure='name the unit of time, as time [ms]; a sensor sends 20 samples per second or '
+            'more',
+        )
 
 
 def _are_most(rows: NDArray[np.bool_], share: float) -> bool:

@@ -11,6 +11,7 @@ a pair sits. A header is optional; a unit in its brackets counts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 import re
@@ -20,7 +21,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
-from tree_sway.files.table_file import split_row
+from tree_sway.files.paths import of_file
+from tree_sway.files.table_file import filled_lines, split_row
 from tree_sway.files.text_file import finite, read_table_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.twin import as_orientation
@@ -51,6 +53,7 @@ class StrainRecord:
         return MotionRecord(self.time, None, None, turns, self.source, self.epoch, self.notes)
 
 
+@of_file
 def read_strain(path: Path) -> StrainRecord:
     """
     Read a table of strain gauges.
@@ -61,45 +64,47 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    lines = [line for line in read_table_lines(path) if line.strip() and line[0] != '#']
+    _, lines = filled_lines(read_table_lines(path))
     first = lines[0] if lines else ''
-    separator = next((each for each in '\t;,' if each in first), '')
-
-    def cells(line: str) -> list[str]:
-        return [*split_row(line, separator)] if separator else line.split()
-
-    head = cells(first)
-    has_names = len(head) < 2 or finite(head[1]) is None
-    rows = [cells(line) for line in lines[has_names:]]
+    separator = next((each for each in '\t;,' if each in first), ' ')
+    head, *rows = (split_row(line, separator) for line in lines or [''])
+    if len(head) > 1 and finite(head[1]) is not None:
+        rows.insert(0, head)
     size = max((len(row) for row in rows), default=0)
-    where = str(path)
     if size < 3 or not size % 2:
-        what = f'{max(size - 1, 0)} columns beside the time'
-        cure = 'give the time, then two columns for each place: north side, east side'
-        raise FormatError(what, where=where, cure=cure)
+        raise FormatError(
+            f'{max(size - 1, 0)} columns beside the time',
+            cure='give the time, then two columns for each place: north side, east side',
+        )
     times = times_of([row[0] for row in rows])
     numbers = [[finite(cell) for cell in row[1:]] + [None] * (size - len(row)) for row in rows]
-    values = np.array(numbers, dtype=float) * _factor(head, where)
+    values = np.array(numbers, dtype=float) * _factor(head)
     if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
-        what = f"no time in '{rows[0][0]}', or a column without numbers"
-        raise FormatError(what, where=where, cure='put the time first, and leave that pair out')
+        raise FormatError(
+            f"no time in '{rows[0][0]}', or a column without numbers",
+            cure='put the time first, and leave that pair out',
+        )
     away = np.abs(values - np.nanmedian(values, axis=0))
     if (largest := float(np.nanquantile(away, 0.99))) > _BROKEN:
-        what = f'changes of {largest:.3g} are no strain of wood'
-        cure = 'give strain, or its unit in the header, as north [microstrain]; calibrate voltages'
-        raise FormatError(what, where=where, cure=cure)
+        raise FormatError(
+            f'changes of {largest:.3g} are no strain of wood',
+            cure='give strain, or its unit in the header, as north [microstrain]; calibrate '
+            'voltages',
+        )
     notes = f'{path.name}: {size // 2} pairs of strain, north and east side', times.note
     pairs = values.reshape(len(rows), -1, 2)
-    return StrainRecord(times.seconds, pairs, where, times.epoch, tuple(filter(None, notes)))
+    return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))
 
 
-def _factor(head: list[str], where: str) -> float:
+def _factor(head: Sequence[str]) -> float:
     """Factor to strain by the unit of the second column of a header."""
     found = re.search(r'[\[(]([^\])]*)[\])]', head[1]) if len(head) > 1 else None
     unit = found[1].strip() if found else ''
     if _MICRO.match(unit):
         return 1e-6
     if unit.lower() not in _UNITS:
-        cure = 'give strain as - or microstrain; calibrate voltages first'
-        raise FormatError(f"unknown unit of strain '{unit[:20]}'", where=where, cure=cure)
+        raise FormatError(
+            f"unknown unit of strain '{unit[:20]}'",
+            cure='give strain as - or microstrain; calibrate voltages first',
+        )
     return _UNITS[unit.lower()]

@@ -42,8 +42,9 @@ def refuse_no_history(path: str, names: Sequence[str]) -> None:
 
     """
     if not names:
-        what = 'no motion sensor to tell of'
-        raise ParameterError(what, where=path, cure='give a sensor and its place')
+        raise ParameterError(
+            'no motion sensor to tell of', where=path, cure='give a sensor and its place'
+        )
     refuse_unwritable(path)
     found = path_of(path)
     if not found.is_file():
@@ -51,8 +52,11 @@ def refuse_no_history(path: str, names: Sequence[str]) -> None:
     line = _line_of(_columns(names)).encode()
     head = read_bytes(found, at_most=len(line))
     if head and head.rstrip() != line.rstrip():
-        cure = 'name another file; sensors of one table keep their names and places'
-        raise FormatError('has other columns', where=path, cure=cure)
+        raise FormatError(
+            'has other columns',
+            where=path,
+            cure='name another file; sensors of one table keep their names and places',
+        )
 
 
 def _line_of(cells: Sequence[str]) -> str:
@@ -157,5 +161,8 @@ class TreeHistory:
                     file.write(_line_of(_columns(self._names)))
                 file.write(_line_of([date, *cells]))
         except OSError as error:
-            what = f'cannot be written: {error.strerror or error}'
-            raise FormatError(what, where=str(self._path), cure='make room') from error
+            raise FormatError(
+                f'cannot be written: {error.strerror or error}',
+                where=str(self._path),
+                cure='make room',
+            ) from error

@@ -70,9 +70,11 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
     if not path.exists():
         raise FormatError('no such bag', where=str(path), cure='check the path')
     if (path / 'record.yaml').is_file():
-        what = 'a record of wind and motion, not a bag'
-        cure = 'give a table of it, wind.csv or motion_1.csv; lab twin takes all of it'
-        raise FormatError(what, where=str(path), cure=cure)
+        raise FormatError(
+            'a record of wind and motion, not a bag',
+            where=str(path),
+            cure='give a table of it, wind.csv or motion_1.csv; lab twin takes all of it',
+        )
     arrays = bounded_arrays(_messages_of_bag, path, *types, kind='a bag', cure=_CURE)
     topics = arrays['topics'].tolist()
     content = BagContent(dict(topics), {topic: [] for topic, kind in topics if kind in types})

@@ -5,19 +5,20 @@
 from __future__ import annotations
 
 import csv
-import math
 from pathlib import Path
 
-from tree_sway.errors import FormatError
-from tree_sway.files.paths import path_of
-from tree_sway.files.text_file import read_text
+from tree_sway.errors import FormatError, inside
+from tree_sway.files.paths import of_file
+from tree_sway.files.text_file import finite, read_text
 
 NAME = 'name'
 LOW = 'low_80 [m/s]'
 HIGH = 'high_80 [m/s]'
+_CURE = 'give the table that tree-sway risk writes'
 
 
-def read_critical_winds(path: str | Path) -> dict[str, tuple[float, float]]:
+@of_file
+def read_critical_winds(path: Path) -> dict[str, tuple[float, float]]:
     """
     Read the band of 80 % of the critical wind of each tree.
 
@@ -38,26 +39,20 @@ def read_critical_winds(path: str | Path) -> dict[str, tuple[float, float]]:
         A file that cannot be read, without the columns, or with a wind that is no number.
 
     """
-    source = path_of(path)
-    rows = csv.DictReader(read_text(source).splitlines())
+    rows = csv.DictReader(read_text(path).splitlines())
     for column in (NAME, LOW, HIGH):
         if column not in (rows.fieldnames or ()):
-            cure = 'give the table that tree-sway risk writes'
-            raise FormatError(f"no column '{column}'", where=str(source), cure=cure)
+            raise FormatError(f"no column '{column}'", cure=_CURE)
     found = {}
     for row in rows:
         if row[LOW] and row[HIGH]:
-            where = f'{source}: line {rows.line_num}'
-            found[row[NAME]] = _wind(row[LOW], where), _wind(row[HIGH], where)
+            with inside(f'line {rows.line_num}'):
+                found[row[NAME]] = _wind(row[LOW]), _wind(row[HIGH])
     return found
 
 
-def _wind(text: str, where: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 <= value < math.inf:
-        cure = 'give the table that tree-sway risk writes'
-        raise FormatError(f"'{text[:40]}' is no wind speed", where=where, cure=cure)
+def _wind(text: str) -> float:
+    value = finite(text)
+    if value is None or value < 0.0:
+        raise FormatError(f"'{text[:40]}' is no wind speed", cure=_CURE)
     return value

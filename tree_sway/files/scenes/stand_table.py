@@ -151,7 +151,7 @@ class _Growing:
         own_class = self.keys[row], height, slenderness
         if own_class not in self._grown:
             species = self._inventory.wood[name]
-            tree = grown_kind(species, height, slenderness, self._seed, self.notes)
+            tree = _grown_kind(species, height, slenderness, self._seed, self.notes)
             self._grown[own_class] = tree
         return self._grown[own_class]
 
@@ -160,8 +160,10 @@ def _placed(inventory: Inventory, row: int, kind: GrownTree, key: str, yaw: floa
     height = float(inventory.height[row])
     scale = height / kind.tree.height
     if not SMALLEST <= scale <= LARGEST:
-        what = f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'"
-        raise ParameterError(what, cure=f'give {SMALLEST:g} to {LARGEST:g} times')
+        raise ParameterError(
+            f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'",
+            cure=f'give {SMALLEST:g} to {LARGEST:g} times',
+        )
     return PlacedTree(
         inventory.names[row],
         kind.tree,
@@ -175,7 +177,7 @@ def _placed(inventory: Inventory, row: int, kind: GrownTree, key: str, yaw: floa
     )
 
 
-def grown_kind(
+def _grown_kind(
     species: Species, height: float, slenderness: float, seed: int, notes: list[str]
 ) -> GrownTree:
     """

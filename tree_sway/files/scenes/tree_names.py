@@ -14,10 +14,16 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
     first: dict[str, int] = {}
     for number, name in enumerate(names):
         if '/' in name:
-            cure = 'leave it out: it separates tree and branch in the names of segments'
-            raise FormatError(f"a slash in the name '{name}'", where=where(number), cure=cure)
+            raise FormatError(
+                f"a slash in the name '{name}'",
+                where=where(number),
+                cure='leave it out: it separates tree and branch in the names of segments',
+            )
         if name in first:
             line = where(first[name]).rsplit(':', 1)[1]
-            what = f"two trees called '{name}', the first in line {line}"
-            raise FormatError(what, where=where(number), cure='give each its own name')
+            raise FormatError(
+                f"two trees called '{name}', the first in line {line}",
+                where=where(number),
+                cure='give each its own name',
+            )
         first[name] = number

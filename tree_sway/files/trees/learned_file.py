@@ -77,8 +77,11 @@ class LearnedFile:
         lose what they know.
         """
         if _text_of(self.path) not in (None, self._text):
-            what = 'was written by another program meanwhile, and is left as it is'
-            raise FormatError(what, where=self.path, cure='name another file to learn into')
+            raise FormatError(
+                'was written by another program meanwhile, and is left as it is',
+                where=self.path,
+                cure='name another file to learn into',
+            )
         before = self.opened.learned
         species = self.opened.species
         species = learned.over(before).of(species, in_leaf=self._in_leaf)
@@ -107,11 +110,17 @@ def _learned_before(path: str, grown: GrownTree) -> TreeFile:
     """Read the file of a tree; a `FormatError` if it is of another, or was not learned."""
     found = read_yaml_tree(path_of(path)).checked()
     if found.species.key != grown.species.key or not _are_equal(found.tree, grown.tree):
-        what = f'is of another tree than {grown.tree.name}'
-        raise FormatError(what, where=path, cure='name another file, or open its tree')
+        raise FormatError(
+            f'is of another tree than {grown.tree.name}',
+            where=path,
+            cure='name another file, or open its tree',
+        )
     if found.learned is None:
-        what = 'is a tree of which nothing was learned, and would be replaced'
-        raise FormatError(what, where=path, cure='name another file, as oak.twin.yaml')
+        raise FormatError(
+            'is a tree of which nothing was learned, and would be replaced',
+            where=path,
+            cure='name another file, as oak.twin.yaml',
+        )
     return found
 
 

@@ -75,8 +75,10 @@ def open_tree(
     text = str(name_or_path)
     if text in BUILTIN_TREES:
         if options:
-            what = f"option '{next(iter(options))}' for a built-in tree"
-            raise ParameterError(what, cure='leave it out: it has no file')
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a built-in tree",
+                cure='leave it out: it has no file',
+            )
         tree = builtin_tree(text, seed)
         built_in = TreeFile(tree, species_named(tree.species), text)
         return built_in.of_species(wood(built_in.species)).checked()
@@ -112,9 +114,9 @@ def _refuse_several_trees(path: Path, head: str) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
     where = str(path)
     if begins_with_key(path, head, 'trees'):
-        what = 'a forest, where one tree is expected'
-        cure = 'name one of its trees'
-        raise FormatError(what, where=where, cure=cure)
+        raise FormatError(
+            'a forest, where one tree is expected', where=where, cure='name one of its trees'
+        )
     is_table = is_stand_table(head, path)
     if is_table or begins_with_key(path, head, 'stand'):
         what = 'an inventory' if is_table else 'a stand'
@@ -191,14 +193,19 @@ def _scene(
             if lacks_species_alone(head):
                 return read_stand_table(path, seed=seed, exact=exact, head=head)
             if missing := why_no_stand(head):
-                cure = 'name them so in the header, if it is an inventory (doc/trees.md)'
-                raise FormatError(missing, where=error.where, cure=cure) from None
+                raise FormatError(
+                    missing,
+                    where=error.where,
+                    cure='name them so in the header, if it is an inventory (doc/trees.md)',
+                ) from None
             raise
         return scene_of_files(files, path.stem)
     if options:
-        what = f"option '{next(iter(options))}' for a forest"
-        cure = 'convert its trees first, and name the new files in the forest'
-        raise ParameterError(what, where=str(path), cure=cure)
+        raise ParameterError(
+            f"option '{next(iter(options))}' for a forest",
+            where=str(path),
+            cure='convert its trees first, and name the new files in the forest',
+        )
     scene = read()
     if wood is same:
         return scene

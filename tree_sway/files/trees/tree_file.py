@@ -21,7 +21,7 @@ import numpy as np
 from tree_sway.core.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
-from tree_sway.files.paths import path_of
+from tree_sway.files.paths import of_file
 from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -36,8 +36,9 @@ TREE_FORMATS: tuple[FileFormat, ...] = tuple(
 """All formats, in the order of modules and of their contents."""
 
 
+@of_file
 def read_trees(
-    path: str | Path,
+    path: Path,
     format: str | None = None,  # noqa: A002
     *,
     head: str | None = None,
@@ -62,7 +63,6 @@ def read_trees(
         An option that this format does not have, or a wrong value.
 
     """
-    path = path_of(path)
     chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
     chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
     wanted = TreeOptions(**{**chosen.defaults, **options})
@@ -76,9 +76,9 @@ def read_trees(
             tree = replace(each.tree, name=f'{each.tree.name}{number}')
             files[number - 1] = replace(each, tree=tree)
     if wanted.tree not in range(len(files) + 1):
-        what = f'tree {wanted.tree} of {len(files)}'
-        cure = f'give 1 to {len(files)}, or 0 for all'
-        raise ParameterError(what, where=str(path), cure=cure)
+        raise ParameterError(
+            f'tree {wanted.tree} of {len(files)}', cure=f'give 1 to {len(files)}, or 0 for all'
+        )
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
     read = [wanted.applied(each, wood, in_leaf) for each in files]

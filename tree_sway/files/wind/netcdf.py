@@ -51,7 +51,7 @@ def read_netcdf_wind(
     """
     point = [repr(degrees) for degrees in _point(at) or ()]
     cure = 'download it again'
-    found = bounded_arrays(winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
+    found = bounded_arrays(_winds_of_netcdf, path, *point, kind='a netCDF file', cure=cure)
     rows = WindRows(str(path), row_name='sample')
     velocity = found['velocity']
     good = np.isfinite(velocity).all(axis=1)
@@ -67,13 +67,13 @@ def read_netcdf_wind(
     return filled_means(record, turbulence, seed)
 
 
-def winds_of_netcdf(path: str, *at: str) -> Arrays:
+def _winds_of_netcdf(path: str, *at: str) -> Arrays:
     """Yield velocity, seconds after the first, gust where there is one, epoch and notes."""
     from netCDF4 import Dataset
 
     point = (float(at[0]), float(at[1])) if at else None
     with Dataset(path) as data:
-        yield from _read(data, path, point)
+        yield from _read(data, point)
 
 
 def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
@@ -88,39 +88,35 @@ def _point(at: tuple[str, ...] | None) -> tuple[float, float] | None:
     return latitude, longitude
 
 
-def _read(data: Any, source: str, point: tuple[float, float] | None) -> Arrays:
+def _read(data: Any, point: tuple[float, float] | None) -> Arrays:
     found = {each: _find(data, each) for each in ('time', *_COMPONENTS, *_POLAR, 'gust')}
     is_polar = None in [found[each] for each in _COMPONENTS]
     if found['time'] is None or (is_polar and None in [found[each] for each in _POLAR]):
         said = [word for each, word in _WORDS.items() if found[each] is None]
-        what = f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}'
-        cure = 'choose the 10 m u and v components of wind, or its speed and direction'
-        raise FormatError(what, where=source, cure=cure)
+        raise FormatError(
+            f'no {" and no ".join(said)} among {", ".join([*data.variables][:20])}',
+            cure='choose the 10 m u and v components of wind, or its speed and direction',
+        )
     clock = data.variables[found['time']]
-    first = _Variable(data, found['wind_speed' if is_polar else 'wind_x'], source)
-    second = _Variable(data, found['wind_direction' if is_polar else 'wind_y'], source)
-    notes, place = _place(data, first.variable, point)
-    if is_polar:
-        speed = first.series('speed', clock, place)
-        degrees = second.series('angle', clock, place) / (unit_factor('angle', 'deg') or 1.0)
-        velocity = _velocity_from(speed, degrees)
-    else:
-        east = first.series('speed', clock, place)
-        north = second.series('speed', clock, place)
-        velocity = np.stack([east, north, np.zeros(len(east))], axis=1)
+    names = _POLAR if is_polar else _COMPONENTS
+    first, second = (data.variables[found[each]] for each in names)
+    notes, place = _place(data, first, point)
+    one = _series(first, 'speed', clock, place)
+    other = _series(second, 'angle' if is_polar else 'speed', clock, place)
+    components = np.stack([one, other, np.zeros(len(one))], axis=1)
     seconds, epoch = _seconds(clock)
-    yield from (('velocity', velocity), ('seconds', seconds), ('epoch', epoch))
+    yield 'velocity', _velocity_from(one, other) if is_polar else components
+    yield from (('seconds', seconds), ('epoch', epoch))
     yield 'notes', np.array(notes, dtype=np.str_)
     if found['gust'] is not None:
-        yield 'gust', _Variable(data, found['gust'], source).series('speed', clock, place)
+        yield 'gust', _series(data.variables[found['gust']], 'speed', clock, place)
 
 
-def _velocity_from(speed: Floats, degrees: Floats) -> Floats:
-    """Wind of a speed and the direction it comes from, NaN where either is none, (n, 3)."""
-    degrees = np.where(np.isnan(degrees) & (speed == 0.0), 0.0, degrees)
-    good = (speed >= 0.0) & (np.abs(degrees) < FULL_CIRCLE)
-    bearing = np.radians(np.where(good, degrees, np.nan))
-    return velocity_to(-speed, bearing)
+def _velocity_from(speed: Floats, bearing: Floats) -> Floats:
+    """Wind of a speed and the direction it comes from [rad], NaN where either is none, (n, 3)."""
+    bearing = np.where(np.isnan(bearing) & (speed == 0.0), 0.0, bearing)
+    good = (speed >= 0.0) & (np.abs(np.degrees(bearing)) < FULL_CIRCLE)
+    return velocity_to(-speed, np.where(good, bearing, np.nan))
 
 
 def _find(data: Any, quantity: str) -> str | None:
@@ -154,33 +150,29 @@ def _place(
     return ([f'{grid}; at=LATITUDE,LONGITUDE chooses another'] if said else []), chosen
 
 
-class _Variable:
-    """A variable of a netCDF file, in SI."""
+def _series(variable: Any, kind: str, clock: Any, place: dict[str, int]) -> Floats:
+    """
+    Values over time at a place in SI, of the first of all other dimensions; NaN where missing.
 
-    def __init__(self, data: Any, name: str | None, source: str) -> None:
-        self.variable = data.variables[name]
-        self._where = f'{source}: {name}'
-
-    def series(self, kind: str, clock: Any, place: dict[str, int]) -> Floats:
-        """
-        Values over time at a place, of the first of all other dimensions; NaN where missing.
-
-        Raises a `FormatError` for a unit that is not one of the kind; without one, it is the
-        usual one of the kind, m/s or degrees.
-        """
-        if len(clock) > _MOST:
-            raise ValueError(f'{len(clock)} times')
-        unit = str(getattr(self.variable, 'units', _USUAL_UNITS[kind]))
-        factor = unit_factor(kind, unit)
-        if factor is None:
-            cure = f'use {", ".join([*UNITS[kind]][:12])}'
-            raise FormatError(f"unknown unit '{unit[:20]}'", where=self._where, cure=cure)
-        index = tuple(
-            slice(None) if name in clock.dimensions else place.get(name, 0)
-            for name in self.variable.dimensions
+    Raises a `FormatError` for a unit that is not one of the kind; without one, it is the usual one
+    of the kind, m/s or degrees.
+    """
+    if len(clock) > _MOST:
+        raise ValueError(f'{len(clock)} times')
+    unit = str(getattr(variable, 'units', _USUAL_UNITS[kind]))
+    factor = unit_factor(kind, unit)
+    if factor is None:
+        raise FormatError(
+            f"unknown unit '{unit[:20]}'",
+            where=variable.name,
+            cure=f'use {", ".join([*UNITS[kind]][:12])}',
         )
-        values = np.ma.asarray(self.variable[index], dtype=np.float64)
-        return factor * np.ma.filled(values, np.nan)
+    index = tuple(
+        slice(None) if name in clock.dimensions else place.get(name, 0)
+        for name in variable.dimensions
+    )
+    values = np.ma.asarray(variable[index], dtype=np.float64)
+    return factor * np.ma.filled(values, np.nan)
 
 
 def _seconds(clock: Any) -> tuple[Floats, float]:

@@ -111,36 +111,39 @@ def read_nmea_wind(
 def _mwv(fields: list[str], heading: float) -> Velocity | str:
     if len(fields) < 5:
         return f'{len(fields)} fields of 5'
-    if fields[4] != 'A':
-        return f"status is '{fields[4][:8]}', not A"
-    angle = finite(fields[0])
-    speed = finite(fields[2])
-    unit = _UNITS.get(fields[3])
-    bearing = None if angle is None else degrees_to_bearing(angle)
-    if bearing is None:
-        return _lacking('angle', fields[0])
-    if speed is None or speed < 0.0:
-        return _lacking('speed', fields[2])
-    if unit is None:
-        return f"no unit K, M, N or S: '{fields[3][:8]}'"
-    return velocity_of_bearing(speed * unit, bearing + heading)
+    angle, _, speed, unit, status = fields[:5]
+    if status != 'A':
+        return f"status is '{status[:8]}', not A"
+    if unit not in _UNITS:
+        return f"no unit K, M, N or S: '{unit[:8]}'"
+    return _wind('angle', angle, heading, speed, _UNITS[unit])
 
 
 def _mwd(fields: list[str], declination: float) -> Velocity | str:
     if len(fields) < 8:
         return f'{len(fields)} fields of 8'
-    true, magnetic, knots, speed = (finite(fields[i]) for i in (0, 2, 4, 6))
-    if speed is None and knots is not None:
-        speed = knots * _KNOT
-    bearing = None if true is None else degrees_to_bearing(true)
-    if bearing is None and magnetic is not None:
-        needle = degrees_to_bearing(magnetic)
-        bearing = None if needle is None else needle + declination
+    true, _, magnetic, _, knots, _, speed, _ = fields[:8]
+    is_magnetic = _bearing(true) is None and magnetic != ''
+    angle, turn = (magnetic, declination) if is_magnetic else (true, 0.0)
+    is_in_knots = finite(speed) is None and finite(knots) is not None
+    speed, unit = (knots, _KNOT) if is_in_knots else (speed, 1.0)
+    return _wind('direction', angle, turn, speed, unit)
+
+
+def _wind(what: str, angle: str, turn: float, speed: str, unit: float) -> Velocity | str:
+    """Wind of the fields of an angle and a speed, or which of them has none."""
+    bearing = _bearing(angle)
+    size = finite(speed)
     if bearing is None:
-        return _lacking('direction', fields[0] or fields[2])
-    if speed is None or speed < 0.0:
-        return _lacking('speed', fields[6] or fields[4])
-    return velocity_of_bearing(speed, bearing)
+        return _lacking(what, angle)
+    if size is None or size < 0.0:
+        return _lacking('speed', speed)
+    return velocity_of_bearing(size * unit, bearing + turn)
+
+
+def _bearing(text: str) -> float | None:
+    degrees = finite(text)
+    return None if degrees is None else degrees_to_bearing(degrees)
 
 
 def _mda(fields: list[str], declination: float) -> Velocity | str:
@@ -160,21 +163,19 @@ def _xdr(fields: list[str], heading: float) -> Velocity | str:
 
 def _vwr(fields: list[str], heading: float) -> Velocity | str:
     """Angle up to half a turn, left or right; the first given speed is used."""
-    angle = finite(fields[0])
-    side = fields[1] if len(fields) > 1 else ''
-    speeds = (
-        (finite(speed), _UNITS.get(unit))
-        for speed, unit in zip(fields[2::2], fields[3::2], strict=False)
-    )
-    speed = next((s * unit for s, unit in speeds if s is not None and unit is not None), None)
-    if angle is None or not 0.0 <= angle <= 180.0:
-        return _lacking('angle up to 180', fields[0])
+    angle, side = [*fields, ''][:2]
+    pairs = zip(fields[2::2], fields[3::2], strict=False)
+    speeds = [each for each in pairs if finite(each[0]) is not None and each[1] in _UNITS]
+    degrees = finite(angle)
+    if degrees is None or not 0.0 <= degrees <= 180.0:
+        return _lacking('angle up to 180', angle)
     if side not in ('L', 'R'):
         return f"no side L or R: '{side[:8]}'"
-    if speed is None or speed < 0.0:
-        return 'no speed with a unit' if speed is None else f'speed is {speed:g} m/s'
-    turn = angle * pi / 180.0
-    return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
+    if not speeds:
+        return 'no speed with a unit'
+    speed, unit = speeds[0]
+    from_bow = angle if side == 'R' else f'{360.0 - degrees}'
+    return _wind('angle', from_bow, heading, speed, _UNITS[unit])
 
 
 def _lacking(what: str, text: str) -> str:

@@ -45,13 +45,20 @@ def read_phone_sway(address: str) -> SwayRecord:
             buffers = json.loads(answer.read(_LARGEST))['buffer']
         columns = [list(buffers[name]['buffer']) for name in _QUANTITIES]
     except (OSError, HTTPException) as error:
-        cure = 'allow remote access in phyphox, on the same network as this machine'
-        raise TransportError(f'no phone answers ({error})', where=address, cure=cure) from None
+        raise TransportError(
+            f'no phone answers ({error})',
+            where=address,
+            cure='allow remote access in phyphox, on the same network as this machine',
+        ) from None
     except (ValueError, LookupError, TypeError):
-        cure = "open phyphox's experiment Acceleration (without g)"
-        raise FormatError('no accelerations in the answer', where=address, cure=cure) from None
+        raise FormatError(
+            'no accelerations in the answer',
+            where=address,
+            cure="open phyphox's experiment Acceleration (without g)",
+        ) from None
     if not columns[0]:
-        cure = 'start the experiment in phyphox'
-        raise FormatError('nothing is measured yet', where=address, cure=cure)
+        raise FormatError(
+            'nothing is measured yet', where=address, cure='start the experiment in phyphox'
+        )
     rows = [','.join(map(str, row)) for row in zip(*columns, strict=False)]
     return parse_sway(['time,ax,ay,az', *rows], address)

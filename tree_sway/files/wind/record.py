@@ -147,8 +147,11 @@ class WindRows:
         rows = np.flatnonzero(good)[~late]
         if len(rows) == 0:
             first = f'; first {self.first_refused}' if self.refused else ''
-            what = f'no good row of wind, {self.refused} refused{first}'
-            raise FormatError(what, where=self.source, cure='check that it is a file of wind')
+            raise FormatError(
+                f'no good row of wind, {self.refused} refused{first}',
+                where=self.source,
+                cure='check that it is a file of wind',
+            )
         time = time[rows]
         velocity = np.ascontiguousarray(velocity[rows])
         return WindRecord(

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,7 @@ from tree_sway.files.wind.record import WindRows
 _CALM = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class RowWinds:
+class RowWinds(NamedTuple):
     """Velocity of each row in [m/s], (n, 3), and which rows are good, (n,)."""
 
     velocity: Floats
@@ -54,16 +53,17 @@ def winds_of_directions(
     speeds = table.values([speed.index])[:, 0] * speed.factor
     degrees, texts = _degrees(table, direction)
     degrees = np.where(np.isnan(degrees) & (np.abs(speeds) < _CALM), 0.0, degrees)
-    good = np.ones(len(speeds), dtype=np.bool_)
-    for row in np.flatnonzero(~np.isfinite(speeds)).tolist():
-        rows.refuse(table.numbers[row], table.why_none(row, [speed.index]))
-    for row in np.flatnonzero(speeds < 0.0).tolist():
-        rows.refuse(table.numbers[row], f'speed is {speeds[row]:g}')
-    good &= np.isfinite(speeds) & (speeds >= 0.0)
-    for row in np.flatnonzero(good & ~(np.abs(degrees) < FULL_CIRCLE)).tolist():
-        name = '' if isinstance(direction, float) else table.columns[direction.index]
-        rows.refuse(table.numbers[row], _why_no_direction(name, texts[row], degrees[row]))
-    good &= np.abs(degrees) < FULL_CIRCLE
+    has_speed = speeds >= 0.0
+    good = has_speed & (np.abs(degrees) < FULL_CIRCLE)
+    for row in np.flatnonzero(~good).tolist():
+        if has_speed[row]:
+            name = '' if isinstance(direction, float) else table.columns[direction.index]
+            why = _why_no_direction(name, texts[row], degrees[row])
+        elif speeds[row] < 0.0:
+            why = f'speed is {speeds[row]:g}'
+        else:
+            why = table.why_none(row, [speed.index])
+        rows.refuse(table.numbers[row], why)
     bearing = np.radians(np.where(good, degrees, 0.0)) - yaw
     against = 1.0 if convention == 'to' else -1.0
     return RowWinds(velocity_to(against * speeds, bearing), good)

@@ -18,7 +18,7 @@ from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.units import Velocity
 
-MAX_LINE = 1024
+_MAX_LINE = 1024
 """Largest length of a line [characters]."""
 
 
@@ -63,7 +63,7 @@ def line_of(
 
     `sent_sum` is its checksum, of one of these bodies, None without one.
     """
-    if length > MAX_LINE:
+    if length > _MAX_LINE:
         found: Velocity | str = f'a line of {length} characters'
     elif sent_sum is not None and sent_sum not in map(checksum_of, bodies):
         found = 'wrong checksum'
@@ -107,8 +107,9 @@ def read_sensor_log(
             stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:
-        what = f'no sentence {" or ".join(kinds)}'
-        raise FormatError(what, where=str(path), cure="log the wind instrument's output")
+        raise FormatError(
+            f'no sentence {" or ".join(kinds)}', cure="log the wind instrument's output"
+        )
     best = next((kind for kind in there if found[kind].time), there[0])
     if found[best].time and all(stamps[best]):
         times = times_of(stamps[best])

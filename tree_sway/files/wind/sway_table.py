@@ -22,11 +22,12 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import motion_of
 from tree_sway.files.layouts.known import table_of
+from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import Join, row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_table_lines
 
-MAX_VALUE = 1e12
+_MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
 
 
@@ -57,6 +58,7 @@ class SwayRecord:
     source: str
 
 
+@of_file
 def read_csv_sway(path: Path) -> SwayRecord:
     """Read the motion of a tree from a table, as `parse_sway`."""
     return parse_sway(read_table_lines(path), str(path))
@@ -78,9 +80,10 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     clock = time_columns(table)
     motion = [(i, found[0]) for i, name in enumerate(table.columns) if (found := motion_of(name))]
     if clock is None or not motion:
-        what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
-        cure = 'call the columns time, x, y or time, tilt_x or time, ax, ay in the header'
-        raise table.error(what, cure=cure)
+        raise table.error(
+            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
+            cure='call the columns time, x, y or time, tilt_x or time, ax, ay in the header',
+        )
     if 'seconds_elapsed' in table.columns:  # Sensor Logger has axes x, y, z for all its sensors
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
@@ -88,16 +91,20 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
         motion = [(i, quantity) for i, quantity in motion if quantity == 'acceleration']
         quantities = ['acceleration']
     if len(quantities) > 1:
-        what = f'{" and ".join(quantities)} in one file'
-        raise table.error(what, cure='keep the columns of one quantity')
+        raise table.error(
+            f'{" and ".join(quantities)} in one file', cure='keep the columns of one quantity'
+        )
     factors = [table.factor_of(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     with np.errstate(over='ignore'):
-        is_plausible = np.abs(values) * factors <= MAX_VALUE
+        is_plausible = np.abs(values) * factors <= _MAX_VALUE
     for row, column in np.argwhere(~is_plausible)[:1]:
-        what = f'{columns[column]} is {values[row, column]:.3g}, which is implausible'
-        raise table.error(what, row, 'correct the cell or remove the row')
+        raise table.error(
+            f'{columns[column]} is {values[row, column]:.3g}, which is implausible',
+            row,
+            'correct the cell or remove the row',
+        )
     times = _times(table, *clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
@@ -107,10 +114,16 @@ def _times(table: TextTable, columns: list[int], join: Join | None, factor: floa
     rows = list(range(len(table.texts)))
     times = row_times(table, columns, join, factor, rows).seconds
     stamps = table.cells(columns[0], rows)
-    for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
-        what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
-        raise table.error(what, row, 'correct the cell or remove the row')
+    for row in np.flatnonzero(~(np.abs(times) <= _MAX_VALUE))[:1]:
+        raise table.error(
+            f"time is '{stamps[row][:40]}', neither seconds nor a date",
+            row,
+            'correct the cell or remove the row',
+        )
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
-        what = f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}'
-        raise table.error(what, row + 1, 'put the rows in the order of time, each time once')
+        raise table.error(
+            f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
+            row + 1,
+            'put the rows in the order of time, each time once',
+        )
     return times

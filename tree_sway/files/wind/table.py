@@ -33,7 +33,7 @@ from tree_sway.files.wind.cell_units import with_units_in_head
 from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
-from tree_sway.files.wind.speed_units import speed_units
+from tree_sway.files.wind.speed_units import speed_factor
 from tree_sway.files.wind.station_means import filled_means
 from tree_sway.files.zipped import tables_in
 
@@ -72,30 +72,7 @@ def read_table_wind(
     found = [(name, lines) for name, lines in tables_in(path) if lines]
     is_wind = [each for each in found if looks_like_wind('\n'.join(each[1][:_HEAD]))]
     name, lines = (is_wind or found)[0]
-    return wind_of_table(
-        table_of(lines, name),
-        columns=columns,
-        convention=direction_convention,
-        yaw=yaw,
-        speed_unit=speed_unit,
-        direction=direction,
-        turbulence=turbulence,
-        seed=seed,
-    )
-
-
-def wind_of_table(
-    table: TextTable,
-    *,
-    columns: tuple[str, ...] | None = None,
-    convention: str | None = None,
-    yaw: float = 0.0,
-    speed_unit: str | None = None,
-    direction: float | None = None,
-    turbulence: bool = True,
-    seed: float = 0,
-) -> WindRecord:
-    """Return the wind of a table, as `read_table_wind`."""
+    table = table_of(lines, name)
     table.refuse_several()
     table, note = _at_one_height(with_units_in_head(table))
     rows = WindRows(table.source)
@@ -104,7 +81,7 @@ def wind_of_table(
     components = _components(table, columns)
     if time is not None and components:
         winds = winds_of_components(table, components, rows)
-        convention = convention or 'to'
+        convention = direction_convention or 'to'
     else:
         found = {each: c for each in ('wind_speed', 'wind_direction') if (c := table.find(each))}
         if 'wind_speed' in found and 'wind_direction' not in found:
@@ -115,9 +92,12 @@ def wind_of_table(
         has_direction = bool(components) or from_where is not None
         _refuse_missing(table, time is not None, has_speed, has_direction)
         assert from_where is not None
-        speed, note = _speed(table, found['wind_speed'], speed_unit)
+        index = found['wind_speed'].index
+        factor, note = speed_factor(table, index, 'wind_speed', speed_unit)
         notes += [note] if note else []
-        winds = winds_of_directions(table, speed, from_where, rows, yaw, convention or 'from')
+        speed = Column(index, factor)
+        convention = direction_convention or 'from'
+        winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
         notes += _doubt(table, from_where)
         yaw = 0.0
         convention = 'to'
@@ -206,12 +186,6 @@ def _refuse_missing(table: TextTable, time: bool, speed: bool, direction: bool) 
     raise table.error(what, cure=cure)
 
 
-def _speed(table: TextTable, column: Column, unit: str | None) -> tuple[Column, str]:
-    """Column of the speed with its factor, and what was assumed for it."""
-    units = speed_units(table, {'wind_speed': column.index}, unit)
-    return Column(column.index, units.speed), units.note
-
-
 def _doubt(table: TextTable, direction: Column | float) -> list[str]:
     """Return a note on directions without a unit that may be radians."""
     if isinstance(direction, float) or table.unit_of(direction.index, 'wind_direction'):
@@ -233,6 +207,6 @@ def _fill(
     rows.time = array('d', seconds)
     gust = table.find('gust')
     if gust is not None:
-        factor = speed_units(table, {'gust': gust.index}, unit).gust
+        factor, _ = speed_factor(table, gust.index, 'gust', unit)
         values = table.values([gust.index])[stored, 0] * factor
         rows.gust = np.where((values >= 0.0) & (values <= 150.0), values, np.nan)

@@ -15,7 +15,7 @@ from typing import Any
 from tree_sway.errors import FormatError, nearest
 from tree_sway.files.file_format import contains, FileFormat, format_of
 from tree_sway.files.layouts.known import looks_like_wind
-from tree_sway.files.paths import path_of
+from tree_sway.files.paths import of_file
 from tree_sway.files.wind.bag import read_bag_wind
 from tree_sway.files.wind.metar import METAR, read_metar_wind
 from tree_sway.files.wind.netcdf import read_netcdf_wind
@@ -52,7 +52,8 @@ EXAMPLES = ('canopy',)
 """Built-in winds: five minutes of a sonic anemometer over a canopy, 20 Hz."""
 
 
-def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002, E501
+@of_file
+def read_wind(path: Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002
     """
     Read a wind record.
 
@@ -73,11 +74,10 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
         An option that the reader of this format does not have, or a wrong value.
 
     """
-    path = path_of(path)
     if str(path) in EXAMPLES and not path.exists():
         path = Path(str(files('tree_sway.files.wind').joinpath(f'{path}.csv')))
     elif not path.exists() and (guess := nearest(str(path), EXAMPLES)):
-        raise FormatError('no such file', where=str(path), cure=guess)
+        raise FormatError('no such file', cure=guess)
     chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
     chosen.refuse_others(options, chosen.own_options)
     record: WindRecord = chosen.read(path, **options)

@@ -18,7 +18,7 @@ from tree_sway.extras import refuse_missing
 from tree_sway.live.camera.point_tracker import PointTracker, Sighting
 from tree_sway.twin.camera import Camera, DrawnWood
 
-PREFIX = 'camera:'
+_PREFIX = 'camera:'
 _BESIDE = 8
 """Width in pixels about the wood in which points are found."""
 _AGAIN = 3.0
@@ -29,7 +29,7 @@ _RED = (0, 0, 255)
 
 def is_camera(address: str) -> bool:
     """Whether an address of a sensor is that of a camera."""
-    return address.startswith(PREFIX)
+    return address.startswith(_PREFIX)
 
 
 class Film:
@@ -56,7 +56,7 @@ class Film:
         refuse_missing(['cv2'], f'simulate --motion {address}')
         cv2 = self._cv2 = import_module('cv2')
         self.name = address
-        source = address.removeprefix(PREFIX)
+        source = address.removeprefix(_PREFIX)
         self._source: int | str = int(source) if source.isdecimal() else source
         self.is_live = source.isdecimal() or '://' in source
         """Whether its pictures are of now."""
@@ -66,8 +66,11 @@ class Film:
         self._begun = self._capture.get(cv2.CAP_PROP_POS_MSEC)
         """The first picture, blue, green, red, (high, wide, 3)."""
         if not is_read:
-            cure = 'give camera:0, camera:FILE.mp4 or camera:rtsp://host/path'
-            raise ParameterError(f"no picture comes from '{source}'", where='--motion', cure=cure)
+            raise ParameterError(
+                f"no picture comes from '{source}'",
+                where='--motion',
+                cure='give camera:0, camera:FILE.mp4 or camera:rtsp://host/path',
+            )
 
     @property
     def size(self) -> tuple[int, int]:
@@ -90,8 +93,11 @@ class Film:
         picture = self.first.copy()
         _draw(self._cv2, picture, wood, _RED, 0)
         if not self._cv2.imwrite(path, picture):
-            cure = 'give a .png or .jpg in a folder that is there'
-            raise ParameterError(f"'{path}' cannot be written", where='--at', cure=cure)
+            raise ParameterError(
+                f"'{path}' cannot be written",
+                where='--at',
+                cure='give a .png or .jpg in a folder that is there',
+            )
 
     def sightings(self, tracker: PointTracker) -> Iterator[Sighting]:
         """Follow the points of a file's pictures, with times from its first one on in [s]."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-MOST_POINTS = 200
+_MOST_POINTS = 200
 _QUALITY = 0.02
 _APART = 6
 """Least distance of two points in pixels."""
@@ -104,7 +104,9 @@ class PointTracker:
 
     def _begin(self, time: float, grey: Any) -> Sighting:
         """Find points, and follow them from here."""
-        found = self._cv2.goodFeaturesToTrack(grey, MOST_POINTS, _QUALITY, _APART, mask=self._mask)
+        found = self._cv2.goodFeaturesToTrack(
+            grey, _MOST_POINTS, _QUALITY, _APART, mask=self._mask
+        )
         self._found = np.zeros((0, 1, 2), dtype=np.float32) if found is None else found
         self._last, self._good_at = self._found, time
         self._first = grey if len(self._found) else None

@@ -57,15 +57,21 @@ def sensing(
         opened = open_motion(url)
         address = str(opened.source.transport)
         if address in addresses:
-            cure = 'a sensor has one place: give each its own port, host or topic'
-            raise ParameterError(f'two sensors at {address}', where='--motion', cure=cure)
+            raise ParameterError(
+                f'two sensors at {address}',
+                where='--motion',
+                cure='a sensor has one place: give each its own port, host or topic',
+            )
         addresses.add(address)
         tell = heard[number] if heard else None
         placed.append(PlacedSensor(LiveMotion(opened, _say, heard=tell), at))
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
-        cure = 'give each a name: udp:5006?name=stem'
-        raise ParameterError('two sensors of one name and place', where='--motion', cure=cure)
+        raise ParameterError(
+            'two sensors of one name and place',
+            where='--motion',
+            cure='give each a name: udp:5006?name=stem',
+        )
     with ExitStack() as stack:
         for each in placed:
             each.live.start()

@@ -64,7 +64,7 @@ def listening(
         wind.stop()
 
 
-def wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
+def _wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
     """
     Wait for the first reading.
 
@@ -90,7 +90,7 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
     pause = threading.Event()
     samples = list[tuple[float, tuple[float, float, float]]]()
     with listening(arguments) as wind:
-        wait_for_wind(wind)
+        _wait_for_wind(wind)
         end = time.monotonic() + seconds
         try:
             while time.monotonic() < end:

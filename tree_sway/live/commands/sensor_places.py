@@ -24,7 +24,8 @@ def sensors_and_places(arguments: argparse.Namespace) -> list[tuple[str, str]]:
     n_sensors = len(arguments.motion)
     n_places = len(arguments.at)
     if n_sensors != n_places:
-        what = f'{n_sensors} --motion and {n_places} --at'
-        cure = 'give the place of each sensor: --motion SENSOR --at 3.2'
-        raise ParameterError(what, cure=cure)
+        raise ParameterError(
+            f'{n_sensors} --motion and {n_places} --at',
+            cure='give the place of each sensor: --motion SENSOR --at 3.2',
+        )
     return list(zip(arguments.motion, arguments.at, strict=True))

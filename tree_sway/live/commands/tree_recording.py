@@ -56,11 +56,17 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     if arguments.sensor is None:
         raise ParameterError('motion without wind', cure='give its source: --wind tempest')
     if arguments.tree is None:
-        cure = 'give its file or name: --tree oak.yaml'
-        raise ParameterError('motion without the tree that it is of', where='--tree', cure=cure)
+        raise ParameterError(
+            'motion without the tree that it is of',
+            where='--tree',
+            cure='give its file or name: --tree oak.yaml',
+        )
     if folder.suffix or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
-        what = f"'{folder}' is no new folder"
-        raise ParameterError(what, where='--output', cure='name a folder that is not there yet')
+        raise ParameterError(
+            f"'{folder}' is no new folder",
+            where='--output',
+            cure='name a folder that is not there yet',
+        )
     opened = open_tree(arguments.tree, warn=False)
     say_warnings(opened.warnings)
     for at in arguments.at:

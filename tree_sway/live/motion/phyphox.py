@@ -21,11 +21,13 @@ from typing import Any, NamedTuple
 
 import aiohttp
 
+from tree_sway.files import list_of, object_of
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.event_loop import run_until_over
+from tree_sway.live.transports.http_poll import body_of
 from tree_sway.live.transports.transport import Message, Receiver
 
 EXPECTS = 'the remote access of phyphox, with an experiment of acceleration or the gyroscope'
@@ -106,9 +108,9 @@ class PhyphoxPhone:
                 await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
 
     def _begin(self, config: Any) -> None:
-        self._buffers = buffers_of(config)
+        self._buffers = _buffers_of(config)
         if not self._buffers:
-            title = str(config.get('title', ''))[:40] if isinstance(config, dict) else ''
+            title = str(object_of(config).get('title', ''))[:40]
             raise ConnectionError(
                 f"experiment '{title}' has neither acceleration nor gyroscope: open "
                 "'Acceleration (with g)' in phyphox, or one of your own with both"
@@ -121,8 +123,7 @@ class PhyphoxPhone:
         """Take the newest sample that is there now as the one to go on from."""
         times = {each.time: '' for each in self._buffers.values()}
         answer = await self._document(session, '/get', times)
-        status = answer.get('status') if isinstance(answer, dict) else None
-        if isinstance(status, dict) and status.get('measuring') is False:
+        if object_of(object_of(answer).get('status')).get('measuring') is False:
             raise ConnectionError('the measurement is paused: press play in phyphox')
         for name, each in self._buffers.items():
             values = values_of(answer, each.time)
@@ -157,11 +158,7 @@ class PhyphoxPhone:
             ) as answer:
                 if answer.status != 200:
                     raise ConnectionError(f'HTTP {answer.status}: is it phyphox 1.1.8 or later?')
-                data = b''
-                async for block in answer.content.iter_any():
-                    data += block
-                    if len(data) > _LARGEST:
-                        raise ConnectionError(f'more than {_LARGEST} bytes')
+                data = await body_of(answer, _LARGEST)
         except asyncio.TimeoutError:
             raise ConnectionError(f'no answer within {_TIMEOUT:g} s') from None
         except aiohttp.ClientConnectionError:
@@ -224,16 +221,13 @@ def _between(before: Sample, after: Sample, at: float) -> Numbers:
     return tuple(a + share * (b - a) for a, b in zip(before[1], after[1], strict=True))
 
 
-def buffers_of(config: Any) -> dict[str, Buffers]:
+def _buffers_of(config: Any) -> dict[str, Buffers]:
     """Return the buffers of acceleration and rate of an experiment, by ``/config``."""
-    inputs = config.get('inputs') if isinstance(config, dict) else None
     sources: dict[str, Buffers] = {}
-    for each in inputs if isinstance(inputs, list) else ():
-        outputs = each.get('outputs') if isinstance(each, dict) else None
+    for each in map(object_of, list_of(object_of(config).get('inputs'))):
         named: dict[str, str] = {}
-        for output in outputs if isinstance(outputs, list) else ():
-            if isinstance(output, dict):
-                named |= {str(key): str(name) for key, name in output.items()}
+        for output in map(object_of, list_of(each.get('outputs'))):
+            named |= {str(key): str(name) for key, name in output.items()}
         if {'x', 'y', 'z', 't'} <= named.keys():
             axes = named['x'], named['y'], named['z']
             sources.setdefault(str(each.get('source')), Buffers(axes, named['t']))
@@ -261,8 +255,6 @@ def rows_of(answer: Any, buffers: Buffers) -> list[Sample] | None:
 
 def values_of(answer: Any, name: str) -> list[float]:
     """Return the values of a buffer in an answer, not a number where there is none."""
-    buffers = answer.get('buffer') if isinstance(answer, dict) else None
-    held = buffers.get(name) if isinstance(buffers, dict) else None
-    values = held.get('buffer') if isinstance(held, dict) else None
-    known = (number(each) for each in (values if isinstance(values, list) else ()))
+    held = object_of(object_of(object_of(answer).get('buffer')).get(name))
+    known = map(number, list_of(held.get('buffer')))
     return [math.nan if each is None else each for each in known]

@@ -28,7 +28,7 @@ from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
 
-LINE_KINDS = ('auto', *SENTENCES, *KINDS)
+_LINE_KINDS = ('auto', *SENTENCES, *KINDS)
 """Sentences that may be chosen where an instrument sends several."""
 _MOST_LINES = 64
 """Number of lines of a datagram that are read."""
@@ -52,7 +52,7 @@ class InstrumentLines:
     Parameters
     ----------
     sentence
-        One of `LINE_KINDS` to read; ``auto`` is the kind of the first good line.
+        One of `_LINE_KINDS` to read; ``auto`` is the kind of the first good line.
     heading
         Bearing of the bow or the north mark, clockwise from true north [rad].
     declination
@@ -138,8 +138,8 @@ def _of_sensor_line(line: SensorLine) -> Reading:
 def lines_of(address: SourceAddress) -> InstrumentLines:
     """Make a reader from the options of an address; a `TreeSwayError` for a wrong one."""
     sentence = address.text_of('sentence', 'auto')
-    if sentence not in LINE_KINDS:
-        raise address.error(f"sentence is '{sentence}'", f'use {", ".join(LINE_KINDS)}')
+    if sentence not in _LINE_KINDS:
+        raise address.error(f"sentence is '{sentence}'", f'use {", ".join(_LINE_KINDS)}')
     return InstrumentLines(
         sentence,
         address.angle('heading_degrees'),

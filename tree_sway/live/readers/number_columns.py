@@ -22,8 +22,8 @@ from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
 
 COLUMNS = 'speed direction gust u v w -'.split()
 """Meanings of a column; components point east, north and up, the way the air goes."""
-KIND_PLAIN = 'numbers'
-KIND_SDI12 = 'SDI-12'
+_KIND_PLAIN = 'numbers'
+_KIND_SDI12 = 'SDI-12'
 _SDI12 = re.compile(r'\w((?:[+-]\d+(?:\.\d*)?){2,})(?:[@-\x7f]{3})?')
 _SIGNED = re.compile(r'[+-]\d+(?:\.\d*)?')
 _GAP = re.compile(r'[,;\s]+')
@@ -37,8 +37,9 @@ def columns_of(text: str) -> tuple[str, ...]:
     names = tuple(name.strip() for name in text.split(',')) if text else ()
     unknown = [name for name in names if name not in COLUMNS]
     if unknown or (names and 'speed' not in names and not {'u', 'v'} <= set(names)):
-        what = f"columns are '{text}'"
-        raise ParameterError(what, cure=f'use speed, or u and v, among {", ".join(COLUMNS)}')
+        raise ParameterError(
+            f"columns are '{text}'", cure=f'use speed, or u and v, among {", ".join(COLUMNS)}'
+        )
     return names
 
 
@@ -49,11 +50,11 @@ def read_numbers(
     answer = _SDI12.fullmatch(line.strip())
     if answer is not None:
         texts = _SIGNED.findall(answer[1])
-        kind = KIND_SDI12
+        kind = _KIND_SDI12
         columns = columns or _gill_columns(texts)
     else:
         texts = [cell for cell in _GAP.split(_LABELS.sub('', line).strip()) if cell]
-        kind = KIND_PLAIN
+        kind = _KIND_PLAIN
         columns = columns or {1: ('speed',), 2: ('speed', 'direction')}.get(len(texts), ())
     values = [finite(text) for text in texts]
     if not values or None in values:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tree_sway.files import list_of, object_of
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.reading import Reading
@@ -30,9 +31,8 @@ _NAMES = WindNames(
 
 def conditions_of(document: Any) -> list[Any]:
     """Return the records of a document; none of any other."""
-    inside = document.get('data', document) if isinstance(document, dict) else None
-    found = inside.get('conditions') if isinstance(inside, dict) else None
-    return found if isinstance(found, list) else []
+    inside = object_of(object_of(document).get('data', document))
+    return list_of(inside.get('conditions'))
 
 
 def read_weatherlink(document: Any) -> Sequence[Reading]:

@@ -27,7 +27,7 @@ _KIND = 'Cumulus'
 _FORM = form_of('Cumulus realtime')
 
 
-def read_realtime(message: Message) -> Sequence[Reading]:
+def _read_realtime(message: Message) -> Sequence[Reading]:
     """Read the wind of a file; a refusal if its numbers are none."""
     found = _FORM.fullmatch(message.data.decode('utf-8', 'replace').strip().replace(',', '.'))
     factor = None if found is None else unit_factor('speed', found['unit'])
@@ -42,14 +42,14 @@ def read_realtime(message: Message) -> Sequence[Reading]:
     return [WindReading(_KIND, factor * speed, radians(bearing), gust=most, interval=_INTERVAL)]
 
 
-def open_cumulus(address: SourceAddress) -> Source:
+def _open_cumulus(address: SourceAddress) -> Source:
     """Open a file on a server: ``cumulus:HOST/realtime.txt``."""
     if not address.place:
         raise address.error('no host', 'give cumulus:weather.example.org/realtime.txt')
     url = f'http://{address.place.lstrip("/")}'
     every = address.number('every', _EVERY, 0.2, 86_400.0)
     expects = 'the fields of realtime.txt'
-    return Source(HttpPoll(url, every), read_realtime, _KIND, expects, _INTERVAL)
+    return Source(HttpPoll(url, every), _read_realtime, _KIND, expects, _INTERVAL)
 
 
 SOURCES = (
@@ -57,6 +57,6 @@ SOURCES = (
         ('cumulus',),
         'cumulus:HOST/realtime.txt',
         'a station of Cumulus or Cumulus MX',
-        open_cumulus,
+        _open_cumulus,
     ),
 )

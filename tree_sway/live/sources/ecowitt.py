@@ -40,7 +40,7 @@ def read_upload(message: Message) -> Sequence[Reading]:
     return _NAMES.read(named, _KIND)
 
 
-def open_ecowitt(address: SourceAddress) -> Source:
+def _open_ecowitt(address: SourceAddress) -> Source:
     """
     Open a server on a port: ``ecowitt:8080``, for this machine alone.
 
@@ -63,5 +63,7 @@ def open_ecowitt(address: SourceAddress) -> Source:
 
 
 SOURCES = (
-    SourceKind(('ecowitt',), 'ecowitt:PORT', 'a station that sends to this machine', open_ecowitt),
+    SourceKind(
+        ('ecowitt',), 'ecowitt:PORT', 'a station that sends to this machine', _open_ecowitt
+    ),
 )

@@ -20,7 +20,7 @@ from tree_sway.simulation.wind import LEAST_INTERVAL
 
 SHORTEST, LONGEST = 0.2, 86_400.0
 """Interval of requests [s]."""
-OPTIONS = (
+_OPTIONS = (
     *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
     *('name', 'mean', 'from_degrees'),
 )
@@ -28,7 +28,7 @@ OPTIONS = (
 _EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
 
 
-def json_reader(names: WindNames) -> Read:
+def _json_reader(names: WindNames) -> Read:
     """Return a reader of documents."""
 
     def read(message: Message) -> Sequence[Reading]:
@@ -37,7 +37,7 @@ def json_reader(names: WindNames) -> Read:
     return read
 
 
-def open_http(address: SourceAddress) -> Source:
+def _open_http(address: SourceAddress) -> Source:
     """
     Open an address: ``http://host/state.json?speed=PATH&direction=PATH&every=60``.
 
@@ -47,15 +47,15 @@ def open_http(address: SourceAddress) -> Source:
         raise address.error('no host', 'give http://host/path')
     parts = address.parts
     if not parts.fragment:
-        theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in OPTIONS]
-        address.options = {k: v for k, v in address.options.items() if k in OPTIONS}
+        theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in _OPTIONS]
+        address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
     every = address.number('every', 60.0, SHORTEST, LONGEST)
     token = address.secret('token_file')
     headers = {'Authorization': f'Bearer {token}'} if token else {}
     transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
     interval = every if every >= LEAST_INTERVAL else 0.0
-    return Source(transport, json_reader(names_of(address)), address.host, _EXPECTS, interval)
+    return Source(transport, _json_reader(names_of(address)), address.host, _EXPECTS, interval)
 
 
 SOURCES = (
@@ -63,6 +63,6 @@ SOURCES = (
         ('http', 'https'),
         'http://host/path?speed=PATH&direction=PATH&every=60',
         'JSON of an HTTP server',
-        open_http,
+        _open_http,
     ),
 )

@@ -67,7 +67,7 @@ def _read(text: str, time: float | None, place: str) -> Sequence[Reading]:
     ]
 
 
-def open_metar(address: SourceAddress) -> Source:
+def _open_metar(address: SourceAddress) -> Source:
     """Open an airport by its code of ICAO: ``metar:EDDB``."""
     code = address.place.upper()
     if not _ICAO.fullmatch(code):
@@ -78,4 +78,4 @@ def open_metar(address: SourceAddress) -> Source:
     return Source(transport, read_reports, f'METAR {code}', 'a METAR report', _INTERVAL, _LASTS)
 
 
-SOURCES = (SourceKind(('metar',), 'metar:ICAO', 'the reports of an airport', open_metar),)
+SOURCES = (SourceKind(('metar',), 'metar:ICAO', 'the reports of an airport', _open_metar),)

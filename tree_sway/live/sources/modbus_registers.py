@@ -31,7 +31,7 @@ _NO_VALUE = (0x7FFF, -0x8000, -1)
 """Words of a register without a value: the largest and least, and all bits."""
 
 
-def open_modbus(address: SourceAddress) -> Source:
+def _open_modbus(address: SourceAddress) -> Source:
     """
     Open an instrument: ``modbus:HOST:502?...`` or ``modbus:/dev/ttyUSB0:9600?...``.
 
@@ -93,6 +93,6 @@ SOURCES = (
         ('modbus',),
         'modbus:/dev/ttyUSB0:9600?speed=0&direction=1&scale=0.01',
         'an instrument with Modbus',
-        open_modbus,
+        _open_modbus,
     ),
 )

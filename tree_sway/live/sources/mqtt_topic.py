@@ -17,7 +17,7 @@ from tree_sway.live.transports.mqtt import Mqtt, PORT, TLS_PORT
 from tree_sway.live.transports.transport import Message
 
 
-def open_mqtt(address: SourceAddress) -> Source:
+def _open_mqtt(address: SourceAddress) -> Source:
     """
     Open a topic: ``mqtt://host/topic``, of JSON or of plain numbers.
 
@@ -72,6 +72,6 @@ class _WithVane:
 
 SOURCES = (
     SourceKind(
-        ('mqtt', 'mqtts'), 'mqtt://host/topic?field=PATH', 'a topic of an MQTT broker', open_mqtt
+        ('mqtt', 'mqtts'), 'mqtt://host/topic?field=PATH', 'a topic of an MQTT broker', _open_mqtt
     ),
 )

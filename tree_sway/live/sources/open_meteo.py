@@ -58,7 +58,7 @@ def _dated(reading: Reading, current: dict[str, object]) -> Reading:
     return replace(reading, time=times.epoch if is_dated else None, interval=interval)
 
 
-def open_open_meteo(address: SourceAddress) -> Source:
+def _open_open_meteo(address: SourceAddress) -> Source:
     """Open a place: ``open-meteo:52.52,13.41``; ``server`` is that of another installation."""
     place = _PLACE.fullmatch(address.place)
     latitude, longitude = (float(place[1]), float(place[2])) if place else (91.0, 0.0)
@@ -78,5 +78,7 @@ def open_open_meteo(address: SourceAddress) -> Source:
 
 
 SOURCES = (
-    SourceKind(('open-meteo',), 'open-meteo:LAT,LON', 'the weather at any place', open_open_meteo),
+    SourceKind(
+        ('open-meteo',), 'open-meteo:LAT,LON', 'the weather at any place', _open_open_meteo
+    ),
 )

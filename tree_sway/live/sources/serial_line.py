@@ -15,7 +15,7 @@ from tree_sway.live.transports.serial_port import NMEA_BAUD, SerialPort
 _PLACE = re.compile(r'(/[^\s:]+|COM\d+)(?::(\d{3,7}))?')
 
 
-def open_serial(address: SourceAddress) -> Source:
+def _open_serial(address: SourceAddress) -> Source:
     """Open a port: ``serial:/dev/ttyUSB0:4800``; the baud rate is that of NMEA if left out."""
     place = _PLACE.fullmatch(address.place)
     if place is None:
@@ -29,6 +29,6 @@ def open_serial(address: SourceAddress) -> Source:
 
 SOURCES = (
     SourceKind(
-        ('serial',), 'serial:/dev/ttyUSB0:4800', 'an instrument on a serial port', open_serial
+        ('serial',), 'serial:/dev/ttyUSB0:4800', 'an instrument on a serial port', _open_serial
     ),
 )

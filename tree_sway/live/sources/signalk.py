@@ -20,7 +20,7 @@ from tree_sway.live.transports.websocket import WebSocket
 _PORT = 3000
 
 
-def open_signalk(address: SourceAddress) -> Source:
+def _open_signalk(address: SourceAddress) -> Source:
     """Open a server: ``signalk://host:3000``; ``signalks`` with TLS, ``token_file`` to log in."""
     if not address.host:
         raise address.error('no host', 'give signalk://host:3000')
@@ -41,6 +41,6 @@ def open_signalk(address: SourceAddress) -> Source:
 
 SOURCES = (
     SourceKind(
-        ('signalk', 'signalks'), 'signalk://host:3000', 'a boat with Signal K', open_signalk
+        ('signalk', 'signalks'), 'signalk://host:3000', 'a boat with Signal K', _open_signalk
     ),
 )

@@ -11,7 +11,7 @@ from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.tcp import Tcp
 
 
-def open_tcp(address: SourceAddress) -> Source:
+def _open_tcp(address: SourceAddress) -> Source:
     """Open a server: ``tcp://host:port``."""
     if not address.host:
         raise address.error('no host', 'give tcp://host:port')
@@ -20,4 +20,6 @@ def open_tcp(address: SourceAddress) -> Source:
     return Source(link, read, f'{link.host}:{link.port}', EXPECTS, messages='lines')
 
 
-SOURCES = (SourceKind(('tcp',), 'tcp://host:port', 'an instrument behind a TCP server', open_tcp),)
+SOURCES = (
+    SourceKind(('tcp',), 'tcp://host:port', 'an instrument behind a TCP server', _open_tcp),
+)

@@ -17,7 +17,7 @@ from tree_sway.live.transports.udp import Udp
 _PORT = 50222
 
 
-def open_tempest(address: SourceAddress) -> Source:
+def _open_tempest(address: SourceAddress) -> Source:
     """Open the hubs of this network: ``tempest``, or one station by its ``serial`` number."""
     if address.host or address.place:
         raise address.error('its hub sends to the whole network', 'give tempest, without a place')
@@ -33,4 +33,4 @@ def open_tempest(address: SourceAddress) -> Source:
     return Source(Udp('', port, is_shared=True, silence=30.0), read, 'Tempest', expects)
 
 
-SOURCES = (SourceKind(('tempest',), 'tempest', 'a WeatherFlow Tempest', open_tempest),)
+SOURCES = (SourceKind(('tempest',), 'tempest', 'a WeatherFlow Tempest', _open_tempest),)

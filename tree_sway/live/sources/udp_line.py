@@ -23,11 +23,11 @@ def udp_of(address: SourceAddress) -> Udp:
     return Udp(address.host, port, silence=silence_of(address))
 
 
-def open_udp(address: SourceAddress) -> Source:
+def _open_udp(address: SourceAddress) -> Source:
     """Open a port: ``udp:port``, on one address of this machine, or a multicast group."""
     read = lines_of(address)
     link = udp_of(address)
     return Source(link, read, str(link), EXPECTS, messages='lines')
 
 
-SOURCES = (SourceKind(('udp',), 'udp://:port', 'datagrams to a port of this machine', open_udp),)
+SOURCES = (SourceKind(('udp',), 'udp://:port', 'datagrams to a port of this machine', _open_udp),)

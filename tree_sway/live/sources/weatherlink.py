@@ -27,7 +27,7 @@ def read_conditions(message: Message) -> Sequence[Reading]:
     return read_weatherlink(parse_json(message.data))
 
 
-def open_weatherlink(address: SourceAddress) -> Source:
+def _open_weatherlink(address: SourceAddress) -> Source:
     """Open an instrument: ``weatherlink:HOST``."""
     if not address.place:
         raise address.error('no host', 'give weatherlink:192.168.1.30')
@@ -38,5 +38,7 @@ def open_weatherlink(address: SourceAddress) -> Source:
 
 
 SOURCES = (
-    SourceKind(('weatherlink',), 'weatherlink:HOST', 'a Davis WeatherLink Live', open_weatherlink),
+    SourceKind(
+        ('weatherlink',), 'weatherlink:HOST', 'a Davis WeatherLink Live', _open_weatherlink
+    ),
 )

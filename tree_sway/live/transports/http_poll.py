@@ -22,6 +22,16 @@ _TIMEOUT = 10.0
 """Longest time of a request [s]."""
 
 
+async def body_of(answer: aiohttp.ClientResponse, largest: int) -> bytes:
+    """Return the body of an answer; a `ConnectionError` above a number of bytes."""
+    data = b''
+    async for block in answer.content.iter_any():
+        data += block
+        if len(data) > largest:
+            raise ConnectionError(f'more than {largest} bytes')
+    return data
+
+
 @dataclass(frozen=True)
 class HttpPoll:
     """An address that is requested every some seconds [s], with further headers."""
@@ -58,11 +68,6 @@ class HttpPoll:
             async with session.get(self.url, max_redirects=5) as answer:
                 if answer.status != 200:
                     raise ConnectionError(f'HTTP {answer.status} {answer.reason or ""}'.strip())
-                data = b''
-                async for block in answer.content.iter_any():
-                    data += block
-                    if len(data) > _LARGEST:
-                        raise ConnectionError(f'more than {_LARGEST} bytes')
-                return data
+                return await body_of(answer, _LARGEST)
         except asyncio.TimeoutError:
             raise ConnectionError(f'no answer within {_TIMEOUT:g} s') from None

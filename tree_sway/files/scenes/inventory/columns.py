@@ -56,8 +56,7 @@ class InventoryColumns:
         self.is_kept[row] = False
         self._reasons[reason] += 1
         if not self._first:
-            number = self.table.numbers[row]
-            self._first = f'{self.table.row_name} {number}: {detail or reason}'
+            self._first = f'{self.line(row)}: {detail or reason}'
 
     def why_left_out(self) -> str:
         """Return how many rows were left out, why, and the first; empty without one."""
@@ -77,6 +76,23 @@ class InventoryColumns:
     def index_of(self, quantity: str) -> int | None:
         """Place of the first column of a quantity; None without one."""
         return next(iter(self.table.find_all(quantity)), None)
+
+    def line(self, row: int) -> str:
+        """Name a row as its file counts it."""
+        return f'{self.table.row_name} {self.table.numbers[row]}'
+
+    def cell(self, index: int, row: int) -> str:
+        """Text of a cell, cut to what is shown of it."""
+        return self.table.cells(index, [row])[0][:40]
+
+    def told(self, index: int, row: int) -> str:
+        """Name of a column, and its cell in a row."""
+        return f"{self.table.columns[index]} is '{self.cell(index, row)}'"
+
+    def texts_of(self, quantity: str) -> list[str]:
+        """Texts of the first column of a quantity; empty ones without it."""
+        index = self.index_of(quantity)
+        return [''] * self.n_rows if index is None else self.texts(index)
 
     def find(self, *quantities: str) -> list[Column] | None:
         """Columns of quantities; None if one is missing."""
@@ -110,14 +126,12 @@ class InventoryColumns:
             is_range = re.search(r'\S\s*[-/]', text) is not None
             n_ranges += is_range and found == cell_number(text)
         self._drop_nines(values, index)
+        name = self.table.columns[index]
         if unread:
-            text = self.table.cells(index, unread[:1])[0]
-            self.note(
-                f'{len(unread)} cells of {self.table.columns[index]} cannot be read: '
-                f"{self.table.row_name} {self.table.numbers[unread[0]]} is '{text[:40]}'"
-            )
+            first = f"{self.line(unread[0])} is '{self.cell(index, unread[0])}'"
+            self.note(f'{len(unread)} cells of {name} cannot be read: {first}')
         if n_ranges:
-            self.note(f'{n_ranges} cells of {self.table.columns[index]} are ranges: their middles')
+            self.note(f'{n_ranges} cells of {name} are ranges: their middles')
         return values, self._in_one_unit(values, units, index, unit)
 
     def _drop_nines(self, values: Floats, index: int) -> None:

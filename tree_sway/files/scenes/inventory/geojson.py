@@ -10,12 +10,12 @@ their properties under ``tags``.
 from __future__ import annotations
 
 from collections.abc import Iterator
-import json
 import math
 from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
 from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 6
@@ -35,46 +35,45 @@ def read_geojson(text: str, source: str) -> TextTable:
 
     Raises a `FormatError` for broken JSON, no features, or no feature with a place.
     """
-    try:
-        document = _object(json.loads(text))
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not GeoJSON: {error}', where=source, cure='save it again') from None
+    document = object_of(parsed(text, 'GeoJSON'))
     records = [*_elements(document), *_features(document)]
     if not records:
-        raise FormatError('no features', where=source, cure='export points with properties')
+        raise FormatError('no features', cure='export points with properties')
     names = list(dict.fromkeys(name for record in records for name in record))
     if not {'x', 'longitude'} & {*names}:
-        cure = 'give each feature a geometry with coordinates of two numbers'
-        raise FormatError('no feature has a place', where=source, cure=cure)
+        raise FormatError(
+            'no feature has a place',
+            cure='give each feature a geometry with coordinates of two numbers',
+        )
     rows = [[record.get(name, '') for name in names] for record in records]
     return table_of_cells(names, rows, source, row_name='feature')
 
 
 def _elements(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     """Yield the cells of each element of OpenStreetMap that has a place and tags."""
-    for element in map(_object, _list(document.get('elements'))):
-        tags = _object(element.get('tags'))
+    for element in map(object_of, list_of(document.get('elements'))):
+        tags = object_of(element.get('tags'))
         if 'lat' in element and 'lon' in element and tags:
-            place = {'latitude': _text(element['lat']), 'longitude': _text(element['lon'])}
-            yield place | {f'tags.{name}': _text(each) for name, each in tags.items()}
+            place = {'latitude': cell_of(element['lat']), 'longitude': cell_of(element['lon'])}
+            yield place | {f'tags.{name}': cell_of(each) for name, each in tags.items()}
 
 
 def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     """Yield the cells of each feature."""
     is_one = document.get('type') == 'Feature'
-    for feature in map(_object, [document] if is_one else _list(document.get('features'))):
-        properties = _flat(_object(feature.get('properties')))
-        place = _place(_object(feature.get('geometry')).get('coordinates'))
+    for feature in map(object_of, [document] if is_one else list_of(document.get('features'))):
+        properties = _flat(object_of(feature.get('properties')))
+        place = _place(object_of(feature.get('geometry')).get('coordinates'))
         taken = _PLACES if place else ()
         cells = {name: each for name, each in properties.items() if name.lower() not in taken}
-        yield {name: _text(each) for name, each in cells.items()} | place
+        yield {name: cell_of(each) for name, each in cells.items()} | place
 
 
 def _flat(properties: dict[str, Any]) -> dict[str, Any]:
     """Properties, and those of the records in a list among them, of which the first with one."""
     inside: dict[str, Any] = {}
     for each in properties.values():
-        for record in reversed(list(map(_object, _list(each)))):
+        for record in reversed(list(map(object_of, list_of(each)))):
             inside |= {name: cell for name, cell in record.items() if cell is not None}
     return inside | properties
 
@@ -106,19 +105,3 @@ def _corners(node: Any, depth: int) -> Iterator[list[float]]:
     else:
         for each in node:
             yield from _corners(each, depth + 1)
-
-
-def _object(value: Any) -> dict[str, Any]:
-    """Return an object of JSON; an empty one in place of any other value."""
-    return value if isinstance(value, dict) else {}
-
-
-def _list(value: Any) -> list[Any]:
-    """Return a list of JSON; an empty one in place of any other value."""
-    return value if isinstance(value, list) else []
-
-
-def _text(cell: Any) -> str:
-    if cell is None or isinstance(cell, dict | list):
-        return ''
-    return str(cell).replace('\x1f', ' ').replace('\n', ' ')

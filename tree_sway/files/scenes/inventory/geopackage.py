@@ -47,12 +47,12 @@ def is_geopackage(head: str, path: Path) -> bool:
 def read_geopackage(path: Path) -> TextTable:
     """Return the first layer with points; a `FormatError` if there is none."""
     cure = 'export it again'
-    arrays = bounded_arrays(points_of_geopackage, path, kind='a GeoPackage', cure=cure)
+    arrays = bounded_arrays(_points_of_geopackage, path, kind='a GeoPackage', cure=cure)
     rows = unpacked_rows(arrays['rows'])
     return table_of_cells(next(rows), rows, str(path))
 
 
-def points_of_geopackage(path: str) -> Arrays:
+def _points_of_geopackage(path: str) -> Arrays:
     """Yield the names and rows of the first layer with points."""
     # The journal of a program that still has it open counts; without one, nothing is written.
     journal = Path(f'{path}-wal')
@@ -71,7 +71,7 @@ def points_of_geopackage(path: str) -> Arrays:
             if any(row[0] for row in found):
                 yield 'rows', packed_rows(chain([first], found, rows))
                 return
-    raise FormatError('no layer of points', where=path, cure='export the trees as points')
+    raise FormatError('no layer of points', cure='export the trees as points')
 
 
 def _layer(

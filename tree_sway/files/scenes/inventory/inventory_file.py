@@ -9,6 +9,7 @@ from pathlib import Path
 from tree_sway.errors import FormatError
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.layouts.plain import PLAIN
+from tree_sway.files.paths import of_file
 from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_geojson
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
@@ -20,6 +21,7 @@ _HEAD = 60
 SPECIES = 'the species'
 
 
+@of_file
 def inventory_table(path: Path, head: str) -> TextTable:
     """Return the table of an inventory's file; errors are those of its format."""
     if is_geopackage(head, path):

@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import re
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,12 +22,15 @@ from tree_sway.files.scenes.inventory.species_names import species_of_rows
 from tree_sway.files.table_file import TextTable
 from tree_sway.simulation import EXPOSURES
 
+T = TypeVar('T')
 _DEAD = re.compile(
     r'\b(dead|stump|removed|felled|fallen|retired|vacant|tot|abgestorben|gefällt|stubben|mort|'
     r'abattu|souche|muerto|seco|tocón|vacía|vacío|dood|död)\b',
     re.IGNORECASE,
 )
 
+_NOT = ('false', 'no', 'non', '0', 'dead')
+"""Cells of a column of living trees that say that one is dead."""
 _FOREST_GEO = frozenset(('A', 'AB', 'AS', 'D', 'G', 'M', 'P', ''))
 """Letters of ForestGEO's column ``status``, of which D is dead (forestgeo/fgeo.validate)."""
 
@@ -115,38 +119,44 @@ def inventory_of(
     diameter = diameters_of(columns, places.is_in_states)
     height = heights_of(columns, diameter, places.is_in_states)
     for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
-        columns.leave_out(row, 'no place', _why_no_place(table, row))
+        columns.leave_out(row, 'no place', _why_no_place(columns, row))
     height = np.full(columns.n_rows, np.nan) if height is None else height
     is_found = fill_heights(columns, height, diameter, keys)
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
     if not kept:
-        what = f'no tree is left: {columns.why_left_out() or "no row"}'
-        raise FormatError(what, where=table.source, cure='fill the cells, or remove the rows')
+        raise FormatError(
+            f'no tree is left: {columns.why_left_out() or "no row"}',
+            where=table.source,
+            cure='fill the cells, or remove the rows',
+        )
     tree_names = _names(columns, kept)
-    further = {each: _optional(columns, each) for each in ('z', 'yaw')}
-    models = table.find('model')
-    model_texts = columns.texts(models.index) if models else [''] * columns.n_rows
+    z, yaw = (_optional(columns, each) for each in ('z', 'yaw'))
+    models = columns.texts_of('model')
     exposures = _exposures(columns)
     unused = [each for i, each in enumerate(table.columns) if each and i not in columns.used]
     if unused:
         columns.note(f'columns that are not used: {", ".join(unused[:20])}')
     stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter
+
+    def of_kept(cells: Sequence[T]) -> tuple[T, ...]:
+        return tuple(cells[row] for row in kept)
+
     return Inventory(
         table.source,
-        tuple(table.numbers[row] for row in kept),
+        of_kept(table.numbers),
         tuple(tree_names),
-        tuple(names[row] for row in kept),
+        of_kept(names),
         wood,
         places.x[kept],
         places.y[kept],
-        np.nan_to_num(further['z'][kept]),
-        further['yaw'][kept],
+        np.nan_to_num(z[kept]),
+        yaw[kept],
         height[kept],
         stems[kept],
-        tuple(is_found[row] for row in kept),
-        tuple(model_texts[row] or None for row in kept),
-        tuple(exposures[row] for row in kept),
+        of_kept(is_found),
+        tuple(text or None for text in of_kept(models)),
+        of_kept(exposures),
         tuple(columns.notes),
     )
 
@@ -157,21 +167,23 @@ def _leave_out_dead(columns: InventoryColumns) -> None:
         has_letters = name.lower() == 'status' and 'A' in texts and _FOREST_GEO.issuperset(texts)
         for row, text in enumerate(texts):
             if _DEAD.search(text) or (has_letters and text == 'D'):
-                columns.leave_out(row, 'dead or gone', f"{name} is '{text}'")
+                columns.leave_out(row, 'dead or gone', columns.told(index, row))
+    for index in columns.table.find_all('alive'):
+        for row, text in enumerate(columns.texts(index)):
+            if text.lower() in _NOT:
+                columns.leave_out(row, 'dead or gone', columns.told(index, row))
 
 
 def _exposures(columns: InventoryColumns) -> list[str | None]:
     """Kinds of exposure; a text that is none is counted and left out."""
-    column = columns.table.find('exposure')
-    if column is None:
-        return [None] * columns.n_rows
-    texts = [text.strip().lower() for text in columns.texts(column.index)]
+    texts = [text.strip().lower() for text in columns.texts_of('exposure')]
     unknown = [text for text in texts if text and text not in EXPOSURES]
     if unknown:
-        name = columns.table.columns[column.index]
-        known = ', '.join(EXPOSURES)
-        first = unknown[0][:40]
-        columns.note(f"{len(unknown)} cells of {name} do not count: '{first}' is none of {known}")
+        name = columns.table.columns[columns.index_of('exposure') or 0]
+        columns.note(
+            f"{len(unknown)} cells of {name} do not count: '{unknown[0][:40]}' is none of "
+            f'{", ".join(EXPOSURES)}'
+        )
     return [text if text in EXPOSURES else None for text in texts]
 
 
@@ -182,19 +194,17 @@ def _optional(columns: InventoryColumns, quantity: str) -> Floats:
     return columns.numbers(found.index)[0] * found.factor
 
 
-def _why_no_place(table: TextTable, row: int) -> str:
+def _why_no_place(columns: InventoryColumns, row: int) -> str:
     names = ('x', 'y', 'latitude', 'longitude', 'place')
-    places = [column.index for name in names if (column := table.find(name))]
-    cells = {each: table.cells(each, [row])[0][:40] for each in places}
-    wrong = [each for each, text in cells.items() if not any(map(str.isdigit, text))]
-    told = [f"{table.columns[each]} is '{cells[each]}'" for each in wrong[:1] or places]
+    places = [index for index in map(columns.index_of, names) if index is not None]
+    wrong = [each for each in places if not any(map(str.isdigit, columns.cell(each, row)))]
+    told = [columns.told(each, row) for each in wrong[:1] or places]
     return f'{" and ".join(told)}, no place'
 
 
 def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
     """Names of trees, each once: a further one of a name gets its number."""
-    column = columns.table.find('tree_name')
-    texts = columns.texts(column.index) if column else [''] * columns.n_rows
+    texts = columns.texts_of('tree_name')
     names = list[str]()
     n_changed = 0
     counts: dict[str, int] = {}

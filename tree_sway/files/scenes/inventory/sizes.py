@@ -10,6 +10,7 @@ diameter, or as the trees stand in the United States. What was taken is a note.
 
 from __future__ import annotations
 
+from functools import cache
 import math
 
 import numpy as np
@@ -19,9 +20,9 @@ from tree_sway.files.column_names import unit_factor
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.growth import height_of_stem
 
-TALLEST = 130.0
+_TALLEST = 130.0
 """Height that no tree exceeds [m]; the tallest known is 116 m."""
-THICKEST = 12.0
+_THICKEST = 12.0
 """Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
@@ -56,22 +57,20 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         columns.has_inches |= factor == _INCH
         own = values * factor / over
         _note_impossible(columns, index, own)
-        own[~((own > 0.0) & (own <= THICKEST))] = np.nan
+        own[~((own > 0.0) & (own <= _THICKEST))] = np.nan
         found = own if found is None else np.where(np.isnan(found), own, found)
     return found
 
 
 def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) -> None:
     """Say which stems are thicker than any tree's and so do not count."""
-    rows = np.flatnonzero(diameter > THICKEST).tolist()
+    rows = np.flatnonzero(diameter > _THICKEST).tolist()
     if not rows:
         return
     first = rows[0]
-    table = columns.table
-    text = table.cells(index, [first])[0]
     columns.note(
-        f'{len(rows)} cells of {table.columns[index]} do not count: {table.row_name} '
-        f"{table.numbers[first]} is '{text[:40]}', a stem of {diameter[first]:.3g} m"
+        f'{len(rows)} cells of {columns.table.columns[index]} do not count: {columns.line(first)} '
+        f"is '{columns.cell(index, first)}', a stem of {diameter[first]:.3g} m"
     )
 
 
@@ -152,12 +151,12 @@ def heights_of(
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
     height = values * factor
-    for row in np.flatnonzero(height > TALLEST).tolist():
+    for row in np.flatnonzero(height > _TALLEST).tolist():
         detail = f'{name} is {values[row]:g}, a height of {height[row]:g} m'
         columns.leave_out(row, 'too high', f'{detail}; give its unit, as in height [cm]')
     for row in np.flatnonzero(height < 0.0).tolist():
         columns.leave_out(row, 'no height', f'a height of {height[row]:g} m')
-    height[~((height > 0.0) & (height <= TALLEST))] = np.nan
+    height[~((height > 0.0) & (height <= _TALLEST))] = np.nan
     return height
 
 
@@ -172,20 +171,18 @@ def fill_heights(
     stems = np.full(len(height), np.nan) if diameter is None else diameter
     missing = np.isnan(height) & columns.is_kept
     is_found = missing & np.isfinite(stems)
-    for row in np.flatnonzero(missing & ~np.isfinite(stems)).tolist():
+    for row in np.flatnonzero(missing & ~is_found).tolist():
         columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
-    by_stem = {(keys[row], float(stems[row])): 0.0 for row in np.flatnonzero(is_found).tolist()}
-    for key, stem in by_stem:
-        by_stem[key, stem] = height_of_stem(key, stem)
-    for row in np.flatnonzero(is_found).tolist():
-        height[row] = by_stem[keys[row], float(stems[row])]
-    n_found = int(is_found.sum())
+    grown = cache(height_of_stem)
+    rows = np.flatnonzero(is_found).tolist()
+    for row in rows:
+        height[row] = grown(keys[row], float(stems[row]))
     n_kept = int(columns.is_kept.sum())
-    if n_found:
-        which = 'heights' if n_found == n_kept else f'{n_found} of {n_kept} heights'
+    if rows:
+        which = 'heights' if len(rows) == n_kept else f'{len(rows)} of {n_kept} heights'
         columns.note(
             f'{which} are those of grown trees of these stems, as the table has none'
-            f'{_unread_height(columns, np.flatnonzero(is_found).tolist())}'
+            f'{_unread_height(columns, rows)}'
         )
     return is_found.tolist()
 
@@ -197,19 +194,12 @@ def _unread_height(columns: InventoryColumns, rows: list[int]) -> str:
         return ''
     numbers, _ = columns.numbers(index)
     for row in rows:
-        text = columns.table.cells(index, [row])[0]
-        if np.isnan(numbers[row]) and any(map(str.isdigit, text)):
-            name = columns.table.columns[index]
-            line = columns.table.numbers[row]
-            return f" that can be read; {columns.table.row_name} {line}: {name} is '{text[:40]}'"
+        if np.isnan(numbers[row]) and any(map(str.isdigit, columns.cell(index, row))):
+            return f' that can be read; {columns.line(row)}: {columns.told(index, row)}'
     return ''
 
 
 def _why_no_size(columns: InventoryColumns, row: int) -> str:
-    cells = []
-    for quantity in ('height', 'diameter', 'girth'):
-        index = columns.index_of(quantity)
-        if index is not None:
-            text = columns.table.cells(index, [row])[0]
-            cells.append(f"{columns.table.columns[index]} is '{text[:40]}'")
+    places = map(columns.index_of, ('height', 'diameter', 'girth'))
+    cells = [columns.told(index, row) for index in places if index is not None]
     return ' and '.join(cells) or 'no column of a size'

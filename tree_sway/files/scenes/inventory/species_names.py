@@ -19,7 +19,7 @@ from tree_sway.files.scenes.inventory.species_codes import (
     TITLES,
 )
 
-UNKNOWN = 'broadleaf'
+_UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
 """Trees of no known species."""
@@ -45,12 +45,9 @@ def species_of_rows(
         _decoded(columns, index, given, is_in_states=is_in_states)
         for index in columns.table.find_all('species')
     ]
-    genus = columns.table.find('genus')
-    epithet = columns.table.find('epithet')
-    if genus is not None:
-        first = columns.texts(genus.index)
-        second = columns.texts(epithet.index) if epithet else [''] * len(first)
-        tables.append([_joined(a, b) for a, b in zip(first, second, strict=True)])
+    if columns.index_of('genus') is not None:
+        pairs = zip(columns.texts_of('genus'), columns.texts_of('epithet'), strict=True)
+        tables.append([_joined(*pair) for pair in pairs])
     if not tables and (index := _column_of_names(columns)) is not None:
         tables.append(columns.texts(index))
         columns.note(f'{columns.table.columns[index]} is taken as the species, by its cells')
@@ -63,7 +60,7 @@ def species_of_rows(
     for name, count in counts.most_common():
         if name in given:
             continue
-        known[name], note = (species_named(UNKNOWN), '') if not name else species_like(name)
+        known[name], note = (species_named(_UNKNOWN), '') if not name else species_like(name)
         if not name:
             note = 'trees without a species are taken as a broadleaf of no known species'
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')

@@ -35,7 +35,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     without openpyxl.
     """
     cure = 'save it as .xlsx or .csv again'
-    arrays = bounded_arrays(rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
+    arrays = bounded_arrays(_rows_of_spreadsheet, path, kind='a spreadsheet', cure=cure)
     sheets = [list(unpacked_rows(each)) for each in arrays.values()]
     tables = [
         (rows, number)
@@ -44,7 +44,7 @@ def read_spreadsheet(path: Path) -> TextTable:
         if sum(map(bool, cells)) >= 2 and number + 1 < len(rows)
     ]
     if not tables:
-        raise FormatError('no sheet with a header and rows', where=str(path))
+        raise FormatError('no sheet with a header and rows')
     # A title, or a sheet of other things, may stand above: the header names species or sizes.
     rows, number = max(tables, key=lambda table: sum(map(is_known, table[0][table[1]])))
     below = [row for row in rows[number + 1 :] if any(row)]
@@ -52,7 +52,7 @@ def read_spreadsheet(path: Path) -> TextTable:
     return table_of_cells(rows[number], below, str(path), lines)
 
 
-def rows_of_spreadsheet(path: str) -> Arrays:
+def _rows_of_spreadsheet(path: str) -> Arrays:
     """Yield the rows of texts of each sheet."""
     from openpyxl import load_workbook
 

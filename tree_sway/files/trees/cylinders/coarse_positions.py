@@ -8,7 +8,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-COARSE = 0.01
+_COARSE = 0.01
 """Step of positions in [m] from which on a scan is out of shape."""
 
 _FEWEST = 10
@@ -41,10 +41,10 @@ def coarse_positions(start: Floats) -> tuple[str, ...]:
     spacing = np.spacing(np.abs(single).max(axis=0))
     steps = [
         float(np.diff(np.unique(start[:, axis])).min(initial=np.inf))
-        for axis in np.flatnonzero(is_rounded & (spacing > COARSE))
+        for axis in np.flatnonzero(is_rounded & (spacing > _COARSE))
     ]
     coarsest = max((step for step in steps if np.isfinite(step)), default=0.0)
-    if coarsest <= COARSE:
+    if coarsest <= _COARSE:
         return ()
     return (
         f'its positions come in steps of {coarsest:g} m, as its numbers have too few digits for '

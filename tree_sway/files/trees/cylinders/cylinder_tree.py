@@ -16,9 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.species import species_named
-from tree_sway.core.tree import check_numbers, checked_order
+from tree_sway.core.tree import check_numbers, checked_order, tree_from_segments
 from tree_sway.errors import FormatError
-from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.cylinders.coarse_positions import coarse_positions
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.joining import branch_keys, join_loose_branches
@@ -37,7 +36,7 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     notes = list(cylinders.notes)
     species = species_named('broadleaf')
     if len(cylinders.start) == 0:
-        raise FormatError('no cylinders', where=source)
+        raise FormatError('no cylinders')
     numbers = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
     check_numbers(numbers, cylinders.labels)
     faults = coarse_positions(cylinders.start)
@@ -53,8 +52,8 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     cylinders = without_zero_length(cylinders, order)
     if len(cylinders.start) < count:
         notes.append(f'{count - len(cylinders.start)} cylinders of zero length were left out')
-    tree = built_tree(
-        source, cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,
+    tree = tree_from_segments(
+        cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,
         branch=branch_keys(cylinders), labels=cylinders.labels, name=cylinders.name or path.stem,
         species=species.key,
     )  # fmt: skip

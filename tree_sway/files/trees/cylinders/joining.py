@@ -11,8 +11,8 @@ import numpy as np
 from tree_sway.core.arrays import Ints
 from tree_sway.core.tree import chain_starts, first_of_each
 from tree_sway.errors import TreeError
-from tree_sway.files.trees.assembly import nearest_axis
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.nearest_axis import nearest_axis
 
 _MAX_LOOSE = 1000
 _MAX_LOOSE_VOLUME = 0.2
@@ -47,9 +47,11 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     loose = roots[roots != stem]
     largest = int(loose[np.argmax(volume[loose])])
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
-        what = f'{len(roots)} roots: a forest of trees that are not connected'
-        cure = 'give each tree its own file, or this cylinder a parent'
-        raise TreeError(what, where=cylinders.labels[largest], cure=cure)
+        raise TreeError(
+            f'{len(roots)} roots: a forest of trees that are not connected',
+            where=cylinders.labels[largest],
+            cure='give each tree its own file, or this cylinder a parent',
+        )
     on_stem = np.flatnonzero(root_of == stem)
     joined = parent.copy()
     farthest = 0.0

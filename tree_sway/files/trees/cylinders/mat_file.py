@@ -46,7 +46,7 @@ def read_mat(path: Path) -> Variables:
     read_bytes(path, at_most=1)
     cure = 'save it again with the option -v7'
     variables: Variables = {}
-    arrays = bounded_arrays(numbers_of_mat, path, kind='a MATLAB file', cure=cure)
+    arrays = bounded_arrays(_numbers_of_mat, path, kind='a MATLAB file', cure=cure)
     for name, array in arrays.items():
         *above, last = name.split('/')
         place = variables
@@ -63,7 +63,7 @@ def numbers(value: Any, name: str) -> Floats:
     return value.astype(np.float64).squeeze()
 
 
-def numbers_of_mat(path: str) -> Arrays:
+def _numbers_of_mat(path: str) -> Arrays:
     """Yield the arrays of numbers in a file by their paths, such as ``QSM/cylinder/radius``."""
     with Path(path).open('rb') as file:
         is_hdf5 = file.read(len(_IS_HDF5)) == _IS_HDF5

@@ -16,9 +16,7 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
 
-def cylinders_of_edges(
-    point: Floats, edges: Ints, radius: Floats, source: str, *, of_nodes: bool
-) -> Cylinders:
+def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: bool) -> Cylinders:
     """
     Make the segments of the largest part that hangs together, from its lowest node outwards.
 
@@ -30,8 +28,6 @@ def cylinders_of_edges(
         Both nodes of each edge, (m, 2).
     radius
         Radius in [m] of each node, (n,), if ``of_nodes``, else of each edge, (m,).
-    source
-        Name of the file in errors.
     of_nodes
         Whether segments are cones between the radii of their nodes, and not cylinders.
 
@@ -43,17 +39,20 @@ def cylinders_of_edges(
     """
     n = len(point)
     if len(edges) == 0:
-        raise FormatError('no edges', where=source, cure='join the nodes of each segment')
+        raise FormatError('no edges', cure='join the nodes of each segment')
     for row in np.flatnonzero(((edges < 0) | (edges >= n)).any(axis=1))[:1]:
-        what = f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes'
-        raise FormatError(what, where=source, cure='number the nodes from 0')
+        raise FormatError(
+            f'edge {row + 1} joins {edges[row, 0]} and {edges[row, 1]} of {n} nodes',
+            cure='number the nodes from 0',
+        )
     graph = csr_array((np.ones(len(edges)), edges.T), shape=(n, n))
     _, part = connected_components(graph, directed=False)
     largest = np.argmax(np.bincount(part))
     inside = np.flatnonzero(part == largest)
     if np.count_nonzero(part[edges[:, 0]] == largest) >= len(inside):
-        what = 'edges that close a ring, where a tree has none'
-        raise FormatError(what, where=source, cure='remove one edge of the ring')
+        raise FormatError(
+            'edges that close a ring, where a tree has none', cure='remove one edge of the ring'
+        )
     root = inside[np.argmin(point[inside, 2])]
     order, before = breadth_first_order(graph, root, directed=False)
     place = np.full(n + 1, -1)  # with one for the parent of the root
@@ -63,10 +62,8 @@ def cylinders_of_edges(
         own[np.where(before[edges[:, 0]] == edges[:, 1], edges[:, 0], edges[:, 1])] = radius
         radius = own
     parent = place[np.maximum(before[order], -1)]
-    labels = [f'{source}: node {number}' for number in order.tolist()]
-    made = cylinders_of_nodes(
-        point[order], 2.0 * radius[order], parent, labels, source, cones=of_nodes
-    )
+    labels = [f'node {number}' for number in order.tolist()]
+    made = cylinders_of_nodes(point[order], 2.0 * radius[order], parent, labels, cones=of_nodes)
     notes = ['the tree begins at its lowest node']
     if len(inside) < n:
         notes.append(f'{n - len(inside)} nodes hang on other parts and are left out')

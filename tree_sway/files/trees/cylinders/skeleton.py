@@ -12,7 +12,7 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 
 def cylinders_of_nodes(
-    point: Floats, diameter: Floats, parent: Ints, labels: list[str], source: str, *, cones: bool
+    point: Floats, diameter: Floats, parent: Ints, labels: list[str], *, cones: bool
 ) -> Cylinders:
     """
     Make the segments of a tree with one root: one from its parent to each node but the root.
@@ -26,8 +26,8 @@ def cylinders_of_nodes(
         Positions (n, 3) and diameters (n,) of the nodes in [m].
     parent
         Parent of each node, (n,), -1 for the root.
-    labels, source
-        Names of the nodes and of the file in errors.
+    labels
+        Names of the nodes in errors.
     cones
         True for segments with the diameters of both nodes, False for that of the outer one.
 
@@ -45,8 +45,11 @@ def cylinders_of_nodes(
     above = number[inner]
     roots = np.flatnonzero(above < 0)
     if len(roots) == 0:
-        what = 'a root without other nodes'
-        raise FormatError(what, where=source, cure='let at least one node hang on the root')
+        raise FormatError(
+            'a root without other nodes',
+            where=labels[0],
+            cure='let at least one node hang on the root',
+        )
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(

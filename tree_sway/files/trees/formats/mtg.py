@@ -85,15 +85,15 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     vertices = _parse(read_lines(path), str(path))
     segments = _segments(vertices)
     if not segments:
-        what = f'no two vertices with {", ".join(_POSITION)}'
-        raise FormatError(what, where=str(path), cure='digitise the tree')
+        raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
     known = list(dict.fromkeys(name for each in vertices for name in each.features))
     if _DIAMETER not in known:
-        what = f'no feature {_DIAMETER} among {", ".join(known)}'
-        raise FormatError(what, where=str(path), cure=f'call the diameter [mm] {_DIAMETER}')
-    at_tip = np.array([each.tip.diameter for each in segments])
-    at_base = np.array([each.base.diameter for each in segments])
-    at_base = np.where(at_base > 0.0, at_base, at_tip)
+        raise FormatError(
+            f'no feature {_DIAMETER} among {", ".join(known)}',
+            cure=f'call the diameter [mm] {_DIAMETER}',
+        )
+    ends = [(each.base.diameter, each.tip.diameter) for each in segments]
+    diameter = np.array([(base if base > 0.0 else tip, tip) for base, tip in ends])
     n_placed = sum(vertex.is_placed for vertex in vertices)
     note = (
         f'{n_placed} vertices with a position, {len(vertices) - n_placed} without; '
@@ -102,7 +102,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     cylinders = Cylinders(
         np.array([each.base.position for each in segments]),
         np.array([each.tip.position for each in segments]),
-        np.stack([at_base, at_tip], axis=1),
+        diameter,
         np.array([each.parent for each in segments], dtype=np.int64),
         np.array([each.continues for each in segments], dtype=np.bool_),
         [each.tip.label for each in segments],
@@ -149,10 +149,10 @@ def _before(vertex: _Vertex) -> _Vertex | None:
 
 def _parse(lines: list[str], source: str) -> list[_Vertex]:
     """Parse the vertices of an MTG file."""
-    scales = _scales(lines, source)
+    scales = _scales(lines)
     begin = next((i for i, line in enumerate(lines) if line.startswith('ENTITY-CODE')), None)
     if begin is None:
-        raise FormatError('no line ENTITY-CODE', where=source, cure='save it as FORM-A')
+        raise FormatError('no line ENTITY-CODE', cure='save it as FORM-A')
     header = [cell.strip() for cell in lines[begin].split('\t')]
     first = next((i for i, cell in enumerate(header) if i and cell), len(header))
     vertices: list[_Vertex] = []
@@ -176,7 +176,7 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
             if value is not None:
                 added[-1].features[name] = value
     if not vertices:
-        raise FormatError('no vertices', where=source)
+        raise FormatError('no vertices')
     return vertices
 
 
@@ -188,11 +188,11 @@ def _reference(latest: Sequence[_Vertex], column: int, code: str, where: str) ->
     return latest[above] if above >= 0 else None
 
 
-def _scales(lines: list[str], source: str) -> dict[str, int]:
+def _scales(lines: list[str]) -> dict[str, int]:
     """Scale of each class, from the section CLASSES."""
     code = next((line.partition(':')[2].strip() for line in lines if line.startswith('CODE')), '')
     if not code.startswith('FORM-A'):
-        raise FormatError(f"the code is '{code[:20]}', not FORM-A", where=source)
+        raise FormatError(f"the code is '{code[:20]}', not FORM-A")
     begin = next((i for i, line in enumerate(lines) if line.startswith('SYMBOL')), len(lines))
     scales: dict[str, int] = {}
     for line in lines[begin + 1 :]:
@@ -202,7 +202,7 @@ def _scales(lines: list[str], source: str) -> dict[str, int]:
             break
         scales[cells[0]] = int(scale)
     if not scales:
-        raise FormatError('no CLASSES with SYMBOL and SCALE', where=source)
+        raise FormatError('no CLASSES with SYMBOL and SCALE')
     return scales
 
 
@@ -212,11 +212,11 @@ def _vertices(
     """Return the vertices of a code, such as ``/P1/A1``, of which each refers to the last."""
     parts = list(_CODE.finditer(code))
     if not parts or ''.join(part[0] for part in parts) != code:
-        cure = 'such as /P1, <S2 or +A1'
-        raise FormatError(f"'{code[:20]}' is not a code", where=where, cure=cure)
+        raise FormatError(
+            f"'{code[:20]}' is not a code", where=where, cure='such as /P1, <S2 or +A1'
+        )
     found: list[_Vertex] = []
-    for part in parts:
-        edge, name = part.groups()
+    for edge, name in map(re.Match.groups, parts):
         symbol = name.rstrip('0123456789')
         if symbol not in scales:
             raise FormatError(f"no class '{symbol}'", where=where, cure='list it under CLASSES')

@@ -38,26 +38,27 @@ Elements = dict[str, tuple[int, Properties]]
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Tree of a skeleton."""
-    source = str(path)
     data = read_bytes(path)
     try:
         order, elements, body = _header(data)
     except (ValueError, LookupError, IndexError, UnicodeDecodeError):
-        raise FormatError('a damaged header of PLY', where=source, cure=_AGAIN) from None
-    _refuse_others(elements, path)
+        raise FormatError('a damaged header of PLY', cure=_AGAIN) from None
+    _refuse_others(elements)
     try:
         tables = _tables(data[body:], order, elements)
     except (ValueError, OverflowError, MemoryError):
-        what = 'other vertices or edges than its header says'
-        raise FormatError(what, where=source, cure=_AGAIN) from None
+        raise FormatError('other vertices or edges than its header says', cure=_AGAIN) from None
     names = [name for name, _ in elements['vertex'][1]]
     point = tables['vertex'][:, [names.index(axis) for axis in 'xyz']]
     radius = tables['vertex'][:, names.index('radius')]
     for row in np.flatnonzero(~np.isfinite(point.sum(axis=1) + radius))[:1]:
-        what = 'a place or a radius that is no number'
-        raise FormatError(what, where=f'{source}: vertex {row}', cure='remove it and its edges')
+        raise FormatError(
+            'a place or a radius that is no number',
+            where=f'vertex {row}',
+            cure='remove it and its edges',
+        )
     edges = tables['edge'][:, -2:].astype(np.int64)
-    return (cylinders_of_edges(point, edges, radius, source, of_nodes=True),)
+    return (cylinders_of_edges(point, edges, radius, of_nodes=True),)
 
 
 def _header(data: bytes) -> tuple[str, Elements, int]:
@@ -81,7 +82,7 @@ def _header(data: bytes) -> tuple[str, Elements, int]:
     return order, elements, data.index(b'\n', end) + 1
 
 
-def _refuse_others(elements: Elements, path: Path) -> None:
+def _refuse_others(elements: Elements) -> None:
     """Name a file that is no skeleton with radii."""
     counts = {name: count for name, (count, _) in elements.items()}
     names = {name for name, _ in elements.get('vertex', (0, []))[1]}
@@ -97,7 +98,7 @@ def _refuse_others(elements: Elements, path: Path) -> None:
         cure = 'give each vertex a property radius [m], beside x, y and z'
     else:
         return
-    raise FormatError(f'{what}, not a tree', where=str(path), cure=cure)
+    raise FormatError(f'{what}, not a tree', cure=cure)
 
 
 def _tables(data: bytes, order: str, elements: Elements) -> dict[str, Floats]:

@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.species import species_named
+from tree_sway.core.tree import tree_from_segments
 from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.text_file import read_lines
-from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 
 
@@ -38,8 +38,8 @@ def _read(path: Path) -> TreeFile:
     if 'branch' in columns:
         branch = text.whole(text.strict(['branch'])[:, 0], 'branch')
     wood = species_named('broadleaf')
-    tree = built_tree(
-        str(path), *np.hsplit(values, [3, 6]), parent=parents, branch=branch, labels=labels,
+    tree = tree_from_segments(
+        *np.hsplit(values, [3, 6]), parent=parents, branch=branch, labels=labels,
         name=path.stem, species=wood.key,
     )  # fmt: skip
     return TreeFile(tree, wood, str(path))
@@ -50,7 +50,7 @@ def _read_ends(path: Path, text: TextTable) -> TreeFile:
     values = text.strict([*_ENDS, 'radius'])
     wood = species_named('broadleaf')
     start, end, radius = np.hsplit(values, [3, 6])
-    tree = built_tree(str(path), start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
+    tree = tree_from_segments(start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
     return TreeFile(tree, wood, str(path), notes=('parents are found by the ends that meet',))
 
 

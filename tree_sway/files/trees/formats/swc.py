@@ -37,7 +37,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     """Trees of an SWC file."""
     table = parse_columns(read_lines(path), str(path), _COLUMNS)
     if not table.texts:
-        raise FormatError('no nodes', where=str(path), cure='give a node in each line')
+        raise FormatError('no nodes', cure='give a node in each line')
     nodes = table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family('number', 'parent', [-1], 'node')
     trees = []
@@ -50,7 +50,6 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
             2.0 * own[:, 3],
             place[parent[rows]],
             [labels[row] for row in rows],
-            str(path),
             cones=True,
         )
         trees.append(cylinders)

@@ -31,10 +31,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     """Trees of a file."""
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
-        raise FormatError('no header', where=str(path), cure=f'a header names {",".join(_FIELDS)}')
+        raise FormatError('no header', cure=f'a header names {",".join(_FIELDS)}')
     of_tree, of_node = _columns(lines[0], f'{path}:{numbers[0]}')
     if len(lines) < 2:
-        raise FormatError('no trees', where=str(path))
+        raise FormatError('no trees')
     trees = []
     for number, line in zip(numbers[1:], lines[1:], strict=True):
         cells = _filled(split_row(line, ','))
@@ -49,8 +49,11 @@ def _columns(header: str, where: str) -> tuple[list[str], list[str]]:
     for name in _FIELDS:
         if name not in of_node:
             trunks = ': trunks without branches' if name == 'parent_id' else ''
-            cure = 'extract the trees with rayextract trees'
-            raise FormatError(f'no field {name}{trunks}', where=where, cure=cure)
+            raise FormatError(
+                f'no field {name}{trunks}',
+                where=where,
+                cure='extract the trees with rayextract trees',
+            )
     return _filled(before.split(',')), of_node
 
 
@@ -64,8 +67,11 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     """Cylinders of a line, whose nodes are the rows of a table."""
     size = len(columns)
     if not cells or len(cells) % size:
-        what = f'{len(cells)} values are not whole nodes of {size}'
-        raise FormatError(what, where=where, cure=f'a node has {",".join(columns)}')
+        raise FormatError(
+            f'{len(cells)} values are not whole nodes of {size}',
+            where=where,
+            cure=f'a node has {",".join(columns)}',
+        )
     nodes = [','.join(cells[begin : begin + size]) for begin in range(0, len(cells), size)]
     table = TextTable(
         tuple(columns), range(len(nodes)), nodes, lambda node: node.split(','), f'{where}: node'
@@ -78,10 +84,13 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     for row, above in enumerate(parent.tolist()):
         is_root = above < 0
         if is_root != (row == 0) or above >= len(nodes):
-            cure = 'the first node has -1, every other the number of a node of its line'
-            raise TreeError(f'parent_id is {above}', where=labels[row], cure=cure)
+            raise TreeError(
+                f'parent_id is {above}',
+                where=labels[row],
+                cure='the first node has -1, every other the number of a node of its line',
+            )
     parent = np.maximum(parent, -1)
-    return cylinders_of_nodes(points, diameter, parent, labels, where, cones=False)
+    return cylinders_of_nodes(points, diameter, parent, labels, cones=False)
 
 
 FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read, FITTED)

@@ -9,7 +9,6 @@ node ``p1``, at ``sx, sy, sz``, and goes ``length`` along ``ax, ay, az`` to node
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 import re
 from typing import Any
@@ -17,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, inside
 from tree_sway.files.file_format import FileFormat, has_columns
+from tree_sway.files.json_values import parsed
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import finite, read_lines, read_text
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
@@ -36,53 +36,51 @@ def _is_other_json(head: str) -> bool:
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a file of treegraph."""
-    source = str(path)
-    document = _parsed(read_text(path), source)
+    document = parsed(read_text(path))
     if not isinstance(document, dict) or 'cyls' not in document:
         has = f'keys {", ".join(map(repr, [*document][:8]))}'
         said = has if isinstance(document, dict) else 'a list'
-        cure = "give a tree with 'branches' (doc/trees.md), or the file of treegraph with 'cyls'"
-        raise FormatError(f'JSON of {said}, which is no tree', where=source, cure=cure)
+        raise FormatError(
+            f'JSON of {said}, which is no tree',
+            cure="give a tree with 'branches' (doc/trees.md), or the file of treegraph with "
+            "'cyls'",
+        )
     table = document['cyls']
-    table = _parsed(table, f'{source}: cyls') if isinstance(table, str) else table
-    return _joined(np.column_stack([_column(table, name, source) for name in _COLUMNS]), source)
+    with inside('cyls'):
+        table = parsed(table) if isinstance(table, str) else table
+    return _joined(np.column_stack([_column(table, name) for name in _COLUMNS]))
 
 
 def _read_table(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of ``cyls`` as a table."""
-    source = str(path)
-    return _joined(parse_table(read_lines(path), source).strict(_COLUMNS), source)
+    return _joined(parse_table(read_lines(path), str(path)).strict(_COLUMNS))
 
 
-def _joined(values: Floats, source: str) -> tuple[Cylinders, ...]:
+def _joined(values: Floats) -> tuple[Cylinders, ...]:
     """Cylinders of the columns, (n, 10)."""
     is_point = values[:, 8] == 0.0
     values[is_point, 5:8] = 0.0  # a cylinder without length has no direction
     for row, column in np.argwhere(~np.isfinite(values))[:1]:
-        what = f"no number in '{_COLUMNS[column]}'"
-        raise FormatError(what, where=f'{source}: cylinder {row}', cure='fit it again')
+        raise FormatError(
+            f"no number in '{_COLUMNS[column]}'", where=f'cylinder {row}', cure='fit it again'
+        )
     nodes, edges = np.unique(values[:, :2], return_inverse=True)
     edges = edges.reshape(-1, 2)
     point = np.empty((len(nodes), 3))
     point[edges[:, 1]] = values[:, 2:5] + values[:, 8:9] * values[:, 5:8]
     point[edges[:, 0]] = values[:, 2:5]
-    made = cylinders_of_edges(point, edges, values[:, 9], source, of_nodes=False)
+    made = cylinders_of_edges(point, edges, values[:, 9], of_nodes=False)
     return (made,)
 
 
-def _parsed(text: str, source: str) -> Any:
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FormatError(f'not JSON: {error}', where=source, cure='save it again') from None
-
-
-def _column(table: Any, name: str, source: str) -> Floats:
+def _column(table: Any, name: str) -> Floats:
     """Return the values of a column, (n,), in the order of its rows; NaN where one is none."""
     cells = table.get(name) if isinstance(table, dict) else None
     if not isinstance(cells, dict) or cells.keys() != table['p1'].keys():
-        what = f"no column '{name}' in 'cyls', or one of other rows"
-        raise FormatError(what, where=source, cure='save it by treegraph again')
+        raise FormatError(
+            f"no column '{name}' in 'cyls', or one of other rows",
+            cure='save it by treegraph again',
+        )
     values = [finite(str(cells[row])) for row in table['p1']]
     return np.array([np.nan if each is None else each for each in values])
 

@@ -20,6 +20,7 @@ semicolons between the cells.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 import re
 from typing import Any
@@ -28,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, inside
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.text_file import finite, read_lines
@@ -97,21 +98,19 @@ def _are_cylinders(table: Floats) -> bool:
 
 def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     """Every cylinder model of a MATLAB file."""
-    source = str(path)
     variables = read_mat(path)
-    tables = [(name, _table(name, model, source)) for name, model in _models(variables)]
+    tables = [(name, _table(name, model)) for name, model in _models(variables)]
     if not tables:
         tables = list(_arrays(variables))
     if not tables:
-        what = "no struct with a field 'cylinder', and no array of cylinders"
-        cure = 'save the QSM struct of TreeQSM, or its columns as an array of 9 to 15'
-        raise FormatError(what, where=source, cure=cure)
+        raise FormatError(
+            "no struct with a field 'cylinder', and no array of cylinders",
+            cure='save the QSM struct of TreeQSM, or its columns as an array of 9 to 15',
+        )
     trees = []
     for name, table in tables:
-        labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
-        tree = _cylinders(table, labels, source)
-        tree.name = name
-        trees.append(tree)
+        labels = [f'{name} cylinder {i + 1}' for i in range(len(table))]
+        trees.append(replace(_cylinders(table, labels), name=name))
     return tuple(trees)
 
 
@@ -130,7 +129,7 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     table = parse_columns(lines, str(path), names, _cells)
     values = table.strict(names)
     labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
-    return (_cylinders(values, labels, str(path)),)
+    return (_cylinders(values, labels),)
 
 
 def _cells(line: str) -> list[str]:
@@ -178,35 +177,34 @@ def _structs(value: Any) -> list[dict[str, Any]]:
     return [value]
 
 
-def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
+def _table(name: str, fields: dict[str, Any]) -> Floats:
     """Columns of the table of cylinders from fields of their names."""
     columns = []
     for field, width in _FIELDS.items():
         if field not in fields:
             if field == 'extension':
                 continue  # continuations are found by the diameters, as without its column
-            cure = 'save the QSM struct of TreeQSM'
-            raise FormatError(f"{name} has no numbers '{field}'", where=source, cure=cure)
-        try:
+            raise FormatError(
+                f"{name} has no numbers '{field}'", cure='save the QSM struct of TreeQSM'
+            )
+        with inside(name):
             column = numbers(fields[field], field)
-        except FormatError as error:
-            raise error.at(f'{source}: {name}') from None
         if column.size % width:
-            raise FormatError(f'{name}.{field} has {column.size} values', where=source)
+            raise FormatError(f'{name}.{field} has {column.size} values')
         columns.append(column.reshape(-1, width))
     if len({len(column) for column in columns}) > 1:
-        raise FormatError('columns of different lengths', where=source, cure='export it again')
+        raise FormatError('columns of different lengths', cure='export it again')
     return np.hstack(columns)
 
 
-def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
+def _cylinders(table: Floats, labels: list[str]) -> Cylinders:
     """Cylinders from the columns, (n, 9 or 10), with the name of each row in errors."""
     if len(table) == 0:
-        raise FormatError('no cylinders', where=source)
+        raise FormatError('no cylinders')
     length = table[:, 1]
     start = table[:, 2:5]
     axis = table[:, 5:8]
-    parent, *extension = _indices(table[:, 8:10], labels, source)
+    parent, *extension = _indices(table[:, 8:10], labels)
     axis_length = np.linalg.norm(axis, axis=1)
     for row in np.flatnonzero((axis_length == 0.0) & (length > 0.0))[:1]:
         raise FormatError('an axis without direction', where=labels[row])
@@ -217,16 +215,17 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     return Cylinders(start, end, diameter, parent, continues, labels)
 
 
-def _indices(numbers: Floats, labels: list[str], source: str) -> Ints:
+def _indices(numbers: Floats, labels: list[str]) -> Ints:
     """Rows of parents and extensions, (1 or 2, n), from their numbers, (n, 1 or 2)."""
     is_whole = (numbers == np.round(numbers)) & (np.abs(numbers) <= _LARGEST_WHOLE)
     for row, column in np.argwhere(~is_whole)[:1]:
-        what = f'parent or extension is {numbers[row, column]:g}, not a whole number'
-        raise FormatError(what, where=labels[row])
+        raise FormatError(
+            f'parent or extension is {numbers[row, column]:g}, not a whole number',
+            where=labels[row],
+        )
     root = int(numbers[:, 0].min())
     if root not in (-1, 0):
-        cure = 'the root has parent 0, or -1'
-        raise FormatError(f'the smallest parent is {root}', where=source, cure=cure)
+        raise FormatError(f'the smallest parent is {root}', cure='the root has parent 0, or -1')
     first = root + 1
     return (numbers.astype(np.int64) - first).T
 

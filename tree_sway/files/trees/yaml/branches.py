@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import checked_order
 from tree_sway.errors import FormatError, nearest, TreeError
-from tree_sway.files.trees.assembly import nearest_axis
+from tree_sway.files.trees.nearest_axis import nearest_axis
 from tree_sway.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
@@ -85,8 +85,11 @@ def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
     for number, branch in enumerate(branches):
         if branch['name'] in index:
             first = where[index[branch['name']]].rsplit(': ', 1)[0]
-            what = f'a second branch of that name, the first is at {first}'
-            raise FormatError(what, where=where[number], cure='give each branch its own name')
+            raise FormatError(
+                f'a second branch of that name, the first is at {first}',
+                where=where[number],
+                cure='give each branch its own name',
+            )
         index[branch['name']] = number
     return index
 
@@ -101,8 +104,11 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
         parents.append(-1 if name is None else index[name])
     stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
     if len(stems) > 1:
-        cure = f"give it a parent, as '{branches[stems[0]]['name']}' is the stem"
-        raise TreeError('a second branch without a parent', where=where[stems[1]], cure=cure)
+        raise TreeError(
+            'a second branch without a parent',
+            where=where[stems[1]],
+            cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
+        )
     return parents
 
 
@@ -138,8 +144,11 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
     if 'segment' not in branch:
         return _nearest(branch, on, first_node, where), np.zeros(3)
     if branch['segment'] >= len(length):
-        what = f"no segment {branch['segment']} on its parent '{branch['parent']}'"
-        raise FormatError(what, where=where, cure=f'name a segment from 0 to {len(length) - 1}')
+        raise FormatError(
+            f"no segment {branch['segment']} on its parent '{branch['parent']}'",
+            where=where,
+            cure=f'name a segment from 0 to {len(length) - 1}',
+        )
     return branch['segment'], np.zeros(3)
 
 
@@ -148,7 +157,9 @@ def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
     segment, distance = nearest_axis(on.start, on.end, point)
     size = float(np.linalg.norm(on.end - on.start))
     if distance > on.diameter[segment].max() + 0.01 * size:
-        what = f"starts {distance:.3g} m off its parent '{branch['parent']}'"
-        cure = "move its first node onto the parent, or say where with 'at' or 'segment'"
-        raise TreeError(what, where=where, cure=cure)
+        raise TreeError(
+            f"starts {distance:.3g} m off its parent '{branch['parent']}'",
+            where=where,
+            cure="move its first node onto the parent, or say where with 'at' or 'segment'",
+        )
     return segment

@@ -25,10 +25,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from tree_sway.core.species import Species, species_named
+from tree_sway.core.tree import tree_from_segments
 from tree_sway.errors import FormatError, SpeciesError
-from tree_sway.files.paths import is_file, path_of
+from tree_sway.files.paths import is_file, of_file, path_of
 from tree_sway.files.text_file import read_text
-from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments
 from tree_sway.files.yaml_document import read_yaml, tree_schema, YAML_SUFFIXES, YamlDocument
@@ -56,9 +56,9 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     """Read a tree from YAML text; see `read_yaml_tree`."""
     document = read_yaml(text, source, tree_schema())
     values = document.values
-    species = species_of(document)
+    species = _species_of(document)
     name = values.get('name', default_name)
-    tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
+    tree = tree_from_segments(**branch_segments(document), name=name, species=species.key)
     learned = LearnedTree(**values['learned']) if 'learned' in values else None
     notes = () if learned is None else (str(learned),)
     return TreeFile(tree, species, source, notes, learned=learned)
@@ -69,7 +69,8 @@ def is_species_file(name: str) -> bool:
     return Path(name).suffix.lower() in YAML_SUFFIXES or is_file(path_of(name))
 
 
-def read_species(path: str | Path) -> Species:
+@of_file
+def read_species(path: Path) -> Species:
     """
     Read the species of a YAML file, with the wood that the file measures.
 
@@ -84,17 +85,14 @@ def read_species(path: str | Path) -> Species:
         An unknown species.
 
     """
-    path = path_of(path)
     schema = {**tree_schema(), 'required': []}
     document = read_yaml(read_text(path), str(path), schema)
     if not {'species', 'wood'} & set(document.values):
-        raise FormatError(
-            'no species and no wood', where=str(path), cure="add 'species' or 'wood' to it"
-        )
-    return species_of(document)
+        raise FormatError('no species and no wood', cure="add 'species' or 'wood' to it")
+    return _species_of(document)
 
 
-def species_of(document: YamlDocument) -> Species:
+def _species_of(document: YamlDocument) -> Species:
     """Return the table's species that a document names, with its wood in place of the table's."""
     values = document.values
     key = values.get('species', 'broadleaf')
@@ -107,9 +105,11 @@ def species_of(document: YamlDocument) -> Species:
         ratio = wood.pop('damping_ratio')
         for state in ('damping_bare', 'damping_in_leaf'):
             if state in wood:
-                what = f'both damping_ratio and {state}'
-                cure = 'give damping_ratio only, or both states'
-                raise FormatError(what, where=document.where('wood', state), cure=cure)
+                raise FormatError(
+                    f'both damping_ratio and {state}',
+                    where=document.where('wood', state),
+                    cure='give damping_ratio only, or both states',
+                )
             wood[state] = ratio
     # A modulus from the file is measured, and not the estimate of the table.
     return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
