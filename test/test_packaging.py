@@ -33,7 +33,7 @@ import tree_sway
 
 ROOT = Path(__file__).resolve().parent.parent
 NODES = ('anemometer', 'player', 'sensor', 'solver', 'viewer', 'wind')
-IMPORTED = {'yaml': 'python3-yaml', 'tf2_ros': 'tf2_ros_py'}
+IMPORTED = {'yaml': 'python3-yaml'}
 LOADED = {'rclpy.lifecycle': 'lifecycle_msgs', "import_module('serial')": 'python3-serial'}
 """Packages that are loaded where the code has a text, without an import of their own."""
 

@@ -121,7 +121,7 @@ CHANGES = {
     ),
     'ending': (
         'tree_sway/commands/ending.py', 'LONGEST = 1.5', 'LONGEST = 2.5',
-        'from tree_sway.commands.ending import LONGEST; print(LONGEST)', '2.5',
+        'from tree_sway.commands.ending import Ending; print(Ending.LONGEST)', '2.5',
     ),
 }  # fmt: skip
 

@@ -157,6 +157,9 @@ class IntakeNode:
     def count_publishers(self, topic):
         return self._publishers
 
+    def publishers_of(self, topic, _type_name):
+        return [topic] * self._publishers
+
     def subscription(self, topic, receive):
         self.receive = receive
 

@@ -223,7 +223,7 @@ def test_a_second_system_in_the_domain_is_told_and_not_mixed_in(
         page.wait(DEADLINE, frames=page.received + 20)
         assert page.unreadable == 0
         assert page.description.short_identity == shown
-        observer.until(lambda: '2 publishers mix' in statuses('solver: output').message, 'both')
+        observer.until(lambda: 'which mix' in statuses('solver: output').message, 'both')
         first['solver'].close()
         observer.until(lambda: page.description.short_identity != shown, 'the other tree')
         page.wait(DEADLINE, frames=page.received + 5)

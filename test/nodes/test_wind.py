@@ -120,9 +120,8 @@ def transform(frame, parent, yaw, stamp=0):
 
 @pytest.fixture
 def tf(monkeypatch):
-    """Give the callbacks of /tf and /tf_static of the reader that needs no tf2_ros."""
+    """Give the callbacks of /tf and /tf_static."""
     callbacks, subscribe = {}, WindNode.subscription
-    monkeypatch.setitem(sys.modules, 'tf2_ros', None)
 
     def listen(node, topic, callback, *more, **named):
         if topic not in (TF, TF_STATIC):
@@ -169,8 +168,7 @@ def test_wind_in_a_frame_that_nobody_knows_is_taken_as_it_is(
 
 
 def test_without_tf2_one_line_says_so(compose, observer, capfd, monkeypatch):
-    for name in ('tf2_ros', 'tf2_msgs.msg'):
-        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setitem(sys.modules, 'tf2_msgs.msg', None)
     compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
@@ -326,7 +324,7 @@ def test_of_two_anemometers_on_one_topic_one_is_used(compose, observer, statuses
     def said():
         return getattr(statuses('wind: wind'), 'message', '')
 
-    named = '2 publishers: /east/anemometer, /west/anemometer; one is used'
+    named = '2 publishers: /east/anemometer, /west/anemometer; one is followed'
     observer.until(lambda: named in said(), 'both names')
     assert 'samples of others were refused' in said()
     assert statuses('wind: wind').level[0] == WARN

@@ -16,8 +16,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.growth.builtin import builtin_tree
 from tree_sway.pictures.animation import animate_poses
-from tree_sway.pictures.pictures import picture_in_wind
-from tree_sway.pictures.plots import plot_wind_and_tip
+from tree_sway.pictures.pictures import figure_in_wind
+from tree_sway.pictures.plots import wind_and_tip
+from tree_sway.pictures.plotting import save_figure
 
 pytest.importorskip('matplotlib')
 Image = pytest.importorskip('PIL.Image')
@@ -40,7 +41,9 @@ def pixels(path: Path) -> np.ndarray:
 
 
 def in_calm(tree: Tree, path: Path, **options: Any) -> Path:
-    return picture_in_wind([tree], leaning(tree, 0.0), [0.0, 0.0, 0.0], path, **options)
+    return save_figure(
+        figure_in_wind([tree], leaning(tree, 0.0), [0.0, 0.0, 0.0], **options), path
+    )
 
 
 def dark_columns(picture: np.ndarray) -> np.ndarray:
@@ -62,7 +65,8 @@ def test_wind_from_the_west_leans_the_tree_to_the_right_of_its_shape_at_rest(
 ) -> None:
     tree = pole()
     path = tmp_path / 'wind.png'
-    assert picture_in_wind([tree], leaning(tree, 0.5), [8.0, 0.0, 0.0], path) == path
+    figure = figure_in_wind([tree], leaning(tree, 0.5), [8.0, 0.0, 0.0])
+    assert save_figure(figure, path) == path
     picture = pixels(path)
     moved = dark_columns(picture)
     rows = picture[int(0.15 * len(picture)) : int(0.3 * len(picture))]
@@ -81,7 +85,8 @@ def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
     leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
     leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)
     poses = joint.rest_poses
-    path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / 'row.png', leaves=leaves)
+    figure = figure_in_wind(trees, poses, [6.0, 0.0, 0.0], leaves=leaves)
+    path = save_figure(figure, tmp_path / 'row.png')
     picture = pixels(path)
     row = picture[int(0.6 * len(picture))]
     dark = np.flatnonzero(row.max(axis=1) < 180)
@@ -125,7 +130,7 @@ def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
     assert is_green(bare).sum() == 0
     assert is_green(green).mean() > 0.05
     path = tmp_path / 'w.png'
-    picture_in_wind([tree], leaning(tree, 0.3), [8, 0, 0], path, leaves=leaves)
+    save_figure(figure_in_wind([tree], leaning(tree, 0.3), [8, 0, 0], leaves=leaves), path)
     calm, moved = is_green(green).sum(axis=0), is_green(pixels(path)).sum(axis=0)
     beyond = [
         np.average(np.arange(len(each)), weights=each) - 0.5 * len(each) for each in (calm, moved)
@@ -160,10 +165,10 @@ def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
     time = np.linspace(0.0, 10.0, 200)
     wind = np.stack([5.0 + np.sin(time), np.zeros(200), np.zeros(200)], axis=1)
     tip = 0.02 * wind
-    path = plot_wind_and_tip(time, wind, tip, tmp_path / 'plot.png', title='a pole')
+    path = save_figure(wind_and_tip(time, wind, tip, 'a pole'), tmp_path / 'plot.png')
     assert Image.open(path).width > 800
     with pytest.raises(ParameterError, match='do not match'):
-        plot_wind_and_tip(time, wind[:-1], tip, path)
+        wind_and_tip(time, wind[:-1], tip)
 
 
 def test_a_name_that_is_no_picture_is_refused(tmp_path: Path) -> None:

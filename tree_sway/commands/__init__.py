@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from tree_sway.commands.command import Command as Command
     from tree_sway.commands.command import commands_of as commands_of
     from tree_sway.commands.ending import Ending as Ending
-    from tree_sway.commands.ending import LONGEST as LONGEST
     from tree_sway.commands.entries import additions as additions
     from tree_sway.commands.entries import own_commands as own_commands
     from tree_sway.commands.progress import bar as bar

@@ -18,10 +18,8 @@ import sys
 import threading
 from types import FrameType
 
-LONGEST = 1.5
-"""Time from the signal to the end of a running process [s], if it does not end before."""
 _SHORTEST = 0.3
-"""The same time while a process starts, with nothing open that must be closed."""
+"""`Ending.LONGEST` while a process starts, with nothing open that must be closed."""
 _GRACE = 0.2
 """Time [s] after which the operating system ends a process."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -36,6 +34,9 @@ class Ending:
     one by one, which takes seconds on a busy machine.
     """
 
+    LONGEST = 1.5
+    """Time from the signal to the end of a running process [s], if it does not end before."""
+
     def __init__(self, *, is_last: bool = False) -> None:
         self._is_last = is_last
         self.is_asked = False
@@ -48,7 +49,7 @@ class Ending:
     def look(self) -> None:
         """From now on a loop checks `is_asked`: do not interrupt any more."""
         self._breaks_in = False
-        self.limit = LONGEST
+        self.limit = self.LONGEST
         if self.is_asked:
             raise KeyboardInterrupt
 

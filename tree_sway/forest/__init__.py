@@ -16,10 +16,8 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.forest.risk import risk_work as risk_work
     from tree_sway.forest.risk import RiskWork as RiskWork
-    from tree_sway.forest.risk import Row as Row
     from tree_sway.forest.risk import rows_of_kind as rows_of_kind
     from tree_sway.forest.risk_kind import compute_kind as compute_kind
     from tree_sway.forest.risk_kind import KindResult as KindResult
-    from tree_sway.forest.runner import cores as cores
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -18,18 +18,15 @@ import itertools
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 from tree_sway.cache import ROOT, source_digest
 from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, inside, nearest, ParameterError
-from tree_sway.files import is_file, path_of, read_bytes, read_text, read_yaml
+from tree_sway.files import path_of, read_bytes, read_text, read_yaml
 from tree_sway.files.wind import EXAMPLES
 from tree_sway.forest.cluster import ROOMS
-from tree_sway.forest.refuse_impossible import listed, named_tree, refuse_impossible
+from tree_sway.forest.entries import listed, Plain, trees_of, winds_of
 from tree_sway.simulation import refuse_too_many_steps
-
-Plain = dict[str, Any]
 
 _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
@@ -102,14 +99,13 @@ def read_study(path: str | Path) -> list[Case]:
     study = document.values
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
     _refuse_large(study, Case({}, {}, **common), str(path))
-    refuse_impossible(document, path.parent)
+    trees = trees_of(document, path.parent)
+    winds = winds_of(document, path.parent)
     varied = _settings(study.get('settings', {}), path)
     code = ''.join(source_digest(ROOT / room) for room in ROOMS).encode()
     cases = []
     contents = cache(_content)
-    for tree, wind, settings in itertools.product(
-        _trees(study['trees'], path.parent), _winds(study['winds'], path.parent), varied
-    ):
+    for tree, wind, settings in itertools.product(trees, winds, varied):
         digest = hashlib.blake2b(code, digest_size=10)
         for part in (tree, wind):
             digest.update(contents(part.get('file')))
@@ -148,38 +144,6 @@ def _count(entry: Plain, *names: str) -> int:
     """Count the combinations of the values of an entry, with its seeds."""
     lengths = (len(listed(entry[name])) for name in names if name in entry)
     return math.prod(lengths) * int(entry.get('seeds', 1))
-
-
-def _trees(entries: list[Any], folder: Path) -> list[Plain]:
-    found: list[Plain] = []
-    for entry in entries:
-        if (name := named_tree(entry)) is not None:
-            beside = folder / path_of(name)
-            found.append({'file': str(beside)} if is_file(beside) else {'name': name})
-        else:
-            grow = entry['grow']
-            rows = itertools.product(
-                listed(grow['species']), listed(grow['height']), range(grow.get('seeds', 1))
-            )
-            found += [{'species': s, 'height': float(h), 'seed': k} for s, h, k in rows]
-    return found
-
-
-def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
-    found: list[Plain] = []
-    for entry in entries:
-        if 'file' in entry:
-            beside = folder / path_of(entry['file'])
-            is_built_in = entry['file'] in EXAMPLES and not is_file(beside)
-            path = entry['file'] if is_built_in else str(beside)
-            found += [{'file': path, 'scale': float(s)} for s in listed(entry.get('scale', 1.0))]
-        else:
-            rows = itertools.product(
-                listed(entry['speed']), listed(entry.get('intensity', 0.2)),
-                range(entry.get('seeds', 1)),
-            )  # fmt: skip
-            found += [{'speed': float(u), 'intensity': float(i), 'seed': k} for u, i, k in rows]
-    return found
 
 
 def _settings(varied: Plain, path: Path) -> list[Plain]:

@@ -141,9 +141,8 @@ def _shares(rig: Rig, exposure: Exposure, speed: float, seed: int) -> tuple[floa
         [speed],
         rng=np.random.default_rng(seed),
         rate=_RATE,
-        height=exposure.turbulence_height,
-        intensity=exposure.intensity,
         strained=1,
+        **exposure.turbulence,
     )
     return used.stem, float(used.roots[0])
 

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from tree_sway.growth.beyond_scan import open_diameter as open_diameter
     from tree_sway.growth.builtin import builtin_tree as builtin_tree
     from tree_sway.growth.builtin import BUILTIN_TREES as BUILTIN_TREES
-    from tree_sway.growth.crown_allometry import AREA_SPREAD as AREA_SPREAD
     from tree_sway.growth.crown_allometry import BREAST_HEIGHT as BREAST_HEIGHT
     from tree_sway.growth.crown_allometry import breast_height_diameter as breast_height_diameter
     from tree_sway.growth.crown_allometry import crown_size as crown_size

@@ -32,6 +32,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import Tree, tree_from_segments
+from tree_sway.growth.axis import GOLDEN_ANGLE
 from tree_sway.growth.crown_allometry import AREA_SPREAD, breast_height_diameter, crown_size
 
 _CUT_AT = 0.015
@@ -57,7 +58,6 @@ _THINNEST = 0.3
 _SMALLEST = 0.07, 5.0
 """Diameter and height in [m] from which on the allometry holds."""
 _OPENING = math.radians(35.0)
-_GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,7 @@ def _with_twigs(
     number = np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)
     along = tree.direction[ends][at]
     opening = np.where(count[at] == 1, 0.0, _OPENING).astype(np.float64)
-    way = _around(along, opening, _GOLDEN * np.arange(len(at), dtype=np.float64))
+    way = _around(along, opening, GOLDEN_ANGLE * np.arange(len(at), dtype=np.float64))
     start = tree.end[ends][at]
     width = thick[at]
     branch = tree.branch_of_segment

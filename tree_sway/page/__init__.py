@@ -14,14 +14,11 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
-    from tree_sway.page.access import make_token as make_token
     from tree_sway.page.access import read_token as read_token
-    from tree_sway.page.access import require_token as require_token
     from tree_sway.page.film import browser as browser
     from tree_sway.page.film import page_pictures as page_pictures
     from tree_sway.page.one_file import page_of_scene as page_of_scene
     from tree_sway.page.page_settings import PageSettings as PageSettings
-    from tree_sway.page.page_settings import USUAL_PORT as USUAL_PORT
     from tree_sway.page.server import PageServer as PageServer
     from tree_sway.page.session import Choices as Choices
     from tree_sway.page.session import RATE as RATE

@@ -24,9 +24,7 @@ from tree_sway.page.access import (
     cookie_token,
     given_token,
     Guesses,
-    read_token,
     refusal,
-    require_token,
     viewers_token,
     WRONG_TOKEN,
 )
@@ -72,8 +70,7 @@ class Guard:
         self._settings = settings
         self._doors = doors
         self._refusals = refusals
-        self._token = settings.token or read_token(settings.token_file)
-        require_token(settings.address, self._token)
+        self._token = settings.required_token()
         self._guesses = Guesses()
         self.port = settings.port or 0
         """Port that the server is bound to."""

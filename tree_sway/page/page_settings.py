@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import ssl
 
 from tree_sway.errors import TransportError
+from tree_sway.page.access import read_token, require_token
 
 USUAL_PORT = 8765
 
@@ -47,6 +48,16 @@ class PageSettings:
         scheme = 'https' if self.certificate else 'http'
         host = f'[{self.address}]' if ':' in self.address else self.address
         return f'{scheme}://{host}:{port}/'
+
+    def required_token(self) -> str:
+        """
+        Return the token, of its file if it is there; empty where none is needed.
+
+        Errors are those of `read_token` and `require_token`.
+        """
+        token = self.token or read_token(self.token_file)
+        require_token(self.address, token)
+        return token
 
     def tls(self) -> ssl.SSLContext | None:
         """

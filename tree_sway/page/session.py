@@ -28,7 +28,8 @@ from tree_sway.newest import Newest
 from tree_sway.page.leaf_calendar import SUMMER
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
-from tree_sway.simulation import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
+from tree_sway.page.wind_ahead import wind_ahead
+from tree_sway.simulation import blow, RecordedWind, SimulatedWind, WindSource
 from tree_sway.stream import Refused, SceneState, Value
 from tree_sway.twin import ObservedTree, sensor_reports
 

@@ -4,7 +4,7 @@
 Parameters, each once: default, unit, range, source.
 
 Tables in YAML (``sway.yaml`` here, ``nodes.yaml`` of the nodes) from which commands, nodes and the
-documentation take their values; an unknown name is answered by the nearest.
+documentation take their values.
 """
 
 from typing import TYPE_CHECKING
@@ -13,11 +13,8 @@ from tree_sway.faces import face
 
 if TYPE_CHECKING:
     from tree_sway.parameters.parameter import Parameter as Parameter
-    from tree_sway.parameters.parameter import QOS_PREFIX as QOS_PREFIX
     from tree_sway.parameters.parameter import read_tables as read_tables
     from tree_sway.parameters.parameter import Table as Table
-    from tree_sway.parameters.parameter import unknown_names as unknown_names
-    from tree_sway.parameters.parameter import unknown_parameter as unknown_parameter
     from tree_sway.parameters.parameter import Value as Value
     from tree_sway.parameters.sway_parameters import SWAY as SWAY
 else:

@@ -24,10 +24,6 @@ Value = Any  # bool | int | float | str | tuple[float, ...]
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-# Parameters of every ROS 2 node.
-_OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
-QOS_PREFIX = 'qos_overrides.'
-"""Prefix of parameters of the quality of service of a publisher or subscription."""
 
 
 @dataclass(frozen=True)
@@ -192,16 +188,3 @@ def _named(entry: str) -> Any:
     """Return the object that ``module:NAME`` refers to."""
     module, _, name = entry.partition(':')
     return getattr(importlib.import_module(module), name)
-
-
-def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
-    """Names that are neither in the table nor in all ROS nodes."""
-    known = {parameter.name for parameter in table} | set(_OF_EVERY_NODE)
-    return [n for n in names if n not in known and not n.startswith(QOS_PREFIX)]
-
-
-def unknown_parameter(table: Table, name: str, *, where: str = '') -> ParameterError:
-    """Make the error for a name that is not in a table, with the nearest name in it."""
-    names = [parameter.name for parameter in table]
-    cure = nearest(name, names) or f'known are: {", ".join(names)}'
-    return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)

@@ -55,7 +55,7 @@ def of_sway(record: SwayRecord) -> Figure:
     name, *_ = record.branch_names or ('',)
     tip = record.tips[:, 0] if name else np.zeros_like(record.wind)
     title = f'{record.tree}, model {record.model}, tip of {name}'
-    return labelled(wind_and_tip(record.time, record.wind, tip), title)
+    return wind_and_tip(record.time, record.wind, tip, title)
 
 
 def of_motion(record: MotionRecord) -> Figure:

@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Picture of a tree or several in wind, as a file."""
+"""Picture of a tree or several in wind."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.tree import ends_of_poses, Tree
-from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.pictures.plotting import new_figure
 from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 
 if TYPE_CHECKING:
@@ -23,14 +22,13 @@ _HEIGHT = 6.0
 """Height of a picture in [inch]."""
 
 
-def picture_in_wind(
+def figure_in_wind(
     trees: Sequence[Tree],
     poses: ArrayLike,
     wind: ArrayLike,
-    path: str | Path,
     *,
     leaves: LeafClusters | None = None,
-) -> Path:
+) -> Figure:
     """
     Draw trees in wind over their shape at rest.
 
@@ -40,30 +38,15 @@ def picture_in_wind(
         Trees, and the pose block of all their segments, one tree after the other, (n, 7).
     wind
         Wind in [m/s], (3,).
-    path
-        File to write; its suffix is that of a format, such as ``.png`` or ``.pdf``.
     leaves
         Leaves on these segments; none are drawn if None.
 
     Raises
     ------
-    FormatError
-        If the suffix is not that of a picture format, or the file cannot be written.
     MissingDependencyError
         If matplotlib is not installed.
 
     """
-    return save_figure(figure_in_wind(trees, poses, wind, leaves=leaves), path)
-
-
-def figure_in_wind(
-    trees: Sequence[Tree],
-    poses: ArrayLike,
-    wind: ArrayLike,
-    *,
-    leaves: LeafClusters | None = None,
-) -> Figure:
-    """Make the figure of `picture_in_wind`."""
     rest = np.vstack([each.rest_poses for each in trees])
     length = np.concatenate([each.length for each in trees])
     limits = limits_around(

@@ -5,14 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.errors import ParameterError
-from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.pictures.plotting import new_figure
 from tree_sway.simulation import StrengthUse
 
 if TYPE_CHECKING:
@@ -22,9 +21,9 @@ STUDY_COLUMNS = ('wind_mean [m/s]', 'tip_largest [m]', 'base_moment_largest [N m
 """Columns of a study that are drawn, over the first one."""
 
 
-def plot_wind_and_tip(
-    time: ArrayLike, wind: ArrayLike, tip: ArrayLike, path: str | Path, *, title: str = ''
-) -> Path:
+def wind_and_tip(
+    time: ArrayLike, wind: ArrayLike, tip: ArrayLike, title: str = ''
+) -> Figure:
     """
     Plot the wind's speed and the tip's displacement over time.
 
@@ -36,8 +35,8 @@ def plot_wind_and_tip(
         Velocity of the wind in [m/s], (n, 3): east, north, up.
     tip
         Displacement of the tip from rest in [m], (n, 3).
-    path, title
-        File to write, whose suffix is that of the format, and the title of the plot.
+    title
+        Title of the plot.
 
     Raises
     ------
@@ -45,11 +44,6 @@ def plot_wind_and_tip(
         If the shapes of the three do not match.
 
     """
-    return _finished(wind_and_tip(time, wind, tip), path, title)
-
-
-def wind_and_tip(time: ArrayLike, wind: ArrayLike, tip: ArrayLike) -> Figure:
-    """Make the figure of `plot_wind_and_tip`."""
     t, blowing, moved = (np.asarray(each, dtype=np.float64) for each in (time, wind, tip))
     shapes = blowing.shape, moved.shape
     if t.ndim != 1 or len(t) < 2 or shapes != ((len(t), 3), (len(t), 3)):
@@ -65,10 +59,10 @@ def wind_and_tip(time: ArrayLike, wind: ArrayLike, tip: ArrayLike) -> Figure:
     sway.plot(t, moved[:, 0], label='east')
     sway.plot(t, moved[:, 1], label='north')
     sway.set(xlabel='time [s]', ylabel='tip from rest [m]', xlim=(t[0], t[-1]))
-    return figure
+    return labelled(figure, title)
 
 
-def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path: str) -> Path:
+def strength_over_wind(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]]) -> Figure:
     """
     Plot the share of strength that trees use over the mean wind speed, wood beside roots.
 
@@ -79,8 +73,6 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     used
         Used shares at each speed, with the bands of the sources, by the name of each tree, where
         it stands and the height of its mean wind.
-    path
-        File to write, whose suffix is that of the format.
 
     """
     figure = new_figure(10.0, 4.6)
@@ -98,10 +90,10 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
         fastest = float(np.max(np.asarray(speeds)))
         axes.set(title=what, xlabel='mean wind [m/s]', xlim=(0.0, fastest), ylim=(0.0, 200.0))
     figure.axes[0].set_ylabel('share of strength, largest gust of 10 min [%]')
-    return _finished(figure, path, 'not included: rot, wounds, wet or shallow soil')
+    return labelled(figure, 'not included: rot, wounds, wet or shallow soil')
 
 
-def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
+def study_over_wind(rows: Sequence[Mapping[str, str]]) -> Figure:
     """
     Plot largest motion of the tip and base moment of a study's cases over the mean wind.
 
@@ -109,8 +101,6 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     ----------
     rows
         Cases with `STUDY_COLUMNS`, and ``tree_...`` columns of the tree of each.
-    path
-        File to write, whose suffix is that of the format.
 
     Raises
     ------
@@ -128,7 +118,7 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
             columns = np.array(sorted(cases)).T
             axes.plot(columns[0], columns[k], '.-', label=name)
         axes.set(xlabel=STUDY_COLUMNS[0], ylabel=STUDY_COLUMNS[k], ylim=(0.0, None))
-    return _finished(figure, path)
+    return labelled(figure)
 
 
 def _tree_of(row: Mapping[str, str]) -> str:
@@ -149,7 +139,3 @@ def labelled(figure: Figure, title: str = '') -> Figure:
     figure.suptitle(title)
     figure.set_layout_engine('constrained')
     return figure
-
-
-def _finished(figure: Figure, path: str | Path, title: str = '') -> Path:
-    return save_figure(labelled(figure, title), path)

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from tree_sway.simulation.wind_source import blow as blow
     from tree_sway.simulation.wind_source import RecordedWind as RecordedWind
     from tree_sway.simulation.wind_source import SimulatedWind as SimulatedWind
-    from tree_sway.simulation.wind_source import wind_ahead as wind_ahead
     from tree_sway.simulation.wind_source import WindSource as WindSource
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -194,6 +194,11 @@ class Exposure:
         return integral_scale / (_INTEGRAL_SCALE * turbulence_scale(1.0))
 
     @property
+    def turbulence(self) -> dict[str, float]:
+        """Height and intensity of simulated turbulence, as keywords of `Turbulence`."""
+        return {'height': self.turbulence_height, 'intensity': self.intensity}
+
+    @property
     def edge_factor(self) -> float:
         """
         Largest moment at the edge of a stand, behind a wide gap, over that deep inside it [-].

@@ -50,22 +50,6 @@ def blow(run: Run, wind: WindSource, until: int) -> None:
     run.advance(until)
 
 
-_AHEAD, _AHEAD_EVERY = 20, 0.5
-"""Number of speeds to come that viewers are told, and time between them [s]."""
-
-
-def wind_ahead(wind: WindSource, now: float) -> dict[str, object]:
-    """
-    Speeds to come, for viewers: the time ``every`` between them [s], and ``speeds`` [m/s].
-
-    They are of a source that knows what is to come: a simulated or a recorded wind.
-    """
-    times = (now + _AHEAD_EVERY * i for i in range(_AHEAD))
-    samples = (next(wind.between(time, time + _BEFORE), None) for time in times)
-    speeds = [round(math.hypot(*sample[1]), 2) for sample in samples if sample is not None]
-    return {'every': _AHEAD_EVERY, 'speeds': speeds}
-
-
 class SimulatedWind:
     """
     Turbulent wind with a variable mean; the gusts keep their pattern.

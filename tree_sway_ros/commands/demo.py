@@ -16,7 +16,7 @@ import sys
 import tempfile
 import webbrowser
 
-from tree_sway.commands import Ending, LONGEST
+from tree_sway.commands import Ending
 from tree_sway.core.scene import Scene
 from tree_sway.core.wind import shorter_than
 from tree_sway.files.commands import (
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
                 print(f'note: {short}', file=sys.stderr)
         if not arguments.no_page:
             _serve_page(nodes, arguments)
-        ending.limit = LONGEST
+        ending.limit = Ending.LONGEST
         watch(monitor, seconds, continues)
         print(summary(monitor.totals, arguments.rate), flush=True)
     return 0

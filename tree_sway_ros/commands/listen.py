@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway.commands import Ending, LONGEST
+from tree_sway.commands import Ending
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Listen until the time is over or Ctrl-C."""
     seconds = seconds_of(arguments)
     with Ending() as ending, StreamMonitor(None, None, arguments.namespace) as monitor:
-        ending.limit = LONGEST
+        ending.limit = Ending.LONGEST
         watch(monitor, seconds, lambda: True)
         print(summary(monitor.totals, arguments.rate), flush=True)
     return 0

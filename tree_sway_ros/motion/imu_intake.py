@@ -22,7 +22,7 @@ from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
 _APART = 5_000_000_000
 """Largest difference of a stamp from the node's clock in [ns]."""
 
-_TYPE, _SHOWN = 'sensor_msgs/Imu', 5
+_TYPE = 'sensor_msgs/Imu'
 
 
 def places_of(text: str) -> dict[str, str]:
@@ -165,12 +165,7 @@ class ImuIntake(SolverAnnex):
                 values['frequencies over those before'] = round(each.change.ratio, 3)
                 values['their error by chance and wind'] = round(each.change.error, 3)
             faults = [problem] if problem else []
-            if self.node.count_publishers(each.name) > 1:
-                names = sorted(self.node.publishers_of(each.name, _TYPE))
-                faults.append(
-                    f'{len(names)} publishers: {", ".join(names[:_SHOWN])}; one is followed, '
-                    f'{others} samples of others were refused'
-                )
+            faults += self._followed[each.name].faults(self.node.publishers_of(each.name, _TYPE))
             level = WARN if faults or has_changed else OK
             text = '; '.join([*([] if problem else said), *faults])
             found.append(Status(f'imu {each.name}', level, text, values))

@@ -18,7 +18,7 @@ from sensor_msgs.msg import MultiDOFJointState
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.page import PageServer, PageSettings, read_token, require_token
+from tree_sway.page import PageServer, PageSettings
 from tree_sway.parameters import SWAY
 from tree_sway.stream import (
     Control,
@@ -68,7 +68,7 @@ class ViewerNode(TreeSwayNode):
             port=None if self.values['port'] == USUAL_OR_FREE else self.values['port'],
             origins=tuple(self.values['origins'].split()),
         )
-        require_token(self._settings.address, read_token(self._settings.token_file))
+        self._settings.required_token()
         controls = _controls(), self._apply, self._pull
         self._panel = ControlPanel(*controls) if self.values['control'] else None
         self._pulls = self.publisher(replace(PULL, name='solver/pull'))

@@ -22,15 +22,13 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 
-from tree_sway.errors import ParameterError, TreeSwayError
-from tree_sway.parameters import (
-    Parameter,
-    QOS_PREFIX,
-    Table,
-    unknown_names,
-    unknown_parameter,
-    Value,
-)
+from tree_sway.errors import nearest, ParameterError, TreeSwayError
+from tree_sway.parameters import Parameter, Table, Value
+
+_OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+"""Parameters of every node of ROS 2."""
+_QUALITY = 'qos_overrides.'
+"""Prefix of parameters of the quality of service of a publisher or subscription."""
 
 
 class ParameterValues:
@@ -69,13 +67,16 @@ class ParameterValues:
         self._on_change = on_change
         self._check_all = check
         given = {name: item.value for name, item in node.get_parameters_by_prefix('').items()}
-        unknown = unknown_names(table, given)
-        for name in unknown:
-            error = unknown_parameter(table, name, where=f"node '{node.get_name()}'")
-            node.get_logger().warning(f'{error}; ignored')
-        for name in given:  # publishers and subscriptions declare their quality of service
-            if name in unknown or name in self._by_name or name.startswith(QOS_PREFIX):
-                node.undeclare_parameter(name)
+        for name in given:
+            if name in _OF_EVERY_NODE:
+                continue
+            # Publishers and subscriptions declare their quality of service.
+            if name not in self._by_name and not name.startswith(_QUALITY):
+                cure = nearest(name, self._by_name) or f'known are: {", ".join(self._by_name)}'
+                where = f"node '{node.get_name()}'"
+                error = ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)
+                node.get_logger().warning(f'{error}; ignored')
+            node.undeclare_parameter(name)
         self._values = {
             each.name: each.checked(given.get(each.name, each.default)) for each in table
         }

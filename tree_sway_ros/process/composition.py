@@ -16,7 +16,7 @@ import threading
 from typing import Any
 
 from tree_sway.parameters import Value
-from tree_sway_ros.process.spin import create, init, require_rclpy
+from tree_sway_ros.process.spin import create, own_context
 
 _CHECK_PERIOD = 0.2
 NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
@@ -47,18 +47,10 @@ class Composition:
         namespace: str = '',
         domain_id: int | None = None,
     ) -> None:
-        rclpy = require_rclpy()
+        self.context = own_context(domain_id)
         from rclpy.executors import SingleThreadedExecutor
 
-        self.context = rclpy.context.Context()
         self._nodes: dict[str, Any] = {}
-        init(
-            rclpy,
-            [],
-            context=self.context,
-            domain_id=domain_id,
-            signal_handler_options=rclpy.signals.SignalHandlerOptions.NO,
-        )
         self._executor = SingleThreadedExecutor(context=self.context)
         self._is_closing = False
         self._failure: Exception | None = None

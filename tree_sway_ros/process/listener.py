@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from typing import Any, TypeVar
 
-from tree_sway_ros.process.spin import create, init, require_rclpy
+from tree_sway_ros.process.spin import create, own_context
 
 _LOOK = 0.2  # [s]: interval of checks for Ctrl-C while no messages arrive
 
@@ -28,14 +28,10 @@ class Listener:
     """
 
     def __init__(self, name: str, namespace: str = '', context: Any = None) -> None:
-        rclpy = require_rclpy()
+        self._own = own_context() if context is None else None
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.node import Node
 
-        self._own = rclpy.context.Context() if context is None else None
-        if self._own is not None:
-            off = rclpy.signals.SignalHandlerOptions.NO
-            init(rclpy, [], context=self._own, signal_handler_options=off)
         within = context or self._own
         self.node: Any = create(
             lambda **given: Node(name, **given), context=within, namespace=namespace

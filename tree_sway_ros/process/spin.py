@@ -92,6 +92,20 @@ def init(
         raise TransportError(f'ROS 2 cannot start: {first_line}', cure=cure) from error
 
 
+def own_context(domain_id: int | None = None) -> Any:
+    """
+    Return a context for nodes of a program that handles signals itself.
+
+    The ROS domain is that of the environment if None. Errors are those of `require_rclpy` and
+    `init`.
+    """
+    rclpy = require_rclpy()
+    context = rclpy.context.Context()
+    off = rclpy.signals.SignalHandlerOptions.NO
+    init(rclpy, [], context=context, domain_id=domain_id, signal_handler_options=off)
+    return context
+
+
 def create(make: Any, **options: Any) -> Any:
     """Create a node; a `TransportError` if the middleware cannot join the domain."""
     try:

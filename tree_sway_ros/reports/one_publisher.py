@@ -4,12 +4,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 import math
 
 _PERIODS = 3.0
 _LEAST = 1.0
 """Silence after which a publisher gives way: a number of its periods, and no less in [s]."""
+_SHOWN = 5
+"""Largest number of nodes that are named."""
+
+
+def named(publishers: Sequence[str]) -> str:
+    """Return the number of several publishers and the names of the first, for a report."""
+    return f'{len(publishers)} publishers: {", ".join(sorted(publishers)[:_SHOWN])}'
 
 
 class OnePublisher:
@@ -54,3 +61,10 @@ class OnePublisher:
         self._last = number
         self._at = now
         return True
+
+    def faults(self, publishers: Sequence[str]) -> list[str]:
+        """Return a sentence where several nodes publish; none for one."""
+        if len(publishers) < 2:
+            return []
+        others = f'{self.refused} samples of others were refused'
+        return [f'{named(publishers)}; one is followed, {others}']

@@ -12,6 +12,7 @@ from tree_sway.core.scene import Run, Simulator
 from tree_sway.core.wind import GateCounts
 from tree_sway.fidelity import adaptive_among
 from tree_sway_ros.reports.diagnostics import ERROR, OK, Status, WARN
+from tree_sway_ros.reports.one_publisher import named
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 from tree_sway_ros.timing.pacer import Pacer, Timing
 
@@ -22,9 +23,6 @@ _WIND = {
     'decaying': (WARN, 'no wind: its force decays'),
     'stale': (ERROR, 'no wind: its force has decayed'),
 }
-
-_SHOWN = 5
-"""Largest number of nodes that are named."""
 
 _SILENCE = 1.0
 """Time without a frame [s], of a running clock, after which the stream is reported as halted."""
@@ -114,8 +112,8 @@ def _mixed(status: Status, publishers: Sequence[str]) -> Status:
     """Return a status with a warning if several nodes publish its topic."""
     if len(publishers) < 2:
         return status
-    text = f'{len(publishers)} publishers mix: {", ".join(sorted(publishers)[:_SHOWN])}'
-    return replace(status, level=max(status.level, WARN), message=f'{status.message}; {text}')
+    text = f'{status.message}; {named(publishers)}, which mix'
+    return replace(status, level=max(status.level, WARN), message=text)
 
 
 def _wind(state: str, counts: GateCounts) -> Status:

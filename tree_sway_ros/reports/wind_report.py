@@ -30,8 +30,6 @@ _STAMPS = {
     'out_of_order': 'out of order',
 }
 """Counts of refused stamps; a driver that gives none at all is no fault."""
-_SHOWN = 5
-"""Largest number of nodes that are named."""
 _NEWEST = 0.02
 """Weight of the newest sample in the mean square of what the projection leaves out."""
 _LEAST_LEFT_OUT = 0.05
@@ -154,12 +152,7 @@ class WindReport:
             faults.append(f'stamps replaced by the time of arrival: {listed(stamps)}')
         if lost:
             faults.append(f'{lost} samples lost on the way')
-        if len(publishers) > 1:
-            shown = ', '.join(sorted(publishers)[:_SHOWN])
-            faults.append(
-                f'{len(publishers)} publishers: {shown}; one is used, '
-                f'{self.followed.refused} samples of others were refused'
-            )
+        faults += self.followed.faults(publishers)
         level = max(level, WARN) if faults else level
         return Status('wind', level, '; '.join([text, *faults]), values)
 

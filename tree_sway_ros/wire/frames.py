@@ -3,8 +3,7 @@
 """
 The latest rotations between frames, by /tf and /tf_static: a sensor on a boat or a robot.
 
-They come from tf2's buffer where tf2_ros is installed, else from `Frames`, which needs only the
-messages of tf2.
+They need only the messages of tf2; where these are missing, no frame is known.
 """
 
 from __future__ import annotations
@@ -68,54 +67,13 @@ class Frames:
         return way
 
 
-class BufferedFrames:
-    """Known frames, in tf2's own buffer."""
-
-    def __init__(self, node: Any) -> None:
-        from tf2_ros import Buffer, TransformListener
-
-        self._buffer = Buffer()
-        self._listener = TransformListener(self._buffer, node)
-
-    def rotation(self, frame: str, base: str) -> Floats | None:
-        """Rotation (3, 3) of vectors of a frame into a second one; None if not connected."""
-        from rclpy.time import Time
-        from tf2_ros import TransformException
-
-        try:
-            found = self._buffer.lookup_transform(base.strip('/'), frame.strip('/'), Time())
-        except TransformException:
-            return None
-        q = found.transform.rotation
-        return Rotation.from_quat((q.x, q.y, q.z, q.w)).as_matrix()
-
-
-class _HeardFrames(Frames):
-    """Known frames, of the messages of tf2."""
-
-    def __init__(self, node: Any) -> None:
-        super().__init__()
-        for topic in (TF, TF_STATIC):
-            node.subscription(topic, lambda heard: self.take(heard.transforms))
-
-
-def listen(node: Any) -> BufferedFrames | Frames:
-    """Begin to listen to frames, by the best that is installed; without tf2 none is known."""
-    for kind in (BufferedFrames, _HeardFrames):
-        try:
-            return kind(node)
-        except ImportError:
-            continue
-    return Frames()
-
-
 class FrameListener:
     """Listener of /tf that logs the use of each frame once."""
 
     def __init__(self, node: Any, base: str) -> None:
         self._log = node.get_logger()
         self._base = base
-        self._frames = listen(node)
+        self._frames = Frames()
         self._said: set[str] = set()
         self._until = time.monotonic() + _PATIENCE
         self._lack = 'no transform between the two on /tf'
@@ -123,7 +81,10 @@ class FrameListener:
         self.is_lacking = False
         self.is_waiting = False
         self._latest = -math.inf
-        if type(self._frames) is Frames:
+        try:
+            for topic in (TF, TF_STATIC):
+                node.subscription(topic, lambda heard: self._frames.take(heard.transforms))
+        except ImportError:
             self._until = 0.0
             self._lack = 'tf2_msgs is not installed'
 

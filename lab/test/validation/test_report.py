@@ -20,7 +20,7 @@ from tree_sway_lab.validation.report import (
 from tree_sway_lab.validation.section import Check, CHECKS, Effort, Section
 
 from tree_sway.errors import ParameterError
-from tree_sway.growth import AREA_SPREAD
+from tree_sway.growth.crown_allometry import AREA_SPREAD
 from tree_sway.simulation import strength_band
 
 

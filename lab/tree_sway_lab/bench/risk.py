@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import import_module
+import os
 from pathlib import Path
 import subprocess
 import sys
@@ -20,7 +21,6 @@ import time
 import numpy as np
 
 from tree_sway.errors import ParameterError
-from tree_sway.forest import cores
 from tree_sway_lab.bench.measured import Measured
 
 N_TREES = 1_000, 20_000
@@ -49,7 +49,7 @@ def time_risk(sizes: Sequence[int] = N_TREES) -> list[Measured]:
             write_city(Path(folder, 'city.csv'), n_trees)
             seconds, cpu_seconds, megabytes = run_risk(Path(folder))
         measured += [
-            Measured(f'{n_trees:6,} trees, {cores()} cores', seconds, 's'),
+            Measured(f'{n_trees:6,} trees, {os.cpu_count()} cores', seconds, 's'),
             Measured(f'{n_trees:6,} trees, CPU time', cpu_seconds, 's'),
             Measured(f'{n_trees:6,} trees, memory', megabytes, 'MB'),
         ]

@@ -26,7 +26,7 @@ from tree_sway.core.species import species_named
 from tree_sway.files import whole_file
 from tree_sway.files.trees import open_scene, scene_of_files, TreeFile
 from tree_sway.growth import grow
-from tree_sway.pictures import picture_in_wind
+from tree_sway.pictures import figure_in_wind, save_figure
 from tree_sway_lab.chart.film import chart_film, film_figures
 
 SPEED = 10.0
@@ -63,10 +63,10 @@ def chart_portraits(out_dir: str | Path) -> list[Path]:
     for name in bar(list(PORTRAITS), 'portraits'):
         scene, simulator = settled(name)
         files.append(folder / f'{name}_in_wind.png')
-        picture_in_wind(
-            [each.placed() for each in scene.trees], simulator.place(), _WIND, files[-1],
-            leaves=scene.leaves(True, _CLUSTERS),
-        )  # fmt: skip
+        trees = [each.placed() for each in scene.trees]
+        leaves = scene.leaves(True, _CLUSTERS)
+        figure = figure_in_wind(trees, simulator.place(), _WIND, leaves=leaves)
+        save_figure(figure, files[-1])
         rows.append({'picture': files[-1].name, **figures(simulator)})
     files.append(chart_film(folder))
     rows.append({'picture': files[-1].name, **film_figures()})

@@ -13,7 +13,7 @@ import sys
 import time
 from typing import Any
 
-from tree_sway.commands import Ending, LONGEST
+from tree_sway.commands import Ending
 from tree_sway.errors import TransportError
 from tree_sway.stream import StreamClient
 from tree_sway_lab.soak.health import check, has_grown, Health, health, line_of, period_of
@@ -35,7 +35,7 @@ def soak_chain(arguments: argparse.Namespace, seconds: float, rate: float) -> in
         reports = _Reports(monitor.node)
         with _running(_commands(arguments, rate, port)) as processes:
             ending.look()
-            ending.limit = 2.0 * LONGEST
+            ending.limit = 2.0 * Ending.LONGEST
             _wait_for_poses(monitor, processes, ending)
             _set_faults(monitor, every)
             seen: dict[str, list[Health]] = {name: [] for name in processes}
@@ -130,7 +130,7 @@ def _running(commands: Mapping[str, list[str]]) -> Iterator[dict[str, subprocess
             process.terminate()
         for process in processes.values():
             with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(2.0 * LONGEST)
+                process.wait(2.0 * Ending.LONGEST)
             process.kill()
 
 

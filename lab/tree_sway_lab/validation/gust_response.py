@@ -24,7 +24,6 @@ from tree_sway.core.tree import rooted
 from tree_sway.core.wind import simulate_turbulence
 from tree_sway.growth import grow
 from tree_sway.simulation import exposure_of, Rig
-from tree_sway.simulation.commands import turbulence_of
 from tree_sway_lab.validation.response_slopes import HEIGHTS, slope_above
 
 SPECIES = ('spruce', 'sitka', 'pine', 'douglas_fir', 'birch', 'oak', 'beech', 'ash')
@@ -90,7 +89,7 @@ def gust_response(case: GustCase, seconds: float = 600.0, seed: int = 1) -> Gust
         rate=_RATE,
         duration=seconds,
         rng=np.random.default_rng(seed),
-        **turbulence_of(site),
+        **site.turbulence,
     )
     record = rig.run(wind, rate=_RATE)
     first = float(rig.reductions.natural_frequencies(1)[0])

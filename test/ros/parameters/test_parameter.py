@@ -14,11 +14,7 @@ from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError
-from tree_sway.parameters.parameter import (
-    Parameter,
-    unknown_names,
-    unknown_parameter,
-)
+from tree_sway.parameters.parameter import Parameter
 from tree_sway.simulation.wind.sensor_faults import FAULTS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
@@ -130,16 +126,6 @@ def test_the_core_takes_both_ends_of_each_range(node, make):
         if isinstance(parameter.default, float):
             for end in (parameter.minimum, parameter.maximum):
                 make(**{parameter.name: end})
-
-
-def test_an_unknown_name_is_named_with_the_nearest():
-    assert unknown_names(SOLVER, ['rats', 'rate']) == ['rats']
-    error = unknown_parameter(SOLVER, 'rats', where="node 'solver'")
-    assert str(error) == "node 'solver': unknown parameter 'rats'; did you mean 'rate'?"
-
-
-def test_what_every_node_has_is_known():
-    assert unknown_names(SOLVER, ['use_sim_time', 'rate']) == []
 
 
 PARAMETER_FILES = sorted(

@@ -171,7 +171,7 @@ def test_several_publishers_are_named(clock):
     assert (one.level, one.values['publishers']) == (OK, 1)
     two = report.status(TIMEOUT, gate, publishers=('/roof', '/mast'))
     assert two.level == WARN
-    assert '2 publishers: /mast, /roof; one is used, 0 samples of others' in two.message
+    assert '2 publishers: /mast, /roof; one is followed, 0 samples of others' in two.message
 
 
 def is_admitted(one: OnePublisher, number: int, now: float, publishers: int = 2) -> bool:

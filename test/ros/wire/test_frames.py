@@ -1,8 +1,5 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import sys
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -67,28 +64,3 @@ def test_frames_that_are_made_up_are_not_kept_without_end(monkeypatch):
     np.testing.assert_allclose(known.rotation('frame1', 'map'), yaw(0.2).as_matrix())
     assert known.rotation('frame2', 'map') is not None
     assert known.rotation('frame3', 'map') is None
-
-
-def test_tf2_ros_is_preferred_where_it_is_installed(monkeypatch):
-    """With tf2_ros replaced by records, as it is no dependency of the tests."""
-    turn = yaw(0.3)
-
-    class TransformException(Exception):  # noqa: N818
-        pass
-
-    class Buffer:
-        def lookup_transform(self, target, source, _time):
-            if source != 'mast':
-                raise TransformException(source)
-            return transform(source, target, turn)
-
-    stand_in = SimpleNamespace(
-        Buffer=Buffer,
-        TransformException=TransformException,
-        TransformListener=lambda buffer, node: (buffer, node),
-    )
-    monkeypatch.setitem(sys.modules, 'tf2_ros', stand_in)
-    known = frames.listen(node=None)
-    assert isinstance(known, frames.BufferedFrames)
-    np.testing.assert_allclose(known.rotation('/mast', 'map'), turn.as_matrix(), atol=1e-12)
-    assert known.rotation('boat', 'map') is None

@@ -11,7 +11,9 @@ from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
 from tree_sway.doorkeeper import is_loopback
-from tree_sway.page import make_token, PageServer, PageSettings, read_token, USUAL_PORT
+from tree_sway.page import PageServer, PageSettings, read_token
+from tree_sway.page.access import make_token
+from tree_sway.page.page_settings import USUAL_PORT
 
 
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:

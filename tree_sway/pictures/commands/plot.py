@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import csv
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,12 +32,12 @@ from tree_sway.files.commands import (
     simulated_speed,
 )
 from tree_sway.parameters import SWAY
-from tree_sway.pictures import (
-    picture_in_wind,
-    plot_strength,
-    plot_study,
-    plot_wind_and_tip,
+from tree_sway.pictures import figure_in_wind, save_figure
+from tree_sway.pictures.plots import (
+    strength_over_wind,
     STUDY_COLUMNS,
+    study_over_wind,
+    wind_and_tip,
 )
 from tree_sway.simulation import RecordedWind
 from tree_sway.simulation.commands import (
@@ -45,6 +46,9 @@ from tree_sway.simulation.commands import (
     tallest_of_kinds,
     used_strength,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SETTLING = 60.0
 _SETTLING_STEP = 1.0 / 15.0
@@ -88,17 +92,15 @@ def run(arguments: argparse.Namespace) -> int:
     output = output_path(arguments)
     if rows := _rows_of_study(arguments.tree):
         try:
-            plot_study(rows, output)
+            figure = study_over_wind(rows)
         except (TypeError, ValueError) as error:
             raise FormatError(
                 f'not the table of a study: {error}', where=arguments.tree
             ) from error
-        print(output)
-        return 0
-    scene = opened_scene(arguments)
-    draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
-    draw(scene, arguments, output)
-    print(output)
+    else:
+        draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
+        figure = draw(opened_scene(arguments), arguments)
+    print(save_figure(figure, output))
     return 0
 
 
@@ -114,16 +116,15 @@ def _rows_of_study(path: str) -> list[dict[str, str]]:
         return list(csv.DictReader(lines, next(csv.reader([header]))))
 
 
-def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+def _portrait(scene: Scene, arguments: argparse.Namespace) -> Figure:
     simulator = _simulator(scene, arguments)
     wind = np.array([simulated_speed(arguments, 10.0), 0.0, 0.0])
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
-    picture_in_wind(
+    return figure_in_wind(
         [each.placed() for each in scene.trees],
         simulator.place(),
         wind,
-        output,
         leaves=scene.leaves(chosen_leaves(arguments), _LEAVES),
     )
 
@@ -135,7 +136,7 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
         )
 
 
-def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+def _strength(scene: Scene, arguments: argparse.Namespace) -> Figure:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
     tallest = tallest_of_kinds(scene)
     fastest = SWAY['mean_speed'].checked(simulated_speed(arguments, 30.0))
@@ -148,10 +149,10 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
             print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
         name = f'{each.name}, {exposure.place}, wind at {exposure.reference_height:.3g} m'
         used[name] = curve
-    plot_strength(speeds, used, output)
+    return strength_over_wind(speeds, used)
 
 
-def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+def _motion(scene: Scene, arguments: argparse.Namespace) -> Figure:
     wind = opened_wind(arguments)
     seconds = arguments.seconds
     if isinstance(wind, RecordedWind):
@@ -171,4 +172,4 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     asked = chosen_leaves(arguments) if first.leaf_on is None else first.leaf_on
     season = 'in leaf' if is_in_leaf(first.species, asked) else 'bare'
     title = f'{scene.tree.name}, {season}, model {arguments.model}, {source}'
-    plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)
+    return wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, title)

@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
     refuse_unused_wind(arguments)
-    from tree_sway.pictures import animate_poses, check_film, write_pictures
+    from tree_sway.pictures.animation import animate_poses, check_film, write_pictures
 
     target = check_film(output_path(arguments))
     scene = opened_scene(arguments)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from tree_sway.simulation.commands.exposure import (
         refuse_unused_exposure as refuse_unused_exposure,
     )
-    from tree_sway.simulation.commands.exposure import turbulence_of as turbulence_of
     from tree_sway.simulation.commands.strength import tallest_of_kinds as tallest_of_kinds
     from tree_sway.simulation.commands.strength import used_strength as used_strength
 else:

@@ -1,13 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where trees stand: arguments of the exposure, and the wind of a mean speed there."""
+"""Where trees stand: arguments of the exposure."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import replace
 import math
-from typing import Any
 
 from tree_sway.commands import refuse_unused
 from tree_sway.core.checks import within
@@ -103,8 +102,3 @@ def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
     for name, is_given in given.items():
         if is_given:
             refuse_unused(name, needs)
-
-
-def turbulence_of(exposure: Exposure) -> dict[str, Any]:
-    """Height and intensity of simulated turbulence."""
-    return {'height': exposure.turbulence_height, 'intensity': exposure.intensity}

@@ -37,7 +37,6 @@ from tree_sway.simulation.commands.exposure import (
     add_exposure_arguments,
     chosen_exposure,
     touched_species,
-    turbulence_of,
 )
 from tree_sway.twin.camera import FilmedMotion
 from tree_sway.twin.commands import (
@@ -143,7 +142,7 @@ def _wind(
         refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
         return simulate_turbulence(
             simulated_speed(arguments), rate=arguments.rate, duration=seconds, rng=rng,
-            **turbulence_of(exposure),
+            **exposure.turbulence,
         )  # fmt: skip
     with waiting(f'reading {arguments.wind}'):
         return opened_record(arguments)

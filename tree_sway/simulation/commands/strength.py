@@ -13,7 +13,7 @@ import numpy as np
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.settings import Settings
 from tree_sway.simulation import Exposure, Rig, StrengthUse
-from tree_sway.simulation.commands.exposure import chosen_exposure, touched_species, turbulence_of
+from tree_sway.simulation.commands.exposure import chosen_exposure, touched_species
 
 
 def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:
@@ -40,4 +40,4 @@ def used_strength(
     species = touched_species(exposure, tree.species, tree.learned)
     rig = Rig(PlacedTree(tree.name, replace(tree, yaw=0.0).placed(), species=species), settings)
     rng = np.random.default_rng(0)
-    return exposure, rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
+    return exposure, rig.strength_curve(speeds, rng=rng, **exposure.turbulence)

@@ -18,18 +18,11 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.files import parse_table
 from tree_sway.files.scenes import Inventory, inventory_of
-from tree_sway.forest import (
-    compute_kind,
-    KindResult,
-    risk_work,
-    RiskWork,
-    Row,
-    rows_of_kind,
-)
+from tree_sway.forest import compute_kind, KindResult, risk_work, RiskWork, rows_of_kind
 from tree_sway.tables import table_beside
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
-Tree = dict[str, Any]
+Tree = Row = dict[str, Any]
 
 TREES: list[Tree] = table_beside(__file__, 'forestgales.csv')
 METHODS = {'fg_rou': '', 'fg_tmc': 'tree_', 'ours': 'our_'}
