@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway.core.species import species_named
-from tree_sway.core.wind.simulated import Turbulence
+from tree_sway.core.wind import Turbulence
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files import is_file, path_of, YamlDocument
 from tree_sway.files.trees import unknown_tree
