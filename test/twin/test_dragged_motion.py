@@ -20,8 +20,10 @@ def test_it_is_the_solution_of_its_equation() -> None:
     drag, damping = rng.normal(size=(M, M)), rng.uniform(2.0, 3.0, M)
     stiffness, trust = rng.uniform(9.0, 90.0, M), np.array([0.0, 0.4, 1.0])
     observer: Any = SimpleNamespace(
-        count=N, damping=damping, all_stiffness=stiffness, trust=trust,
-        forces=SimpleNamespace(drag=drag),
+        count=N, trust=trust,
+        unknown=SimpleNamespace(
+            all_damping=damping, all_stiffness=stiffness, forces=SimpleNamespace(drag=drag)
+        ),
     )  # fmt: skip
     dragged, added = DraggedMotion(observer, DT), np.zeros((2, M))
     state, share = np.zeros((M, 2)), np.ones(M)

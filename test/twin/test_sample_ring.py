@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.twin.sample_ring import CAPACITY, KEPT, SampleRing
+from tree_sway.twin.sample_ring import CAPACITY, SampleRing
 
 DT = 1.0 / 60.0
 
@@ -21,7 +21,7 @@ def test_samples_are_averaged_within_a_step_and_joined_elsewhere() -> None:
     ring.ask_for((True, True, True))
     for now, each in zip(times.tolist(), values, strict=True):
         sample[:] = each
-        assert ring.keep(now) == KEPT
+        assert ring.keep(now) == 'accepted'
         while asked < now - DT:
             before = int(np.searchsorted(times, asked)) - 1
             asked = max(asked, times[before] + 0.02 * DT)  # not of the time of a sample
@@ -46,6 +46,6 @@ def test_the_oldest_samples_make_room() -> None:
     ring.ask_for((True, True, True))
     for k in range(count):
         sample[:] = k % 7
-        assert ring.keep(float(k)) == KEPT
+        assert ring.keep(float(k)) == 'accepted'
     assert ring.read(99.0, DT) is None
     np.testing.assert_array_equal(ring.read(count - 1.0, DT), (count - 1) % 7)

@@ -72,7 +72,7 @@ def test_what_is_beyond_the_model_is_turned_into_the_frame_of_the_tree(has_gravi
     sample = rng.normal(size=9)
     track.sensor._sample[:] = sample
     track.sensor.ring.ask_for((True, True, True))
-    assert track.sensor.ring.keep(0.3) == 0
+    assert track.sensor.ring.keep(0.3) == 'accepted'
     spectrum = SensorSpectrum(1.0, DT, N)
     track.native.series = spectrum.native.at
     of.read(0.3, 0, -1)

@@ -23,13 +23,15 @@ rate has the sign by which a lean changes as it says, whatever the wind.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.rotation import cross_matrix, quaternion_rotated
 
 GRAVITY = 9.80665
 """Standard gravity in [m/s^2]."""
@@ -100,7 +102,7 @@ class Alignment:
     noise: Floats
     azimuth_error: float = 0.0
     problem: str = ''
-    notes: tuple[str, ...] = field(default_factory=tuple)
+    notes: tuple[str, ...] = ()
 
     def motion(self, values: Floats) -> Floats:
         """
@@ -274,7 +276,7 @@ def _mounted(
         else:
             turns = [_about_up(facing - _faced(upright)) @ upright]
     elif measures[:2].any():
-        turns = [_whole_turn(scaled, model, measures)]
+        turns = [_whole_turn(scaled, model, measures[:2])]
     found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
     likeness = [_likeness(each.motion(sensed), model, measures)[0] for each in found]
     best = int(np.argmax(likeness))
@@ -333,44 +335,42 @@ def _rate_unit(rate: Floats, model: Floats, notes: list[str]) -> float:
     return 1.0
 
 
+def _pairs(
+    moved: Floats, model: Floats, measures: NDArray[np.bool_]
+) -> Iterator[tuple[Floats, Floats, float]]:
+    """Yield each quantity (n, 3) about its mean, that of the model, and the size of this one."""
+    for first in (3 * np.flatnonzero(measures)).tolist():
+        own, wanted = (_centred(each[:, first : first + 3]) for each in (moved, model))
+        yield own, wanted, max(float(np.square(wanted).sum()), 1e-300)
+
+
 def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
     """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
     across = along = 0.0
-    for quantity in np.flatnonzero(measures).tolist():
-        rows = slice(3 * quantity, 3 * quantity + 3)
-        upright = _centred(sensed[:, rows] @ turn.T)
-        wanted = _centred(model[:, rows])
-        size = max(float(np.square(wanted).sum()), 1e-300)
-        along += float((upright[:, :2] * wanted[:, :2]).sum()) / size
-        turned = upright[:, 0] * wanted[:, 1] - upright[:, 1] * wanted[:, 0]
+    upright = (sensed.reshape(-1, 3) @ turn.T).reshape(sensed.shape)
+    for own, wanted, size in _pairs(upright, model, measures):
+        along += float((own[:, :2] * wanted[:, :2]).sum()) / size
+        turned = own[:, 0] * wanted[:, 1] - own[:, 1] * wanted[:, 0]
         across += float(turned.sum()) / size
     return _about_up(math.atan2(across, along))
 
 
 def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:
     """Rotation that makes motion resemble the model's, without gravity, (3, 3)."""
-    pairs = np.zeros((3, 3))
-    for quantity in np.flatnonzero(measures[:2]).tolist():
-        rows = slice(3 * quantity, 3 * quantity + 3)
-        wanted = _centred(model[:, rows])
-        size = max(float(np.square(wanted).sum()), 1e-300)
-        pairs += wanted.T @ _centred(sensed[:, rows]) / size
-    left, _, right = np.linalg.svd(pairs)
+    products = sum(wanted.T @ own / size for own, wanted, size in _pairs(sensed, model, measures))
+    left, _, right = np.linalg.svd(products)
     right[2] *= np.linalg.det(left) * np.linalg.det(right)
     return np.asarray(left @ right)
 
 
 def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tuple[float, float]:
     """Correlation with the model, and the size of the motion over the model's."""
-    product = own = other = 0.0
-    for quantity in np.flatnonzero(measures).tolist():
-        rows = slice(3 * quantity, 3 * quantity + 3)
-        mine, wanted = _centred(moved[:, rows]), _centred(model[:, rows])
-        size = max(float(np.square(wanted).sum()), 1e-300)
-        product += float((mine * wanted).sum()) / size
-        own += float(np.square(mine).sum()) / size
-        other += 1.0
-    return product / max(math.sqrt(own * other), 1e-300), math.sqrt(own / max(other, 1.0))
+    product = square = 0.0
+    for own, wanted, size in _pairs(moved, model, measures):
+        product += float((own * wanted).sum()) / size
+        square += float(np.square(own).sum()) / size
+    count = float(measures.sum())
+    return product / max(math.sqrt(square * count), 1e-300), math.sqrt(square / max(count, 1.0))
 
 
 def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> bool:
@@ -409,16 +409,10 @@ def turn_onto(start: Floats, end: Floats) -> Floats:
         aside = np.cross(a, np.eye(3)[int(np.argmin(np.abs(a)))])
         aside /= np.linalg.norm(aside)
         return np.asarray(2.0 * np.outer(aside, aside) - np.eye(3))
-    v = np.cross(a, b)
-    skew = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    skew = cross_matrix(np.cross(a, b))
     return np.asarray(np.eye(3) + skew + skew @ skew / (1.0 + cosine))
 
 
 def matrix_of(quaternion: Floats) -> Floats:
     """Rotation matrix (3, 3) of a unit quaternion x y z w."""
-    x, y, z, w = quaternion.tolist()
-    return np.array([
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ])  # fmt: skip
+    return quaternion_rotated(quaternion[None, [3, 0, 1, 2]], np.eye(3)).T

@@ -90,16 +90,11 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
 
     limb = _limbs(simulator)[simulator.tree.branch_of_segment[branches['first']]]
     n_limbs = int(limb.max()) + 1
-    by_limb = np.zeros((n_limbs, *slope.shape[1:]))
-    np.add.at(by_limb, limb, slope)
-    load = np.bincount(limb, branches['area'], n_limbs)
-    middle = (
-        np.stack(
-            [np.bincount(limb, branches['area'] * x, n_limbs) for x in branches['centre'].T],
-            axis=1,
-        )
-        / np.maximum(load, 1e-12)[:, None]
+    area = branches['area'][:, None]
+    by_limb, load, moment = (
+        _summed(each, limb, n_limbs) for each in (slope, area, area * branches['centre'])
     )
+    middle = moment / np.maximum(load, 1e-12)
     between = np.linalg.norm(middle[:, None] - middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
@@ -107,7 +102,7 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     apart = _forces_by(by_limb, np.eye(n_limbs))
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     apart *= np.outer(scale, scale)
-    reach = np.linalg.norm(middle - load @ middle / load.sum(), axis=1)
+    reach = np.linalg.norm(middle - load[:, 0] @ middle / load.sum(), axis=1)
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
     return Disturbance(
@@ -131,8 +126,13 @@ def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     tree = simulator.tree
     slopes, _ = _branch_slopes(simulator, speed, count)
     branch = tree.branch_of_segment[simulator.banks[0].branches['first']]
-    found = np.zeros((N_DELAYS, *slopes.shape[1:]))
-    np.add.at(found, parts_of(tree).of_branch[branch], slopes)
+    return _summed(slopes, parts_of(tree).of_branch[branch], N_DELAYS)
+
+
+def _summed(values: Floats, group: Ints, n_groups: int) -> Floats:
+    """Sum values of branches (b, ...) in groups, (g, ...), whose numbers are given, (b,)."""
+    found = np.zeros((n_groups, *values.shape[1:]))
+    np.add.at(found, group, values)
     return found
 
 

@@ -42,9 +42,8 @@ class DraggedMotion:
     """
 
     def __init__(self, observer: Observer, dt: float) -> None:
-        self._observer = observer
-        self._dt = dt
-        m = len(observer.damping)
+        self._unknown, self._dt = observer.unknown, dt
+        m = len(observer.unknown.all_damping)
         self._state = np.zeros((3, m))
         self.motion = self._state[:2]
         """Displacement and rate of each coordinate, (2, m)."""
@@ -71,7 +70,7 @@ class DraggedMotion:
             The correction with what it drags, of each coordinate, (2, m), written.
 
         """
-        present = self._observer.forces, self._observer.damping
+        present = self._unknown.forces, self._unknown.all_damping
         if any(now is not then for now, then in zip(present, self._found_for, strict=True)):
             self._find_law()
             self._found_for = present
@@ -80,16 +79,15 @@ class DraggedMotion:
 
     def _find_law(self) -> None:
         """Find how the coordinates move in the present wind, with its drag per rate (m, m)."""
-        observer = self._observer
-        if observer.forces is None:
+        unknown = self._unknown
+        if unknown.forces is None:
             return
-        drag = observer.forces.drag
-        damping = observer.damping + np.diag(drag)
-        stiffness = observer.all_stiffness
-        self._law[:] = held_propagator(damping, stiffness, self._dt)
+        drag = unknown.forces.drag
+        damping = unknown.all_damping + np.diag(drag)
+        self._law[:] = held_propagator(damping, unknown.all_stiffness, self._dt)
         by_others = drag.copy()
         np.fill_diagonal(by_others, 0.0)
-        self._drag[:] = -by_others[:, : observer.count].T
+        self._drag[:] = -by_others[:, : len(self._drag)].T
 
     def reset(self) -> None:
         """Return to rest."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 
-RECENT = 30.0
+_RECENT = 30.0
 """Time constant of the means in [s]."""
 
 _EVERY = 0.1
@@ -24,9 +24,7 @@ class ExplainedMotion:
 
     def __init__(self) -> None:
         self._passed = self._since = 0.0
-        self._means: Floats = np.zeros((2, 0))
-        self._away: Floats = np.zeros(0)
-        self._next_away: Floats = np.zeros(0)
+        self._means: Floats = np.zeros((2, 1))
         self._energies: Floats = np.zeros(2)
 
     def note(self, dt: float, stiffness: Floats, whole: Floats, added: Floats) -> None:
@@ -46,21 +44,15 @@ class ExplainedMotion:
         self._since += dt
         if self._since < _EVERY:
             return
-        dt, self._since = self._since, 0.0
-        if self._means.shape[1] != len(whole):
-            self._means = np.zeros((2, len(whole)))
-            self._away, self._next_away = np.zeros((2, len(whole)))
-        self._passed += dt
+        self._passed += self._since
         # Means over all steps until there are more than the time constant.
-        share = min(dt / min(self._passed, RECENT), 1.0)
-        for k, now in enumerate((whole, added)):
-            mean, away, next_away = self._means[k], self._away, self._next_away
-            np.subtract(now, mean, out=away)
-            mean += np.multiply(share, away, out=next_away)
-            # Both factors: the mean has moved towards the value (Welford 1962).
-            away *= np.subtract(now, mean, out=next_away)
-            energy = float(stiffness @ away)
-            self._energies[k] += share * (energy - self._energies[k])
+        share = min(self._since / min(self._passed, _RECENT), 1.0)
+        self._since = 0.0
+        away = np.stack([whole, added]) - self._means
+        self._means = self._means + share * away
+        # Both factors: the mean has moved towards the value (Welford 1962).
+        energies = away * (np.stack([whole, added]) - self._means) @ stiffness
+        self._energies += share * (energies - self._energies)
 
     @property
     def share(self) -> float:

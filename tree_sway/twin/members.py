@@ -47,6 +47,7 @@ from tree_sway.twin.disturbance import GUST, part_slopes
 
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
+    from tree_sway.twin.disturbance import Disturbance
     from tree_sway.twin.observer import Observer
 
 N_MEMBERS = 64
@@ -139,8 +140,7 @@ class Members:
     ) -> None:
         self._far = far
         self._offsets = SAMPLES // N_MEMBERS * np.arange(N_MEMBERS)
-        self._observer = observer
-        self._dt = dt
+        self._observer, self._dt = observer, dt
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
@@ -148,16 +148,12 @@ class Members:
         self._limb_draws = np.zeros((0, N_MEMBERS))
         self._per_delay = np.zeros((n * N_MEMBERS, 3 * N_DELAYS))
         self._late = np.zeros((n, N_MEMBERS))
-        self._winds = np.zeros((3, N_DELAYS))
         self.motion = np.zeros((2, n, N_MEMBERS))
         """Displacement and rate of each, (2, n, e)."""
-        self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
-        self._next = np.zeros((2, n, N_MEMBERS))
-        self._felt = np.zeros((3, n, N_MEMBERS))
+        self._gust, self._force = np.zeros((2, n, N_MEMBERS))
         self._estimate = np.zeros((3, n, N_MEMBERS))
-        self._moved = np.zeros((3, 3, n, N_MEMBERS))
         self._bias = np.zeros((0, N_MEMBERS))
-        self._slow: tuple[float, float] = (0.0, 0.0)
+        self._slow = np.zeros(2)
         self._fast = 0.0
         self._steps = self._measured = 0
         self._filled_for: tuple[object, object, object] = (None, None, None)
@@ -168,32 +164,31 @@ class Members:
 
     def _fill(self) -> None:
         """Find propagator, drag and gusts of each member for the present wind and spreads."""
-        observer = self._observer
-        n = self._count
-        unknown = observer.unknown
-        spreads = self.spreads
-        factors = np.exp(np.array(spreads)[:, None] * self._drawn)
+        n, unknown = self._count, self._observer.unknown
+        forces = self._forces()
+        factors = np.exp(np.array(self.spreads)[:, None] * self._drawn)
         self.stiffness, loss, self._drag = factors
-        stiffness = np.outer(observer.stiffness, self.stiffness)
-        damping = np.outer(observer.damping[:n], loss * np.sqrt(self.stiffness))
-        self._air = unknown.air_damping[:, None]
-        damping += self._air * self._drag
-        step = held_propagator(damping.ravel(), stiffness.ravel(), self._dt)
+        self._stiff = np.outer(unknown.stiffness, self.stiffness)
+        self._air = forces.air_damping[:, None]
+        self._damp = np.outer(unknown.all_damping[:n], loss * np.sqrt(self.stiffness))
+        self._damp += self._air * self._drag
+        step = held_propagator(self._damp.ravel(), self._stiff.ravel(), self._dt)
         self._step = step.reshape(2, 3, n, N_MEMBERS)
-        self._stiff = stiffness
-        self._damp = damping
-        values, vectors = np.linalg.eigh(unknown.covariance)
+        values, vectors = np.linalg.eigh(forces.covariance)
         kept = values > 1e-4 * values[-1]
-        self._decay = math.exp(-self._dt / unknown.time_constant)
+        self._decay = math.exp(-self._dt / forces.time_constant)
         driven = math.sqrt(1.0 - self._decay**2)
         self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
-        self._noise = np.zeros((self._gusts.shape[1], N_MEMBERS))
-        self._unit = unknown.speed * GUST
+        self._unit = forces.speed * GUST
         if self._far is None:
-            self._draw_delays(unknown.limb_slopes, unknown.reach)
+            self._draw_delays(forces.limb_slopes, forces.reach)
         else:
-            slopes = part_slopes(self._far[1], unknown.speed, n)
+            slopes = part_slopes(self._far[1], forces.speed, n)
             self._per_part = np.ascontiguousarray(slopes.reshape(-1, n).T)
+
+    def _forces(self) -> Disturbance:
+        """Return what the wind does not tell, in the present wind."""
+        return self._observer.unknown.present_forces(keeps_old=self._observer.is_active)
 
     def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
         """Find the force on each member per wind of each delay, summed over its limbs."""
@@ -223,99 +218,65 @@ class Members:
             Wind of each delay less the wind on the model [m/s], (`N_DELAYS`, 3).
 
         """
-        observer = self._observer
-        n = self._count
-        eta, rate, force = (each[:n, None] for each in swing)
-        present = (observer.unknown, observer.stiffness, self.spreads)
+        eta, rate, force = (each[: self._count, None] for each in swing)
+        present = self._forces(), self._observer.stiffness, self.spreads
         if any(now is not then for now, then in zip(present, self._filled_for, strict=True)):
             self._fill()
             self._filled_for = present
-        if not self._steps:
-            self.motion[0] = eta
-            self.motion[1] = rate
-            self._slow = wind
-            self._steps = 1
+        self._steps += 1
+        if self._steps == 1:
+            self.motion[:] = eta, rate
+            self._slow = np.array(wind)
             self.errors[:] = 0.0
             return
-        self._steps += 1
         if self._far is not None:
             winds = self._far[0].others(self._offsets, _ALONG, _ACROSS)
-            np.matmul(self._per_part, winds.reshape(N_MEMBERS, -1).T, out=self._late)
-            self._late *= self._drag
+            self._late = (self._per_part @ winds.reshape(N_MEMBERS, -1).T) * self._drag
         else:
-            self._blow(*wind)
+            self._blow(np.array(wind))
             self._reach_limbs(apart)
-        total = self._force
-        x = self.motion[0]
-        v = self.motion[1]
-        np.multiply(force + self._air * rate, self._drag, out=total)
-        total += self._gust
-        total += self._late
-        for to, by in zip(self._next, self._step, strict=True):
-            np.multiply(by[0], x, out=to)
-            to += np.multiply(by[1], v, out=self._away)
-            to += np.multiply(by[2], total, out=self._away)
-        self.motion, self._next = self._next, self.motion
-        if observer.is_active:
+        self._force = (force + self._air * rate) * self._drag + self._gust + self._late
+        moved = self._step * [*self.motion, self._force]
+        self.motion = moved.sum(axis=1)
+        if self._observer.is_active:
             self._filter(eta, rate, force)
         else:
             self._estimate[:] = 0.0
             self._measured = 0
-            np.subtract(self.motion[0], eta, out=self.errors)
+            self.errors = self.motion[0] - eta
 
-    def _blow(self, x: float, y: float) -> None:
-        """Step the forces of the gusts that an anemometer averages away, in a wind [m/s]."""
-        share = 1.0 - self._decay
-        slow_x, slow_y = self._slow
-        slow_x = slow_x + share * (x - slow_x)
-        slow_y = slow_y + share * (y - slow_y)
-        self._slow = slow_x, slow_y
-        fast = 0.5 * ((x - slow_x) ** 2 + (y - slow_y) ** 2)
-        share_of_step = max(self._dt / _AVERAGED, 1.0 / self._steps)
-        self._fast += share_of_step * (fast - self._fast)
+    def _blow(self, wind: Floats) -> None:
+        """Step the forces of the gusts that an anemometer averages away, in a wind [m/s], (2,)."""
+        self._slow = self._slow + (1.0 - self._decay) * (wind - self._slow)
+        fast = 0.5 * float(np.square(wind - self._slow).sum())
+        self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
         self._gust *= self._decay
-        least_fast = _LEAST_FAST * math.hypot(slow_x, slow_y)
-        missing = least_fast**2 - self._fast
-        if missing <= 0.0:
-            return
-        size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
-        self._rng.standard_normal(out=self._noise)
-        np.dot(self._gusts, self._noise, out=self._away)
-        self._away *= size
-        self._gust += self._away
+        missing = (_LEAST_FAST * math.hypot(*self._slow)) ** 2 - self._fast
+        if missing > 0.0:
+            size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
+            drawn = self._rng.standard_normal((self._gusts.shape[1], N_MEMBERS))
+            self._gust += size * (self._gusts @ drawn)
 
     def _reach_limbs(self, apart: Floats) -> None:
         """Find the forces of gusts that reach the limbs of each member after its own delays."""
-        x, y = self._slow
-        speed = max(math.hypot(x, y), 1e-9)
-        along = (apart[:, 0] * x + apart[:, 1] * y) / speed
-        more = (_ALONG - _ACROSS) * along / speed
-        winds = self._winds
-        np.multiply(_ACROSS, apart.T, out=winds)
-        winds[0] += more * x
-        winds[1] += more * y
-        np.dot(self._per_delay, winds.reshape(-1), out=self._late.reshape(-1))
+        ahead = self._slow / max(math.hypot(*self._slow), 1e-9)
+        winds = _ACROSS * apart
+        winds[:, :2] += (_ALONG - _ACROSS) * np.outer(apart[:, :2] @ ahead, ahead)
+        self._late = (self._per_delay @ winds.T.ravel()).reshape(self._late.shape)
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
-        n = self._count
-        gains = self._observer.gains
+        gains, unknown = self._observer.gains, self._observer.unknown
         assert gains is not None
-        estimate = self._estimate
-        felt = self._felt
-        stiffness = self._observer.stiffness[:, None]
-        damping = self._observer.damping[:n, None]
-        np.multiply(gains.law.step[..., None], estimate, out=self._moved)
-        np.add.reduce(self._moved, axis=1, out=estimate)
-        np.subtract(self.motion[0], eta, out=felt[0])
-        np.subtract(self.motion[1], rate, out=felt[1])
+        n, estimate = self._count, self._estimate
+        stiffness, damping = unknown.stiffness[:, None], unknown.all_damping[:n, None]
+        estimate[:] = (gains.law.step[..., None] * estimate).sum(axis=1)
+        ahead, faster = self.motion - [eta, rate]
         # The force that makes a sensor's rows give the difference of the two accelerations.
-        np.multiply(self._stiff, self.motion[0], out=self._away)
-        np.subtract(self._force, self._away, out=felt[2])
-        felt[2] -= np.multiply(self._damp, self.motion[1], out=self._away)
-        felt[2] -= force - damping * rate - stiffness * eta
-        felt[2] += stiffness * felt[0] + self._observer.damped[:, None] * felt[1]
-        told = gains.sensed @ felt.reshape(3 * n, -1)
+        more = self._force - self._stiff * self.motion[0] - self._damp * self.motion[1]
+        more -= force - damping * rate - stiffness * eta
+        more += stiffness * ahead + unknown.damped[:, None] * faster
+        told = gains.sensed @ np.concatenate([ahead, faster, more])
         if len(self._bias) != len(told):
             self._bias = np.zeros_like(told)
             self._measured = 0
@@ -326,8 +287,7 @@ class Members:
         told += self._observer.noise[:, None] * self._rng.standard_normal(told.shape)
         told -= gains.sensed @ estimate.reshape(3 * n, -1)
         estimate += (gains.gain @ told).reshape(estimate.shape)
-        np.multiply(estimate[0], self._observer.trust[:, None], out=self._away)
-        np.subtract(felt[0], self._away, out=self.errors)
+        self.errors = ahead - estimate[0] * self._observer.trust[:, None]
 
     def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
         """

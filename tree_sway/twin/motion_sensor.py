@@ -19,18 +19,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.twin.alignment import matrix_of
-from tree_sway.twin.sample_ring import (
-    KEPT,
-    NOT_FINITE,
-    OTHERS,
-    OUT_OF_ORDER,
-    RESTARTED,
-    SampleRing,
-    SATURATED,
-    SPIKE,
-    STUCK,
-    TOO_LARGE,
-)
+from tree_sway.twin.sample_ring import SampleRing
 from tree_sway.twin.sensor_place import SensorPlace, turn_between
 
 QUANTITIES = ('acceleration', 'rate', 'orientation')
@@ -44,20 +33,6 @@ _WINDOW, _AHEAD, _BEHIND = 2.0, 0.1, 0.3
 Time [s] over which stamps are compared with arrivals; by how much all of them are after these if
 the clock of the sensor is ahead, and by how much all are before if it may be behind [s].
 """
-
-AHEAD = OTHERS + 1
-"""Result of a sample beside those of `SampleRing.keep`: it came before its time."""
-
-_COUNTED = {
-    NOT_FINITE: 'not_finite',
-    TOO_LARGE: 'too_large',
-    SATURATED: 'saturated',
-    OUT_OF_ORDER: 'out_of_order',
-    RESTARTED: 'restarted',
-    STUCK: 'stuck',
-    SPIKE: 'spikes',
-    AHEAD: 'ahead',
-}
 
 _REASONS = {
     'not_finite': 'some values are no numbers, or a quantity is missing',
@@ -207,25 +182,20 @@ class MotionSensor:
         try:
             stamp = float(time)
             if arrival is not None and self._is_ahead(arrival - stamp, arrival):
-                outcome = AHEAD
+                outcome = 'ahead'  # it came before its time
             else:
                 outcome = self.ring.keep(stamp)
-                if outcome == OTHERS:
+                if outcome == 'others':
                     self._begin()
                     outcome = self.ring.keep(stamp)
         except (TypeError, ValueError, OverflowError):
-            outcome = NOT_FINITE
+            outcome = 'not_finite'
         counts = self.counts
-        if outcome == KEPT:
+        setattr(counts, outcome, getattr(counts, outcome) + 1)
+        if outcome == 'restarted':
             counts.accepted += 1
-            self.trouble = ''
-            return True
-        name = _COUNTED[outcome]
-        setattr(counts, name, getattr(counts, name) + 1)
-        if outcome == RESTARTED:
-            counts.accepted += 1
-        self.trouble = _REASONS.get(name, '')
-        if outcome == AHEAD:
+        self.trouble = _REASONS.get(outcome, '')
+        if outcome == 'ahead':
             self.trouble = f'its times are {-self.lateness:+.1f} s from the steps: check its clock'
         return not self.trouble
 

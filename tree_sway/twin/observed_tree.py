@@ -243,11 +243,8 @@ class ObservedTree(SwaySimulator):
 
     def _storm_energy(self) -> float:
         """Energy that no correction exceeds, per unit mass of the coordinates."""
-        n = self.observer.count
-        tunable = self._bank.oscillators.tunable
-        stiffness = np.array(tunable.stiffness[:n]) / tunable.inertia
-        load = _STORM * crown_slope(self, _STORM, n)
-        return _DYNAMIC * float((np.square(load).sum(axis=0) / stiffness).sum())
+        load = _STORM * crown_slope(self, _STORM, self.observer.count)
+        return _DYNAMIC * float((np.square(load).sum(axis=0) / self.observer.stiffness).sum())
 
     def offer(
         self,
@@ -566,15 +563,9 @@ class ObservedTree(SwaySimulator):
         of_season = self.models[0].species.damping(bool(self.settings.in_leaf))
         given = self.models[0].damping_ratio / of_season if of_season else 1.0
         found = LearnedTree(
-            float(self.frequencies(1)[0]) * math.sqrt(ratio),
-            fit.stiffness,
-            fit.stiffness_error,
-            fit.damping * given,
-            fit.damping_error,
-            fit.drag,
-            fit.drag_error,
-            fit.hours,
-            next((str(each) for each in self.sway_changes if each.is_change), ''),
+            frequency=float(self.frequencies(1)[0]) * math.sqrt(ratio),
+            change=next((str(each) for each in self.sway_changes if each.is_change), ''),
+            **fit._replace(damping=fit.damping * given)._asdict(),
         )
         return found.after(self.learned_before)
 

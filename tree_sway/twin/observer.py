@@ -23,7 +23,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY, NativeCorrection
 from tree_sway.core.setup import one_thread
-from tree_sway.twin.disturbance import Disturbance
 from tree_sway.twin.estimate import Estimate
 from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
 from tree_sway.twin.late_wind import LateWind
@@ -90,15 +89,16 @@ class Observer:
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
         frequency = float(simulator.frequencies(1)[0])
         with one_thread():
-            self._unknown = UnknownMotion(simulator, n, dt)
+            self.unknown = UnknownMotion(simulator, n, dt)
+            """Stiffness and damping of the model, and what the wind does not tell."""
             self._readings = SensorReadings(
-                self._unknown, self.tracks, places, dt, swing, wind or LateWind()
+                self.unknown, self.tracks, places, dt, swing, wind or LateWind()
             )
-        self._fit = RunningFit(self._unknown, self.tracks, places, frequency, dt)
+        self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt)
         if before is not None:
             self._fit.follow(before._fit)
         lag = SMOOTHED_LAG if is_smoothed else 0
-        self._design = GainDesign(self._unknown, self.tracks, places, lag)
+        self._design = GainDesign(self.unknown, self.tracks, places, lag)
         self._smoothed = SmoothedMotion(m, n) if is_smoothed else None
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None
@@ -120,8 +120,8 @@ class Observer:
 
     def refresh(self) -> None:
         """Read stiffness and damping of the model again, after a change."""
-        self._unknown.read_model()
-        self._unknown.forget_changed_model()
+        self.unknown.read_model()
+        self.unknown.forget_changed_model()
         self._readings.read_model()
         self._find_native()
 
@@ -140,32 +140,7 @@ class Observer:
     @property
     def stiffness(self) -> Floats:
         """Stiffness of the coordinates that are corrected [1/s^2], (count,)."""
-        return self._unknown.stiffness
-
-    @property
-    def all_stiffness(self) -> Floats:
-        """Stiffness of all coordinates of the model [1/s^2], (m,)."""
-        return self._unknown.all_stiffness
-
-    @property
-    def forces(self) -> Disturbance | None:
-        """What the wind does not tell, in the wind of the last gains; None before any."""
-        return self._unknown.forces
-
-    @property
-    def damping(self) -> Floats:
-        """Damping of all coordinates by the wood [1/s], (m,)."""
-        return self._unknown.all_damping
-
-    @property
-    def damped(self) -> Floats:
-        """Damping of the coordinates that are corrected, by wood and air, [1/s], (count,)."""
-        return self._unknown.damped
-
-    @property
-    def unknown(self) -> Disturbance:
-        """What the wind does not tell, in the present wind."""
-        return self._unknown.present_forces(keeps_old=self.is_active)
+        return self.unknown.stiffness
 
     @property
     def gains(self) -> SteadyFilter | None:
@@ -180,7 +155,7 @@ class Observer:
     @property
     def mean_wind(self) -> float:
         """Mean speed of the wind in the last half minute in [m/s]."""
-        return self._unknown.mean_speed
+        return self.unknown.mean_speed
 
     def sway_change(self, sensor: int) -> SwayChange | None:
         """Return how the sway has changed by a sensor; None before there is a past."""
@@ -216,7 +191,7 @@ class Observer:
 
         """
         self._step += 1
-        self._unknown.note_wind(math.hypot(*wind))
+        self.unknown.note_wind(math.hypot(*wind))
         if self._smoothed is not None:
             self._smoothed.note_computed(self._step, self._swing[0])
         at = self._readings.read(time, self._step, self._done)
@@ -277,7 +252,7 @@ class Observer:
             if track.in_use or not self._readings.is_known[k]:
                 continue
             felt, noise = self._design.felt(k)
-            expected = np.einsum('ij,jk,ik->i', felt, self._unknown.variance, felt)
+            expected = np.einsum('ij,jk,ik->i', felt, self.unknown.variance, felt)
             missed = self._readings.beyond[k, track.picked] - felt @ estimate.state.ravel()
             squares = np.square(missed) / (expected + np.square(NOISE * noise))
             track.judge(float(squares.reshape(-1, 3).mean(axis=1).max()))

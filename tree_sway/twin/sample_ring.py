@@ -22,8 +22,10 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY
 from tree_sway.twin.alignment import LEAST_NOISE
 
-KEPT = 0
-RESTARTED, NOT_FINITE, TOO_LARGE, SATURATED, OUT_OF_ORDER, STUCK, SPIKE, OTHERS = range(1, 9)
+OUTCOMES = (
+    'accepted', 'restarted', 'not_finite', 'too_large', 'saturated', 'out_of_order', 'stuck',
+    'spikes', 'others',
+)  # fmt: skip
 """
 Results of `SampleRing.keep`; the sample was kept with the first two.
 
@@ -82,9 +84,9 @@ class SampleRing:
         arrays = self.memory, sample, self._found
         self._at, self._next_at, self._found_at = map(address, arrays)
 
-    def keep(self, time: float) -> int:
+    def keep(self, time: float) -> str:
         """Check the next sample, of a time in [s], and keep it; return what became of it."""
-        return int(LIBRARY.sway_keep_sample(self._at, time, self._next_at))
+        return OUTCOMES[LIBRARY.sway_keep_sample(self._at, time, self._next_at)]
 
     def read(self, time: float, dt: float) -> Floats | None:
         """

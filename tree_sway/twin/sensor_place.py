@@ -14,6 +14,7 @@ strain of 1 as one by `PER_STRAIN`; ``facing`` is then the bearing of the side o
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import math
 from typing import NamedTuple, TYPE_CHECKING
 
@@ -21,6 +22,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
+from tree_sway.core.rotation import cross
 from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
 from tree_sway.errors import nearest, ParameterError
 
@@ -145,6 +147,37 @@ def _along(first: int, ends: Floats, at: float) -> SensorPlace:
     return SensorPlace(first + row, min(max(share, 0.0), 1.0))
 
 
+def slopes_at_rest(
+    simulator: SwaySimulator,
+    read: Callable[[Floats], Floats],
+    change: Callable[[Floats, Floats], Floats] = np.subtract,
+) -> Floats:
+    """
+    Differentiate what poses tell by each coordinate of a simulator, at rest, (..., m).
+
+    Parameters
+    ----------
+    simulator
+        The simulator.
+    read
+        Reads an array (...) from the poses of segments (n, 7).
+    change
+        Finds the change from a second array to a first one.
+
+    """
+    shapes = simulator.banks[0].oscillators.shapes
+    poses = np.zeros((simulator.tree.n_segments, 7))
+    slopes = []
+    for shape in shapes.T:
+        amount = _TURN / max(float(np.abs(shape).max()), 1e-300)
+        turned = np.ascontiguousarray(amount * shape)
+        ahead, behind = (
+            read(simulator.place_rotations(each, poses)).copy() for each in (turned, -turned)
+        )
+        slopes.append(change(ahead, behind) / (2.0 * amount))
+    return np.stack(slopes, axis=-1)
+
+
 def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
     """
     Differentiate the pose of a place by each coordinate of a simulator, at rest.
@@ -152,25 +185,19 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
     The rotation is a rotation vector in the frame of the tree, and so is the displacement. Of a
     place of strain it is `bend_at`.
     """
-    shapes = simulator.banks[0].oscillators.shapes
-    poses = np.zeros((simulator.tree.n_segments, 7))
-    away = place.along * float(simulator.tree.length[place.segment])
-    displacement, rotation = np.zeros((2, 3, shapes.shape[1]))
-    for i in range(shapes.shape[1]):
-        amount = _TURN / max(float(np.abs(shapes[:, i]).max()), 1e-300)
-        pair = []
-        for sign in (1.0, -1.0):
-            simulator.place_rotations(np.ascontiguousarray(sign * amount * shapes[:, i]), poses)
-            pose = poses[place.segment : place.segment + 1]
-            bent = bend_at(simulator.tree, poses, place) if place.is_strain else np.zeros(3)
-            pair.append((ends_of_poses(pose, [away])[1][0], pose[0, 3:].copy(), bent))
-        (ahead, turned, bent), (behind, turned_back, bent_back) = pair
-        if place.is_strain:
-            rotation[:, i] = (bent - bent_back) / (2.0 * amount)
-            continue
-        displacement[:, i] = (ahead - behind) / (2.0 * amount)
-        rotation[:, i] = turn_between(turned_back, turned) / (2.0 * amount)
-    return PlaceMotion(displacement, rotation)
+    tree, at = simulator.tree, place.segment
+    if place.is_strain:
+        bent = slopes_at_rest(simulator, lambda poses: bend_at(tree, poses, place))
+        return PlaceMotion(np.zeros_like(bent), bent)
+    away = np.array([place.along * tree.length[at]])
+    return PlaceMotion(
+        slopes_at_rest(simulator, lambda poses: ends_of_poses(poses[at : at + 1], away)[1][0]),
+        slopes_at_rest(
+            simulator,
+            lambda poses: poses[at, 3:],
+            lambda ahead, behind: turn_between(behind, ahead),
+        ),
+    )
 
 
 def _joint(tree: Tree, place: SensorPlace) -> int:
@@ -213,17 +240,7 @@ def as_orientation(strain: Floats) -> Floats:
 
 def tip_slopes(simulator: SwaySimulator) -> Floats:
     """Differentiate the tips of branches by each coordinate, at rest, (b, 3, m)."""
-    shapes = simulator.banks[0].oscillators.shapes
-    tree = simulator.tree
-    poses = np.zeros((tree.n_segments, 7))
-    slopes = np.zeros((tree.n_branches, 3, shapes.shape[1]))
-    for i in range(shapes.shape[1]):
-        amount = _TURN / max(float(np.abs(shapes[:, i]).max()), 1e-300)
-        simulator.place_rotations(np.ascontiguousarray(amount * shapes[:, i]), poses)
-        ahead = tips_of_poses(tree, poses)
-        simulator.place_rotations(np.ascontiguousarray(-amount * shapes[:, i]), poses)
-        slopes[:, :, i] = (ahead - tips_of_poses(tree, poses)) / (2.0 * amount)
-    return slopes
+    return slopes_at_rest(simulator, lambda poses: tips_of_poses(simulator.tree, poses))
 
 
 def turn_between(before: Floats, after: Floats) -> Floats:
@@ -234,7 +251,7 @@ def turn_between(before: Floats, after: Floats) -> Floats:
     """
     a, b = after[..., :3], before[..., :3]
     wa, wb = after[..., 3:], before[..., 3:]
-    vector = wb * a - wa * b - np.cross(a, b)
+    vector = wb * a - wa * b - cross(a, b)
     scalar = wa * wb + (a * b).sum(axis=-1, keepdims=True)
     vector = np.where(scalar < 0.0, -vector, vector)
     sine = np.linalg.norm(vector, axis=-1, keepdims=True)

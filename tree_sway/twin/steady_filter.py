@@ -192,7 +192,10 @@ def stationary_covariance(law: SwayLaw) -> Floats:
     """
     m = law.step.shape[2]
     steps = np.moveaxis(law.step, 2, 0)
-    pairs = _pair_covariances(steps[:, None], steps, law.driven)
+    both = np.einsum('iac,jbd->ijabcd', steps, steps).reshape(m, m, 9, 9)
+    added = np.zeros((m, m, 9, 1))
+    added[..., 8, 0] = law.driven
+    pairs = np.linalg.solve(np.eye(9) - both, added).reshape(m, m, 3, 3)
     return np.ascontiguousarray(pairs.transpose(2, 0, 3, 1)).reshape(3 * m, 3 * m)
 
 
@@ -219,14 +222,5 @@ def told_shares(gains: SteadyFilter, law: SwayLaw, noise: Floats) -> Floats:
         noisy = gains.gain * noise
         added = noisy @ noisy.T + kept[:, 2 * m :] @ law.driven @ kept[:, 2 * m :].T
         left = predicted_covariance(kept @ step, np.zeros((0, 3 * m)), added, np.zeros(0))
-    steps = np.moveaxis(law.step, 2, 0)
-    alone = _pair_covariances(steps, steps, np.diag(law.driven))[:, 0, 0]
+    alone = np.diag(stationary_covariance(law))[:m]
     return np.asarray(1.0 - np.diag(left)[:m] / np.maximum(alone, 1e-300))
-
-
-def _pair_covariances(first: Floats, second: Floats, driven: Floats) -> Floats:
-    """Stationary covariances of pairs of coordinates by their steps, (..., 3, 3)."""
-    both = np.einsum('...ac,...bd->...abcd', first, second).reshape(*driven.shape, 9, 9)
-    added = np.zeros((*driven.shape, 9, 1))
-    added[..., 8, 0] = driven
-    return np.linalg.solve(np.eye(9) - both, added).reshape(*driven.shape, 3, 3)

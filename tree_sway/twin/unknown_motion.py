@@ -49,7 +49,8 @@ class UnknownMotion:
         self.mean_speed = 0.0
         """Mean speed of the wind in [m/s]."""
         self._found_for = 0.0
-        self._found: Disturbance | None = None
+        self.forces: Disturbance | None = None
+        """What the wind does not tell, in the wind of the last law; None before any."""
         self._law: SwayLaw | None = None
         self.apart: SwayLaw | None = None
         """The last law, had each limb gusts of its own; None before any."""
@@ -99,7 +100,7 @@ class UnknownMotion:
         """Find the law in the present wind."""
         speed = max(self.mean_speed, _SLOWEST_WIND)
         self._found_for, n = speed, self.count
-        found = self._found = disturbance(self._simulator, speed, n)
+        found = self.forces = disturbance(self._simulator, speed, n)
         self._found_with = (self.all_stiffness, self.all_damping)
         self.air_damping[:] = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
@@ -110,17 +111,12 @@ class UnknownMotion:
         self._variance = None
         return self._law
 
-    @property
-    def forces(self) -> Disturbance | None:
-        """The unknown forces of the last law; None before any."""
-        return self._found
-
     def present_forces(self, *, keeps_old: bool) -> Disturbance:
         """Return the unknown forces, those of an outdated law only if it is to be kept."""
-        if self._found is None or (not keeps_old and self.is_outdated):
+        if self.forces is None or (not keeps_old and self.is_outdated):
             self.find()
-        assert self._found is not None
-        return self._found
+        assert self.forces is not None
+        return self.forces
 
     @property
     def variance(self) -> Floats:

@@ -17,6 +17,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import fftconvolve
 
 from tree_sway.core.arrays import Floats, Ints
 
@@ -85,14 +86,12 @@ def find_lag(
     n = len(pairs[0][0])
     least, most = max(least, -round(_LEAST_OVERLAP * n)), min(most, round(_LEAST_OVERLAP * n))
     lags = np.arange(least, most + 1)
-    size = 1 << (2 * n - 1).bit_length()  # of a wave without overlap
     covariance = np.zeros((len(lags), 3, 3))
     own, other = np.zeros((2, len(lags)))
     for sensed, model in pairs:
         moved, wanted = _of_size_one(sensed), _of_size_one(model)
-        waves = np.fft.rfft(moved, size, axis=0)[:, :, None]
-        waves = waves * np.fft.rfft(wanted, size, axis=0)[:, None].conj()
-        covariance += np.fft.irfft(waves, size, axis=0)[lags]
+        products = fftconvolve(moved[:, :, None], wanted[::-1, None], axes=0)
+        covariance += products[n - 1 + lags]
         own += _sums(np.square(moved).sum(axis=1), lags)
         other += _sums(np.square(wanted).sum(axis=1), -lags)
     values = np.linalg.svd(covariance, compute_uv=False).sum(axis=1)

@@ -33,7 +33,7 @@ def test_twigs_follow_the_correction_of_the_stem_as_in_the_model() -> None:
     as_is = swayed(twin)
     twin.set_state(rest)
     observer = twin.observer
-    drag = observer.unknown.drag
+    drag = observer.unknown.present_forces(keeps_old=True).drag
     stem = int(np.diag(drag)[: observer.count].argmin())
     twin.banks[0].oscillators.swing[1][stem] += 1e-3
     change = swayed(twin) - as_is

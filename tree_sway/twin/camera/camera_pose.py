@@ -12,7 +12,7 @@ is known of any camera bounds the rest. The errors that come with the result say
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import math
 from typing import Any, NamedTuple
 
@@ -34,8 +34,13 @@ _MOST_MISSED = 12.0
 _BEARING_ERROR = math.radians(25.0)
 """Error of the bearing beyond which a film tells nothing of depth."""
 
-_TOLD = {'bearing': math.radians(5.0), 'distance': 0.03, 'height': 0.2, 'focal': 0.03}
-"""Errors of what is told: bearing [rad], logarithms of distance and focal length, height [m]."""
+_TOLD: dict[str, tuple[Callable[[float], float], float]] = {
+    'bearing': (math.radians, math.radians(5.0)),
+    'distance': (math.log, 0.03),
+    'height': (float, 0.2),
+    'focal': (math.log, 0.03),
+}
+"""What is fitted of what is told, and its error: bearing [rad], logarithms, height [m]."""
 
 _USUAL_HEIGHT = (1.6, 0.5)
 _USUAL_FOCAL = (0.78, 0.2)
@@ -151,24 +156,22 @@ class _Fit:
         self._points, self._image = points, image
         self._foot = tree.start[0]
         self._centre = 0.5 * np.array(size, dtype=float)
-        known = [
-            (0.0, 1e3),
-            (math.log(_USUAL_DISTANCE[0] * float(np.ptp(tree.end[:, 2]))), _USUAL_DISTANCE[1]),
-            _USUAL_HEIGHT,
-            (0.0, 0.5),
-            (0.0, 0.7),
-            (0.0, 0.1),
-            (math.log(_USUAL_FOCAL[0] * max(size)), _USUAL_FOCAL[1]),
-        ]
-        if told.bearing is not None:
-            known[0] = math.radians(told.bearing), _TOLD['bearing']
-        if told.distance is not None:
-            known[1] = math.log(told.distance), _TOLD['distance']
-        if told.height is not None:
-            known[2] = told.height, _TOLD['height']
-        if told.focal is not None:
-            known[6] = math.log(told.focal), _TOLD['focal']
-        self._mean, self._spread = np.array(known).T
+        times_height, distance_error = _USUAL_DISTANCE
+        times_size, focal_error = _USUAL_FOCAL
+        known = {
+            'bearing': (0.0, 1e3),
+            'distance': (math.log(times_height * float(np.ptp(tree.end[:, 2]))), distance_error),
+            'height': _USUAL_HEIGHT,
+            'aside': (0.0, 0.5),
+            'pitch': (0.0, 0.7),
+            'roll': (0.0, 0.1),
+            'focal': (math.log(times_size * max(size)), focal_error),
+        }
+        for name, value in told._asdict().items():
+            if value is not None:
+                fitted, error = _TOLD[name]
+                known[name] = fitted(value), error
+        self._mean, self._spread = np.array(list(known.values())).T
 
     def camera(self, sought: Floats) -> Camera:
         """Return the camera of the seven numbers."""

@@ -25,7 +25,7 @@ from tree_sway.twin.disturbance import crown_slope, disturbance
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.steady_filter import stationary_covariance, sway_law, SwayLaw
 
-MOST_COORDINATES = 40
+_MOST_COORDINATES = 40
 """Largest number of coordinates that a camera corrects."""
 
 _KEPT = 1.0
@@ -94,25 +94,21 @@ class FilmedTree(ObservedTree):
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
         self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
-        oscillators: Any = self.banks[0].oscillators
-        m = oscillators.shapes.shape[1]
-        n = self._n = min(MOST_COORDINATES, m)
+        n = self._n = min(_MOST_COORDINATES, self.banks[0].oscillators.shapes.shape[1])
         self._filmed = np.zeros((2, n))
         self._past: deque[tuple[float, Floats]] = deque()
         self._waiting: deque[tuple[float, int, Floats]] = deque()
-        self._reference = -1
         self.points = LimbPoints(*np.zeros((3, 0)))
         """Points that are followed."""
         self._slopes, self._offset = np.zeros((0, 2, n)), np.zeros((0, 2))
         self._poses = np.zeros((self.tree.n_segments, 7))
         self._seen_at = -np.inf
         self._begun_at = np.zeros((0, 2))
-        self._square, self._n_seen = 0.0, 0
         self.refused = 0
         """Pictures that were too old, out of order, or told too little."""
-        law = self._law()
-        self.filter = MotionFilter(law, stationary_covariance(law))
+        self.filter: MotionFilter
         """What the camera tells."""
+        self._forget()
 
     def _law(self) -> SwayLaw:
         """Return the law of what the model lacks, in the present mean wind."""
@@ -120,11 +116,9 @@ class FilmedTree(ObservedTree):
         found = disturbance(self, self._speed, n)
         whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
         covariance = found.covariance + whole.T @ whole
-        tunable = self.banks[0].oscillators.tunable
-        stiffness, damping = (
-            np.array(each[:n]) / tunable.inertia for each in (tunable.stiffness, tunable.damping)
-        )
-        return sway_law(stiffness, damping + found.air_damping, covariance, _LASTS, TICK)
+        unknown = self.observer.unknown
+        damping = unknown.all_damping[:n] + found.air_damping
+        return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
 
     def film(self, time: float, reference: int, image: ArrayLike) -> None:
         """

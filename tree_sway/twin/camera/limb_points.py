@@ -11,15 +11,13 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree import ends_of_poses, Tree
 from tree_sway.twin.camera.pinhole import Camera
+from tree_sway.twin.sensor_place import slopes_at_rest
 
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
 _APART = 0.03
 """Distance of two places along a ray, over the height of the tree, from which they are two."""
-
-_TURN = 1e-4
-"""Largest key rotation in [rad] of the difference quotients."""
 
 
 class LimbPoints(NamedTuple):
@@ -47,16 +45,7 @@ class LimbPoints(NamedTuple):
 
     def slopes(self, simulator: SwaySimulator) -> Floats:
         """Differentiate the places by each coordinate of a simulator, at rest, (p, 3, m)."""
-        shapes = simulator.banks[0].oscillators.shapes
-        poses = np.zeros((simulator.tree.n_segments, 7))
-        slopes = np.zeros((len(self.segment), 3, shapes.shape[1]))
-        for i in range(shapes.shape[1]):
-            amount = _TURN / max(float(np.abs(shapes[:, i]).max()), 1e-300)
-            turned = np.ascontiguousarray(amount * shapes[:, i])
-            ahead = self.at(simulator.place_rotations(turned, poses))
-            behind = self.at(simulator.place_rotations(-turned, poses))
-            slopes[:, :, i] = (ahead - behind) / (2.0 * amount)
-        return slopes
+        return slopes_at_rest(simulator, self.at)
 
 
 class DrawnWood(NamedTuple):

@@ -6,15 +6,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING
 
 from tree_sway.errors import inside, ParameterError
 from tree_sway.files.commands import what_was_written
 from tree_sway.files.trees import LearnedFile, refuse_no_learned_file
 from tree_sway.twin import LearnedTree
-
-if TYPE_CHECKING:
-    pass
 
 
 def add_learn_argument(parser: argparse.ArgumentParser) -> None:
