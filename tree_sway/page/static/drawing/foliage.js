@@ -17,7 +17,7 @@ const TUFTS_BESIDE = 0.7;
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [4.6, 1.3, 3];
+const [SHOOT, DENSE, FEW_LEAVES] = [4.6, 1.3, 4];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -91,13 +91,14 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const back = [-rest[o + 4], -rest[o + 5], -rest[o + 6], rest[o + 7]]; // from the tree's frame to the segment's
     const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(shoot.frame, axis));
     const own = axes.map((axis) => turned(back, axis));
+    const middle = inFrame(axes, [isSpread ? 0.42 * look.spray.length - 0.5 : 0.8 * spray.length - 0.5, 0, 0], shoot.size, shoot.at);
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
     for (let card = 0; card < shoot.share * each; card++) {
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
-      const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - shoot.at[c])));
+      const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c])));
       const tint = 1 + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));

@@ -466,7 +466,7 @@ export class Scene {
       law: [this.flutters ? gain : 0, most],
     }, this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1));
     this._begin(impostor, isShadow);
-    for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9);
+    for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.5 : 0.9);
   }
 
   /** The levels of all kinds made so far. */

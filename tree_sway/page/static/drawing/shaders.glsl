@@ -150,6 +150,9 @@ void main() {
     float up = high / footHeight + 1.6 * (noise(at * vec2(9.0, 1.4)) - 0.5);
     own = mix(footColor, barkColor, smoothstep(0.66, 0.78, up));
   }
+  // Weather and moss: stains as long as the stem is wide, the greener the nearer to the ground.
+  float stain = noise(vec2(3.0 * normal.x, 0.5 * at.y + 2.0 * normal.y));
+  own *= mix(vec3(1.12), vec3(0.62, 0.68, 0.56) + 0.3 * min(1.0, 4.0 * high), stain);
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
@@ -204,14 +207,14 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.16, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
-  vec3 up = sky * (0.13 + 0.9 * near) * (0.72 + 0.28 * n.z);
+  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
+  vec3 up = sky * (0.17 + 0.9 * near) * (0.75 + 0.25 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.05, 1.1, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (1.3 * max(0.75 * across + 0.25, 0.0) + through);
+  vec3 direct = sun * sunny * (1.3 * max(0.65 * across + 0.35, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(1.0, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
+  vec3 hue = vec3(0.97, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
   hue += (0.6 * (flutter.w - 1.0) + 0.2 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
@@ -300,7 +303,7 @@ void main() {
   vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   float clear = clearness(p);
-  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.15 + 0.6 * dot(n, light)));
+  vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.3 + 0.8 * dot(n, light)));
   bool isShadow = shadowArea.w > 0.5;
   lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
   veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
