@@ -231,8 +231,9 @@ def _size(values: Floats, share: float = 0.5) -> float:
     """Return the length of vectors that a share of them stays below; 0 without one."""
     size = np.linalg.norm(values, axis=1)
     size = size[np.isfinite(size)]
-    method = 'lower' if share == _LARGEST else 'linear'
-    return float(np.quantile(size, share, method=method)) if len(size) else 0.0
+    if not len(size):
+        return 0.0
+    return float(np.quantile(size, share, method='lower' if share == _LARGEST else 'linear'))
 
 
 def _without_unit(

@@ -39,6 +39,7 @@ TREE_FORMATS: tuple[FileFormat, ...] = tuple(
 @of_file
 def read_trees(
     path: Path,
+    /,
     format: str | None = None,  # noqa: A002
     *,
     head: str | None = None,

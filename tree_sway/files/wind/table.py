@@ -69,9 +69,9 @@ def read_table_wind(
     WindConvention(direction_convention or 'to')  # refused before the file is read
     if direction is not None and not 0.0 <= direction <= 360.0:
         raise ParameterError(f'direction is {direction:g} degrees', cure='give 0 to 360')
-    found = [(name, lines) for name, lines in tables_in(path) if lines]
-    is_wind = [each for each in found if looks_like_wind('\n'.join(each[1][:_HEAD]))]
-    name, lines = (is_wind or found)[0]
+    tables = [(name, lines) for name, lines in tables_in(path) if lines]
+    is_wind = [each for each in tables if looks_like_wind('\n'.join(each[1][:_HEAD]))]
+    name, lines = (is_wind or tables)[0]
     table = table_of(lines, name)
     table.refuse_several()
     table, note = _at_one_height(with_units_in_head(table))

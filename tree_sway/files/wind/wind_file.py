@@ -53,7 +53,7 @@ EXAMPLES = ('canopy',)
 
 
 @of_file
-def read_wind(path: Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002
+def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002
     """
     Read a wind record.
 
