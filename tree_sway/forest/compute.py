@@ -18,7 +18,8 @@ from tree_sway.core.wind import FASTEST_WIND, simulate_turbulence
 from tree_sway.files.models import use_disk_cache
 from tree_sway.files.trees import open_tree, TreeFile
 from tree_sway.files.wind import read_wind, WindRecord
-from tree_sway.forest.plan import Case, Plain
+from tree_sway.forest.entries import Plain
+from tree_sway.forest.plan import Case
 from tree_sway.growth import grow
 from tree_sway.simulation import Rig
 

@@ -22,7 +22,8 @@ from tree_sway.files import write_text_whole
 from tree_sway.files.trees import open_tree
 from tree_sway.files.wind import read_wind
 from tree_sway.forest.cluster import cluster, DEADLINE, run_all
-from tree_sway.forest.plan import Case, Plain
+from tree_sway.forest.entries import Plain
+from tree_sway.forest.plan import Case
 
 _LARGEST_ROW = 1 << 16
 """Largest row of a case as JSON [bytes]."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway.files.export import write_columns
-from tree_sway.forest.plan import Plain
+from tree_sway.forest.entries import Plain
 
 
 def write_table(rows: list[Plain], path: Path) -> None:

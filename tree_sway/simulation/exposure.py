@@ -34,6 +34,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 import math
+from typing import Any
 
 import numpy as np
 
@@ -194,7 +195,7 @@ class Exposure:
         return integral_scale / (_INTEGRAL_SCALE * turbulence_scale(1.0))
 
     @property
-    def turbulence(self) -> dict[str, float]:
+    def turbulence(self) -> dict[str, Any]:
         """Height and intensity of simulated turbulence, as keywords of `Turbulence`."""
         return {'height': self.turbulence_height, 'intensity': self.intensity}
 

@@ -22,7 +22,8 @@ from tree_sway.forest import compute_kind, KindResult, risk_work, RiskWork, rows
 from tree_sway.tables import table_beside
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
-Tree = Row = dict[str, Any]
+Tree = dict[str, Any]
+Row = dict[str, Any]
 
 TREES: list[Tree] = table_beside(__file__, 'forestgales.csv')
 METHODS = {'fg_rou': '', 'fg_tmc': 'tree_', 'ours': 'our_'}
