@@ -10,12 +10,15 @@ in [rad].
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated
+from typing import Annotated, TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records
 from tree_sway.core.tree import Tree
+
+if TYPE_CHECKING:
+    from tree_sway.core.model.sway_model import SwayModel
 
 WIDTH = 16
 
@@ -78,6 +81,29 @@ def branch_layout(n_coordinates: int) -> np.dtype[np.void]:
     limited by how fast its records are read from memory.
     """
     return np.dtype(fields_of(Branch, rows=n_coordinates))
+
+
+PLACED = ('frame', 'offset', 'twist')
+"""Fields of a branch that are arrays of a model, ``branch_`` before their names."""
+
+LOADED = (
+    'area', 'speed', 'spread', 'lever', 'projector', 'centre', 'coupling', 'load_mode',
+    'damping_mode', 'load_rotation', 'tip_mode',
+)  # fmt: skip
+"""The same, of its wind load."""
+
+
+def records_of(model: SwayModel) -> Records:
+    """Fill the records of the branches of a model, (b,)."""
+    size = len(model.branch_parent)
+    records: Records = np.zeros(size, dtype=branch_layout(model.branch_twist.shape[1]))
+    records['first'] = model.branch_first[:-1]
+    records['end'] = model.branch_first[1:]
+    records['n_coordinates'] = model.branch_keys
+    for name in ('parent', 'base_segment', 'coordinate', *PLACED, *LOADED):
+        records[name] = getattr(model, f'branch_{name}')
+    fill_arms(records, model.tree, model.branch_first[:-1])
+    return records
 
 
 def fill_arms(records: Records, tree: Tree, first: Ints) -> None:

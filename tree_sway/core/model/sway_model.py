@@ -25,10 +25,10 @@ from typing import Any, NamedTuple, TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.arrays import Floats, Ints, Records, Singles
 from tree_sway.core.checks import GREATEST
 from tree_sway.core.drag import DragLaw
-from tree_sway.core.model.records import N_AZIMUTHS, N_HARMONICS, N_LEVELS, ROOMS
+from tree_sway.core.model.records import N_AZIMUTHS, N_HARMONICS, N_LEVELS, records_of, ROOMS
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
@@ -361,6 +361,11 @@ class SwayModel:
     def is_limp(self) -> bool:
         """Whether its twigs turn so far that loads and inertia are those of its pose."""
         return self.segment_mass.size > 0
+
+    @cached_property
+    def branches(self) -> Records:
+        """Records of the branches, (b,)."""
+        return records_of(self)
 
     def by_table(self) -> SwayModel:
         """Return the model by which trees that share a table are stepped, of limp ones too."""
