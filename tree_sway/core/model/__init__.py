@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tree_sway.core.model.records import N_HARMONICS as N_HARMONICS
     from tree_sway.core.model.records import N_LEVELS as N_LEVELS
     from tree_sway.core.model.records import PLACED as PLACED
-    from tree_sway.core.model.records import records_of as records_of
     from tree_sway.core.model.records import room_for_fields as room_for_fields
     from tree_sway.core.model.records import WIDTH as WIDTH
     from tree_sway.core.model.state_basis import FULL_SCALE as FULL_SCALE

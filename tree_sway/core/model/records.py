@@ -10,15 +10,12 @@ in [rad].
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, TYPE_CHECKING
+from typing import Annotated
 
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records
 from tree_sway.core.tree import Tree
-
-if TYPE_CHECKING:
-    from tree_sway.core.model.sway_model import SwayModel
 
 WIDTH = 16
 
@@ -91,19 +88,6 @@ LOADED = (
     'damping_mode', 'load_rotation', 'tip_mode',
 )  # fmt: skip
 """The same, of its wind load."""
-
-
-def records_of(model: SwayModel) -> Records:
-    """Fill the records of the branches of a model, (b,)."""
-    size = len(model.branch_parent)
-    records: Records = np.zeros(size, dtype=branch_layout(model.branch_twist.shape[1]))
-    records['first'] = model.branch_first[:-1]
-    records['end'] = model.branch_first[1:]
-    records['n_coordinates'] = model.branch_keys
-    for name in ('parent', 'base_segment', 'coordinate', *PLACED, *LOADED):
-        records[name] = getattr(model, f'branch_{name}')
-    fill_arms(records, model.tree, model.branch_first[:-1])
-    return records
 
 
 def fill_arms(records: Records, tree: Tree, first: Ints) -> None:
