@@ -26,7 +26,7 @@ def sim():
 
 @pytest.fixture(scope='module')
 def estimator(sim):
-    return ErrorEstimator(sim.tree, sim.banks[0], sim.models[0].drag_law)
+    return ErrorEstimator(sim.banks[0])
 
 
 def turbulent(speed, seed):

@@ -97,7 +97,7 @@ class AdaptiveSimulator(SwaySimulator):
     ) -> None:
         """Make the tree on all coordinates, and choose for the expected wind."""
         super().__init__(prepared)
-        self._estimator = ErrorEstimator(self.tree, self._bank, prepared.drag_law)
+        self._estimator = ErrorEstimator(self._bank)
         self.tolerance = within('tolerance', tolerance, 0.0, math.inf, 'm')
         self.budget = within('budget', budget, 0.0, math.inf, 'us')
         self.cost_scale = 1.0

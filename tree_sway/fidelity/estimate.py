@@ -21,10 +21,9 @@ from typing import cast
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.drag import drag_density, DragLaw
+from tree_sway.core.drag import drag_density
 from tree_sway.core.run import Bank, TableOscillators
 from tree_sway.core.setup import branch_rotations, tip_motion, WindMoments
-from tree_sway.core.tree import Tree
 from tree_sway.fidelity.climate import WindClimate
 
 DIAL = (0, 3, 6, 12, 20, 40, 60)
@@ -115,17 +114,16 @@ class ErrorEstimator:
 
     Parameters
     ----------
-    tree, bank
-        Tree, and its bank with the largest number of coordinates, the important ones first.
-    drag_law
-        Drag law of the tree.
+    bank
+        Tree with the largest number of coordinates, the important ones first.
 
     """
 
-    def __init__(self, tree: Tree, bank: Bank, drag_law: DragLaw) -> None:
+    def __init__(self, bank: Bank) -> None:
         """Find the motion of the tips by each coordinate."""
         self._bank = bank
-        self._law = drag_law
+        model = bank.model
+        self._law = model.drag_law
         branches = bank.branches
         shapes = bank.oscillators.shapes
         m = shapes.shape[1]
@@ -133,7 +131,7 @@ class ErrorEstimator:
         self.dial = (*fewer, m)
         """Numbers of coordinates that are estimated."""
         # A branch may be cut: its tip is that of its last piece.
-        is_last = np.isin(branches['end'], tree.branch_first[1:])
+        is_last = np.isin(branches['end'], model.tree.branch_first[1:])
         moved = tip_motion(branches, shapes)
         tips = moved[is_last].reshape(-1, m)
         self._inner = tips.T @ tips / is_last.sum()
@@ -141,7 +139,9 @@ class ErrorEstimator:
         winds = np.concatenate(_AXES)
         loads = WindMoments(branches).at_rest(winds, shapes)
         self._loads = np.hsplit(loads.T, _N_BEARINGS)
-        self._air_damping = dialled(bank).air_damping
+        per_branch: Floats = 2.0 * (branches['area'] * branches['speed'])
+        self._air_damping = per_branch @ model.participation
+        """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
         self._costs = [frame_cost(bank, k) for k in self.dial]
         self.refresh()
 

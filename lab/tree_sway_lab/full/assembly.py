@@ -17,5 +17,5 @@ def full_bank(model: SwayModel, branches: Records) -> Oscillators:
     if model.is_limp:
         stand = native_stand(model)
         if stand.models[0].sizes.is_stepped == AT_POSE:
-            return LimpFullBank(branches, model, stand)
+            return LimpFullBank(model, stand)
     return FullBank(branches, model)

@@ -31,7 +31,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.drag import drag_density
 from tree_sway.core.model import SwayModel, WIDTH
-from tree_sway.core.oscillators import LOAD_MAX
+from tree_sway.core.oscillators import LOAD_MAX, step_propagators
 from tree_sway.core.run import FARTHEST, ModalCoordinates
 from tree_sway.core.setup import MOST_CHANGE
 from tree_sway_lab.full.branch_loads import wind_moments
@@ -131,9 +131,14 @@ class FullBank(ModalCoordinates):
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""
-        super().__init__(branches, model)
+        super().__init__(model)
         self.drag_law = model.drag_law
+        self.by_coordinate = self.shapes.T
+        self.momentum = model.projection
+        self.participation = model.participation
+        self.inertia_slopes = model.inertia_slopes
         m, n = self.by_coordinate.shape
+        self.whole, self.half = np.zeros((2, 6, m))
         self._springs = np.zeros((5 + len(self.inertia_slopes), m))
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
@@ -149,7 +154,10 @@ class FullBank(ModalCoordinates):
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
-        self.set_time_step(dt)
+        self.dt = dt
+        whole, half = step_propagators(self.damping, self.stiffness, dt)
+        self.whole[:] = whole.reshape(6, -1)
+        self.half[:] = half.reshape(6, -1)
         self._fastest[0] = MOST_TURN / dt
         self._enough[0] = ENOUGH * min(1.0, dt / WITHIN)
         self._springs[0], self._springs[1] = self.stiffness, self.damping

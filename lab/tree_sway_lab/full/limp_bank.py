@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 
-from tree_sway.core.arrays import Records
 from tree_sway.core.model import SwayModel
 from tree_sway.core.native import NativeStand
-from tree_sway.core.run import ModalCoordinates, TableOscillators
+from tree_sway.core.run import TableOscillators
 
 LONGEST_PART = 1.0 / 240.0
 """Longest part of a step [s]."""
@@ -23,9 +22,9 @@ LONGEST_PART = 1.0 / 240.0
 class LimpFullBank(TableOscillators):
     """A limp tree on all its coordinates, without a table."""
 
-    def __init__(self, branches: Records, model: SwayModel, stand: NativeStand) -> None:
+    def __init__(self, model: SwayModel, stand: NativeStand) -> None:
         """Make room for the state."""
-        super().__init__(ModalCoordinates(branches, model), stand, 0.0)
+        super().__init__(model, stand)
         self._n_parts = 1
 
     def set_step(self, dt: float) -> None:

@@ -41,10 +41,10 @@ def test_leaves_slow_the_branches_they_sit_on(stem, share):
     """Leaf mass of 15-60 % of a branch's own lowers its f0 to 0.70-0.95 of the bare one."""
     tree = stem(length=1.5, base=0.02, tip=0.01, direction=(1, 0, 1))
     bare = bank_of(tree, model='branch')
-    leafy = bank_of(tree, model='branch', leaf_mass=np.array([share * bare.mass]))
-    assert leafy.mass == pytest.approx((1.0 + share) * bare.mass)
+    leafy = bank_of(tree, model='branch', leaf_mass=np.array([share * bare.model.mass]))
+    assert leafy.model.mass == pytest.approx((1.0 + share) * bare.model.mass)
     slower = [
-        frequencies(tree, model='branch', leaf_mass=np.array([s * bare.mass]))[0]
+        frequencies(tree, model='branch', leaf_mass=np.array([s * bare.model.mass]))[0]
         for s in (share, 0.0)
     ]
     assert 0.7 < slower[0] / slower[1] < 0.95
@@ -91,7 +91,7 @@ def test_frequencies_rise_and_masses_agree(fork):
     for model in ('branch', 60):
         bank = bank_of(fork(), model=model)
         assert (np.diff(frequencies(fork(), model=model)) >= 0).all()
-        assert bank.mass == pytest.approx(OAK.density * fork().volume.sum())
+        assert bank.model.mass == pytest.approx(OAK.density * fork().volume.sum())
 
 
 def test_modes_are_the_coupled_ones(fork):

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from tree_sway.core.rotation import cross_matrix, quaternion_rotated
-from tree_sway.core.run.assembly import branch_records
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.setup.reductions import TreeReductions
@@ -40,7 +39,7 @@ class Loaded:
     def __init__(self, tree, enrich='none'):
         chosen = Settings(model=60, enrich=enrich, gravity=0.0)
         self.tree = tree
-        self.branches = branch_records(prepare(tree, species_named('broadleaf'), chosen))
+        self.branches = prepare(tree, species_named('broadleaf'), chosen).branches
         self.hold()
 
     def hold(self):

@@ -24,11 +24,13 @@ if TYPE_CHECKING:
     from tree_sway.core.model.records import Branch as Branch
     from tree_sway.core.model.records import branch_layout as branch_layout
     from tree_sway.core.model.records import fill_arms as fill_arms
+    from tree_sway.core.model.records import LOADED as LOADED
     from tree_sway.core.model.records import MAX_COORDINATES as MAX_COORDINATES
     from tree_sway.core.model.records import MOST_IN_ALL as MOST_IN_ALL
     from tree_sway.core.model.records import N_AZIMUTHS as N_AZIMUTHS
     from tree_sway.core.model.records import N_HARMONICS as N_HARMONICS
     from tree_sway.core.model.records import N_LEVELS as N_LEVELS
+    from tree_sway.core.model.records import PLACED as PLACED
     from tree_sway.core.model.records import room_for_fields as room_for_fields
     from tree_sway.core.model.records import WIDTH as WIDTH
     from tree_sway.core.model.state_basis import FULL_SCALE as FULL_SCALE

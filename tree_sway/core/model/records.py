@@ -80,6 +80,16 @@ def branch_layout(n_coordinates: int) -> np.dtype[np.void]:
     return np.dtype(fields_of(Branch, rows=n_coordinates))
 
 
+PLACED = ('frame', 'offset', 'twist')
+"""Fields of a branch that are arrays of a model, ``branch_`` before their names."""
+
+LOADED = (
+    'area', 'speed', 'spread', 'lever', 'projector', 'centre', 'coupling', 'load_mode',
+    'damping_mode', 'load_rotation', 'tip_mode',
+)  # fmt: skip
+"""The same, of its wind load."""
+
+
 def fill_arms(records: Records, tree: Tree, first: Ints) -> None:
     """Fill bases, tips and arms of branches, (b,), by the first segment of each in a tree."""
     last = np.append(first[1:], tree.n_segments) - 1

@@ -25,10 +25,19 @@ from typing import Any, NamedTuple, TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.arrays import Floats, Ints, Records, Singles
 from tree_sway.core.checks import GREATEST
 from tree_sway.core.drag import DragLaw
-from tree_sway.core.model.records import N_AZIMUTHS, N_HARMONICS, N_LEVELS, ROOMS
+from tree_sway.core.model.records import (
+    branch_layout,
+    fill_arms,
+    LOADED,
+    N_AZIMUTHS,
+    N_HARMONICS,
+    N_LEVELS,
+    PLACED,
+    ROOMS,
+)
 from tree_sway.core.settings import Settings
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
@@ -361,6 +370,19 @@ class SwayModel:
     def is_limp(self) -> bool:
         """Whether its twigs turn so far that loads and inertia are those of its pose."""
         return self.segment_mass.size > 0
+
+    @cached_property
+    def branches(self) -> Records:
+        """Records of the branches, (b,)."""
+        layout = branch_layout(self.branch_twist.shape[1])
+        records: Records = np.zeros(len(self.branch_parent), dtype=layout)
+        records['first'] = self.branch_first[:-1]
+        records['end'] = self.branch_first[1:]
+        records['n_coordinates'] = self.branch_keys
+        for name in ('parent', 'base_segment', 'coordinate', *PLACED, *LOADED):
+            records[name] = getattr(self, f'branch_{name}')
+        fill_arms(records, self.tree, self.branch_first[:-1])
+        return records
 
     def by_table(self) -> SwayModel:
         """Return the model by which trees that share a table are stepped, of limp ones too."""

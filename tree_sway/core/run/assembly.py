@@ -12,16 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Records
-from tree_sway.core.model import branch_layout, fill_arms, SwayModel
+from tree_sway.core.model import SwayModel
 from tree_sway.core.native import AT_POSE, bytes_of, NativeModel, NativeStand
 from tree_sway.core.run.bank import Bank, Oscillators
-
-LOADED = (
-    'frame', 'offset', 'twist', 'area', 'speed', 'spread', 'lever', 'projector', 'centre',
-    'coupling', 'load_mode', 'damping_mode', 'load_rotation', 'tip_mode',
-)  # fmt: skip
-"""Fields of a branch's record that are arrays of the model."""
 
 _NO_INERTIA = (
     'twigs hang or whip, but the segments have no inertia to solve with at their pose: the law '
@@ -38,55 +31,29 @@ def native_stand(model: SwayModel) -> NativeStand:
 
 def bank_of(model: SwayModel) -> Bank:
     """Make a model ready to be stepped and placed."""
-    branches = branch_records(model)
     stand = native_stand(model)
-    made = _oscillators(model, branches, stand)
+    made = _oscillators(model, stand)
     solved: NativeStand = getattr(made, 'stand', stand)
     is_stiffer = model.is_limp and solved.models[0].sizes.is_stepped != AT_POSE
-    return Bank(made, branches, solved, model.mass, _NO_INERTIA if is_stiffer else '')
+    return Bank(made, model, solved, _NO_INERTIA if is_stiffer else '')
 
 
-def _oscillators(model: SwayModel, branches: Records, stand: NativeStand) -> Oscillators:
+def _oscillators(model: SwayModel, stand: NativeStand) -> Oscillators:
     """Make the oscillators of the law of a model."""
     if model.is_isolated:
         from tree_sway.core.run.branch_oscillators import BranchOscillators
 
-        return BranchOscillators(
-            branches,
-            model.inertia.copy(),
-            model.own_damping.copy(),
-            model.stiffness.copy(),
-            model.weight.copy(),
-            model.drag_law,
-        )
+        return BranchOscillators(model)
     name = model.settings.model
     if isinstance(name, str):
         from tree_sway.installed_models import maker_of
 
-        made: Oscillators = maker_of(name)(model, branches)
+        made: Oscillators = maker_of(name)(model, model.branches)
         return made
-    from tree_sway.core.run.modal_coordinates import ModalCoordinates
-
     if not model.has_table:
         from tree_sway.core.run.rigid import RigidBank
 
-        return RigidBank(branches, model)
+        return RigidBank(model)
     from tree_sway.core.run.table_model import TableOscillators
 
-    return TableOscillators(ModalCoordinates(branches, model), stand, model.most_pressure)
-
-
-def branch_records(model: SwayModel) -> Records:
-    """Fill the records of the branches, (b,)."""
-    size = len(model.branch_parent)
-    records: Records = np.zeros(size, dtype=branch_layout(model.branch_twist.shape[1]))
-    records['parent'] = model.branch_parent
-    records['base_segment'] = model.branch_base_segment
-    records['first'] = model.branch_first[:-1]
-    records['end'] = model.branch_first[1:]
-    records['coordinate'] = model.branch_coordinate
-    records['n_coordinates'] = model.branch_keys
-    for name in LOADED:
-        records[name] = getattr(model, f'branch_{name}')
-    fill_arms(records, model.tree, model.branch_first[:-1])
-    return records
+    return TableOscillators(model, stand)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model import SwayModel
 from tree_sway.core.native import contiguous, NativeStand
 
 
@@ -35,7 +36,6 @@ class Oscillators(Protocol):
 
     n_outside: int
     """Steps outside of its table, if it has one."""
-    branches: Records
     shapes: Floats
     """Key rotations per unit of each coordinate, (N, m)."""
 
@@ -81,16 +81,19 @@ class Bank:
     """
     A tree ready to be stepped and placed.
 
-    ``stand`` is the native stand whose first tree it is; ``mass`` is that of wood and leaves in
-    [kg].
+    ``stand`` is the native stand whose first tree it is.
     """
 
     oscillators: Oscillators
-    branches: Records
+    model: SwayModel
     stand: NativeStand
-    mass: float
     doubt: str = ''
     """What makes its motion doubtful, a sentence."""
+
+    @property
+    def branches(self) -> Records:
+        """Records of the branches, (b,)."""
+        return self.model.branches
 
     @property
     def n_shown(self) -> int:

@@ -16,9 +16,9 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.drag import drag_density, DragLaw
-from tree_sway.core.model import BranchBlocks
+from tree_sway.core.arrays import Floats
+from tree_sway.core.drag import drag_density
+from tree_sway.core.model import BranchBlocks, SwayModel
 from tree_sway.core.oscillators import fill_propagator, guards
 from tree_sway.core.run.bank import Tunable
 
@@ -27,44 +27,27 @@ class BranchOscillators:
     """
     Oscillators of all branches.
 
-    Parameters
-    ----------
-    branches
-        Records of `Branch`, (b,).
-    inertia, damping, stiffness
-        J in [kg m^2], k2 in [N m s/rad] and k1 in [N m/rad] of each branch, (b,).
-    weight
-        Part of the stiffness by gravity in [N m/rad], (b,).
-    drag_law
-        Drag of the tree.
-
+    Each has J in [kg m^2], k2 in [N m s/rad] and k1 in [N m/rad], ``inertia``, ``damping`` and
+    ``stiffness``, (b,).
     """
 
     n_outside = 0
     """There is no table, so no step is outside."""
     shapes = np.zeros((0, 0))
 
-    def __init__(
-        self,
-        branches: Records,
-        inertia: Floats,
-        damping: Floats,
-        stiffness: Floats,
-        weight: Floats,
-        drag_law: DragLaw,
-    ) -> None:
-        """Make room for the coefficients and the state."""
-        self._drag_law = drag_law
-        self.branches = branches
-        self.inertia = inertia
-        self.damping = damping
-        self.stiffness = stiffness
-        self._blocks = BranchBlocks(branches)
+    def __init__(self, model: SwayModel) -> None:
+        """Make room for coefficients and state; what a tuning changes is copied."""
+        self._drag_law = model.drag_law
+        self.branches = model.branches
+        self.inertia = model.inertia
+        self.damping = model.own_damping.copy()
+        self.stiffness = model.stiffness.copy()
+        self._blocks = BranchBlocks(self.branches)
         self.loads = self._blocks.records
         """Records of `BranchBlock`."""
         self.state = self._blocks.state
         self.x, self.v = self.state
-        self.tunable = Tunable(stiffness, damping, inertia, weight)
+        self.tunable = Tunable(self.stiffness, self.damping, self.inertia, model.weight)
         """Arrays that change with stiffness, damping and gravity."""
 
     def set_step(self, dt: float) -> None:

@@ -161,8 +161,8 @@ class Touch:
         self._share += settled * (bool(self.pushes) - self._share)
         poses = place_all()
         residual = self.residual.copy()
-        whole, (eta, rate, total) = self._oscillators.whole, self._oscillators.swing
-        per_force = whole[2]
+        eta, rate, total = self._oscillators.swing
+        per_force, rate_per_force = self._oscillators.per_force()
         for push in list(self.pushes.values()):
             place = push.place(poses)
             if push.renewed_in <= 0.0:
@@ -187,7 +187,7 @@ class Touch:
         limit = self._oscillators.limit
         modal_force = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
         eta += per_force * modal_force
-        rate += whole[5] * modal_force
+        rate += rate_per_force * modal_force
         total += modal_force
         return int((np.abs(moments) > limit).sum())
 

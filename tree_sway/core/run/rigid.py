@@ -17,10 +17,10 @@ class RigidBank(ModalCoordinates):
     n_outside = 0
     """There is no table, so no step is outside."""
 
-    def __init__(self, branches: Records, model: SwayModel) -> None:
+    def __init__(self, model: SwayModel) -> None:
         """Make the arrays of a tree at rest."""
-        super().__init__(branches, model)
-        blocks = -(-len(branches) // WIDTH)
+        super().__init__(model)
+        blocks = -(-len(self.branches) // WIDTH)
         self.loads: Records = np.zeros(blocks, [('gust', 'f8', (3, WIDTH))])
         """The wind of each branch, which no branch feels."""
         self.swing = tuple(np.zeros((3, 0)))
@@ -28,8 +28,8 @@ class RigidBank(ModalCoordinates):
         self._rest = np.zeros(len(self.shapes))
 
     def set_step(self, dt: float) -> None:
-        """Refill the propagators, of no coordinates."""
-        self.set_time_step(dt)
+        """Note the step: there is nothing that moves in it."""
+        self.dt = dt
 
     def advance(self, *_: float) -> int:
         """Return that no load was clamped."""

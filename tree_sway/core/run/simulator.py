@@ -107,7 +107,7 @@ class SwaySimulator:
         self._dt = math.nan
         self._watch: ClampWatch | None = None
         self._wind = np.zeros(3)
-        self._expected = (int(self._bank.branches['n_coordinates'].sum()),)
+        self._expected = (prepared.n_keys,)
         self._poses = np.zeros((tree.n_segments, 7))
         self._filled = self._poses
         self._origin = tree.start[0].copy()

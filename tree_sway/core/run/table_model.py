@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model import SwayModel
 from tree_sway.core.native import NativeStand, States
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.outcome import Outcome
@@ -38,30 +39,24 @@ class TableOscillators:
 
     Parameters
     ----------
-    modal
-        The coordinates.
+    model
+        Prepared model of the tree.
     stand
         Stand of the native core whose first tree it is.
-    most_pressure
-        Largest dynamic pressure of the table [kg/m/s^2].
 
     """
 
     loads: Records | None = None
 
-    def __init__(self, modal: ModalCoordinates, stand: NativeStand, most_pressure: float) -> None:
-        self.modal = modal
-        self.most_pressure = most_pressure
+    def __init__(self, model: SwayModel, stand: NativeStand) -> None:
+        self.modal = modal = ModalCoordinates(model)
+        """The coordinates, of all trees of a kind."""
         self.stand = stand
         self.number = 0
-        self.branches = modal.branches
         self.shapes = modal.shapes
         self.compliance = modal.compliance
         self.limit = modal.limit
         self.tunable = modal.tunable
-        self.air_damping = modal.air_damping
-        # Rounded everywhere, as the native core reads them in single precision.
-        self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
         self._x = np.zeros(len(modal.shapes))
         self.n_outside = 0
         """Steps whose wind was clamped to the limit of the table."""
@@ -73,6 +68,21 @@ class TableOscillators:
         other.stand = stand
         other.number = number
         return other
+
+    @property
+    def branches(self) -> Records:
+        """Records of the branches, (b,)."""
+        return self.modal.branches
+
+    @property
+    def most_pressure(self) -> float:
+        """Largest dynamic pressure of the table [kg/m/s^2]."""
+        return self.modal.model.most_pressure
+
+    @property
+    def all_shapes(self) -> Floats:
+        """Shapes by coordinate, (m, N), rounded to single precision as in the native core."""
+        return self.shapes.T.astype(np.float32).astype(np.float64)
 
     @property
     def _state(self) -> States:
@@ -108,7 +118,7 @@ class TableOscillators:
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
-        self.modal.set_time_step(dt)
+        self.modal.dt = dt
         self.stand.tune(0, self.modal.stiffness, self.modal.damping)
         self.stand.set_step(dt)
 
@@ -128,16 +138,13 @@ class TableOscillators:
     @cached_property
     def swing(self) -> tuple[Floats, ...]:
         """Displacement, rate and force of each coordinate, (m,)."""
-        count = self.modal.shapes.shape[1]
+        count = self.shapes.shape[1]
         return tuple(getattr(self._state, name)[self.number, :count] for name in STATE_FIELDS[:3])
 
-    @property
-    def whole(self) -> Floats:
-        """Coefficients of a force that is added to a step, rows of `ModalCoordinates.whole`."""
-        count = self.modal.shapes.shape[1]
-        # The step was implicit in the damping of each coordinate.
-        implicit = 1.0 - self._state.diagonal[self.number, :count] * self.modal.half[5]
-        return np.asarray(self.modal.whole / implicit)
+    def per_force(self) -> Floats:
+        """Displacement and rate by a force that is added to a step, (2, m)."""
+        count = self.shapes.shape[1]
+        return self.modal.per_force(self._state.diagonal[self.number, :count])
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
@@ -165,7 +172,7 @@ class TableOscillators:
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
-        return self.rotations().copy(), self.modal.shapes @ self.swing[1]
+        return self.rotations().copy(), self.shapes @ self.swing[1]
 
     def take_over(self, x: Floats, v: Floats) -> None:
         """Continue from key rotations and rates, (N,), projected on the modes."""

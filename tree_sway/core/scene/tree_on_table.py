@@ -56,7 +56,7 @@ class TreeOnTable:
 
         The step of the tree is that of its kind over its scale.
         """
-        self._oscillators.modal.set_time_step(own_dt)
+        self._oscillators.modal.dt = own_dt
         return self.touch.step(self._placed, dt) > 0
 
     def _placed(self) -> Floats:

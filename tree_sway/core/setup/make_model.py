@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model import StateBasis, SwayModel
+from tree_sway.core.model import LOADED, PLACED, StateBasis, SwayModel
 from tree_sway.core.oscillators import LOAD_MAX
 from tree_sway.core.setup.bent_inertia import inertia_slopes
 from tree_sway.core.setup.damping import relative_damping
@@ -182,27 +182,18 @@ def _whole(reductions: TreeReductions, reduced: ReducedTree) -> dict[str, Any]:
         'mass': float(reduced.mass.sum()),
         'branch_first': np.append(branches['first'], reductions.tree.n_segments),
         'branch_parent': np.where(parent < 0, -1, number[np.maximum(parent, 0)]),
-        'branch_base_segment': branches['base_segment'].copy(),
-        'branch_coordinate': branches['coordinate'].copy(),
         'branch_keys': branches['n_coordinates'].copy(),
         'branch_skew': np.stack([places.skew, places.tip_skew], axis=1)[order],
-        **{f'branch_{name}': branches[name].copy() for name in (*_PLACED, *_LOADED)},
+        **{
+            f'branch_{name}': branches[name].copy()
+            for name in ('base_segment', 'coordinate', *PLACED, *LOADED)
+        },
         'segment_slope': places.slope[row],
         'segment_tip_slope': places.tip_slope[row],
         'segment_chord': places.chord[row],
         'segment_rest': places.rest[row],
         'segment_turn': places.segment_turn[row],
     }
-
-
-_PLACED = ('frame', 'offset', 'twist')
-"""Fields of a branch's record that are arrays of the model under the same names."""
-
-_LOADED = (
-    'area', 'speed', 'spread', 'lever', 'projector', 'centre', 'coupling', 'load_mode',
-    'damping_mode', 'load_rotation', 'tip_mode',
-)  # fmt: skip
-"""The same, of its wind load."""
 
 
 def _limbs(
