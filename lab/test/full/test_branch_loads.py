@@ -140,9 +140,7 @@ def test_the_native_core_finds_the_same_loads(loaded):
     wind = rng.normal(size=3)
     own = np.zeros(loaded.n)
     loaded.loads['drag_impulse'] = loaded.loads['compliance'] = 0.0
-    branch_loads.wind_moments(
-        loaded.branches, loaded.work, loaded.loads, x, v, own, *wind, 1.0
-    )
+    branch_loads.wind_moments(loaded.branches, loaded.work, loaded.loads, x, v, own, *wind, 1.0)
     native = WindMoments(loaded.branches)
     found = native(x, v, wind)
     assert found == pytest.approx(own, rel=1e-9, abs=1e-12 * np.abs(own).max())

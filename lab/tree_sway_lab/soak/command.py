@@ -24,7 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--tree', default='goldcrest', help='what sways (%(default)s)')
     add('--demo', action='store_true', help='all in one process, as the demo; else one per node')
     add(
-        '--page', action='store_true',
+        '--page',
+        action='store_true',
         help='without ROS: a page with four clients, an anemometer and two motion sensors',
     )
     add('--every', type=float, default=20.0, help='seconds from fault to fault (%(default)s)')

@@ -259,9 +259,7 @@ def _offer_new(
     """Offer the samples of a sensor that come, (n,) in [s], before the end of a step."""
     first, last = np.searchsorted(came, [step * DT, (step + 1) * DT]).tolist()
     for k in range(first, last):
-        twin.offer(
-            name, motion.time[k], acceleration=motion.acceleration[k], rate=motion.rate[k]
-        )
+        twin.offer(name, motion.time[k], acceleration=motion.acceleration[k], rate=motion.rate[k])
 
 
 def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, float]:
