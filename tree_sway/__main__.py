@@ -4,6 +4,6 @@
 
 import sys
 
-from tree_sway.commands.cli import main
+from tree_sway.commands import main
 
 sys.exit(main())

@@ -347,8 +347,7 @@ def run_process(command: str, **environment: str) -> subprocess.CompletedProcess
         capture_output=True,
         text=True,
         check=False,
-        env={**os.environ, 'TREE_SWAY': f'{sys.executable} -m tree_sway.commands.cli'}
-        | environment,
+        env={**os.environ, 'TREE_SWAY': f'{sys.executable} -m tree_sway'} | environment,
     )
 
 
@@ -392,7 +391,7 @@ def test_no_name_from_a_file_steers_the_terminal(tmp_path: Path) -> None:
 
 
 def test_a_reader_that_goes_away_is_no_error() -> None:
-    command = f'{sys.executable} -m tree_sway.commands.cli info goldcrest --json --quiet | head -1'
+    command = f'{sys.executable} -m tree_sway info goldcrest --json --quiet | head -1'
     result = subprocess.run(
         ['bash', '-o', 'pipefail', '-c', command], capture_output=True, text=True, check=False
     )
@@ -418,7 +417,7 @@ def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
         [
             sys.executable,
             '-m',
-            'tree_sway.commands.cli',
+            'tree_sway',
             'convert',
             'benjamina',
             '-o',

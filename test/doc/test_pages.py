@@ -33,7 +33,7 @@ LINK = re.compile(r'(?<!`)\[[^\]\n]+\]\(([^)\s]+)\)')
 NAMED = re.compile(
     r'`((?:test|lab|tree_sway|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`'
 )
-SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway.commands.cli "$@"; }\n'
+SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway "$@"; }\n'
 FOLDERS = ('config', 'doc', 'examples', 'launch', 'test')
 DEADLINE = 300.0
 

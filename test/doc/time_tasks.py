@@ -37,7 +37,7 @@ DEADLINE = 300.0
 PROGRAMS = """
 set -eum
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
-tree-sway() { "$PYTHON" -m tree_sway.commands.cli "$@"; }
+tree-sway() { "$PYTHON" -m tree_sway "$@"; }
 python() { "$PYTHON" "$@"; }
 if ! command -v ros2 >/dev/null; then
   ros2() {

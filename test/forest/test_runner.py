@@ -277,7 +277,7 @@ def test_ctrl_c_does_not_wait_for_workers_that_start(tmp_path):
     study.write_text('trees: [benjamina]\nwinds: [{speed: 4}]\nseconds: 60\n')
     slow.write_text('import time\ntime.sleep(60.0)\n')
     words = ['study', str(study), '-o', str(tmp_path / 'o.csv'), '--workers', '2']
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', *words]
+    command = [sys.executable, '-m', 'tree_sway', *words]
     environment = {**os.environ, 'DASK_DISTRIBUTED__WORKER__PRELOAD': f'["{slow}"]'}
     with subprocess.Popen(command, start_new_session=True, env=environment) as process:
         workers = until(lambda: workers_of(process.pid), 60.0)

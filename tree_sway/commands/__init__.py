@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.commands.cli import main as main
     from tree_sway.commands.command import Command as Command
     from tree_sway.commands.command import commands_of as commands_of
     from tree_sway.commands.ending import Ending as Ending

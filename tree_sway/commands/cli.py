@@ -182,7 +182,3 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
             _module(command).add_arguments(sub)
             parser.chosen = sub
     return parser
-
-
-if __name__ == '__main__':
-    sys.exit(main())

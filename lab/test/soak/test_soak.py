@@ -47,7 +47,7 @@ def test_a_process_looks_at_itself() -> None:
     ids=['soak', 'fuzz'],
 )
 def test_a_page_and_a_reader_are_tried_without_ros(command: list[str], told: str) -> None:
-    whole = [sys.executable, '-m', 'tree_sway.commands.cli', 'lab', *command]
+    whole = [sys.executable, '-m', 'tree_sway', 'lab', *command]
     ended = subprocess.run(whole, capture_output=True, text=True, cwd=ROOT, timeout=240.0)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert re.search(told, ended.stdout, re.MULTILINE)
@@ -58,7 +58,7 @@ def test_a_page_and_a_reader_are_tried_without_ros(command: list[str], told: str
 @pytest.mark.skipif(not sys.platform.startswith('linux'), reason='reads /proc')
 @pytest.mark.parametrize('kind', ['nodes', 'demo'])
 def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str, str]) -> None:
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'lab', 'soak', '--hours', '0.003']
+    command = [sys.executable, '-m', 'tree_sway', 'lab', 'soak', '--hours', '0.003']
     ended = subprocess.run(
         [*command, '--every', '0.5', '--rate', '2', '--slope', '1e9']
         + ['--demo'] * (kind == 'demo'),

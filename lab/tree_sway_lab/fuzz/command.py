@@ -146,7 +146,7 @@ def _served(folder: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """Serve a page, in a process that ends with the context."""
     with socket.create_server(('127.0.0.1', 0)) as trial:
         port = int(trial.getsockname()[1])
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', 'goldcrest', '-q']
+    command = [sys.executable, '-m', 'tree_sway', 'show', 'goldcrest', '-q']
     with (folder / 'page.txt').open('w') as said:
         page = subprocess.Popen([*command, '--port', f'{port}'], stderr=said, text=True)
     try:

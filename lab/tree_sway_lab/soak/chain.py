@@ -103,7 +103,7 @@ class _Reports:
 def _commands(arguments: argparse.Namespace, rate: float, port: int) -> dict[str, list[str]]:
     """Return what to run, by the name of the process."""
     if arguments.demo:
-        command = [sys.executable, '-m', 'tree_sway.commands.cli', 'demo', arguments.tree]
+        command = [sys.executable, '-m', 'tree_sway', 'demo', arguments.tree]
         return {'demo': [*command, '--rate', f'{rate}', '--port', f'{port}']}
     figures = {
         'anemometer': [f'rate:={min(100.0, 20.0 * arguments.rate)}'],

@@ -67,7 +67,7 @@ class PageSoak:
     def __init__(self, tree: str, rate: float) -> None:
         page, wind, *motion = _free_ports(2 + len(HEIGHTS))
         height = float(open_tree(tree).tree.end[:, 2].max())
-        command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', tree, '-q']
+        command = [sys.executable, '-m', 'tree_sway', 'show', tree, '-q']
         command += ['--port', f'{page}', '--sensor', f'udp://127.0.0.1:{wind}']
         for share, port in zip(HEIGHTS, motion, strict=True):
             command += ['--motion', f'udp://127.0.0.1:{port}', '--at', f'{share * height:.2f}']

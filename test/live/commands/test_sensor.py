@@ -176,7 +176,7 @@ def test_what_cannot_be_listened_to_is_refused_in_words(
 
 
 def start(address: str) -> subprocess.Popen[str]:
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', SEEDLING]
+    command = [sys.executable, '-m', 'tree_sway', 'show', SEEDLING]
     command += ['--port', '0', '--sensor', address]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, cwd=ROOT)

@@ -50,7 +50,7 @@ def shown(*words: str) -> argparse.Namespace:
 
 
 def test_the_page_is_served_and_the_tree_moves() -> None:
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', str(SEEDLING)]
+    command = [sys.executable, '-m', 'tree_sway', 'show', str(SEEDLING)]
     command += ['--port', '0', '--stand', '2']
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
     timer = threading.Timer(DEADLINE, process.kill)

@@ -45,7 +45,7 @@ def environment(ros_environment: dict[str, str]) -> Iterator[dict[str, str]]:
 
 def start(environment: dict[str, str], *arguments: str) -> Started:
     """Start a command; standard output is no terminal there."""
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', *arguments]
+    command = [sys.executable, '-m', 'tree_sway', *arguments]
     pipe = subprocess.PIPE
     _started.append(
         subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True, cwd=ROOT)

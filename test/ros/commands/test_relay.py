@@ -111,7 +111,7 @@ def own_domain(ros_environment: dict[str, str], monkeypatch: pytest.MonkeyPatch)
 @contextmanager
 def relaying(url: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
     """Run the command, which ends without an error."""
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', url, *arguments]
+    command = [sys.executable, '-m', 'tree_sway', 'relay', url, *arguments]
     pipe = subprocess.PIPE
     relay = subprocess.Popen(command, cwd=ROOT, text=True, stderr=pipe, stdout=pipe)
     try:
@@ -148,7 +148,7 @@ def test_an_address_where_nobody_listens_is_said_while_it_waits() -> None:
     command = [
         sys.executable,
         '-m',
-        'tree_sway.commands.cli',
+        'tree_sway',
         'relay',
         f'https://localhost:{port}',
     ]
