@@ -156,7 +156,8 @@ def take(view: View, tree: str, path: Path) -> None:
     """Take one picture."""
     parser = argparse.ArgumentParser()
     show.add_arguments(parser)
-    arguments = parser.parse_args([tree])
+    wood = () if view.tree != 'walnut' else ('--species', 'walnut')  # which a scan does not state
+    arguments = parser.parse_args([tree, *wood])
     choices, wind = Choices(Path(tree).name), SimulatedWind(9.0)
     session = Session(lambda wanted: show.build_scene(wanted, arguments), choices, wind)
     controls = page_controls(choices, wind) if view.has_cards else ()

@@ -161,15 +161,6 @@ def test_a_sensor_takes_most_of_the_error_away() -> None:
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
-def test_half_is_followed_while_the_times_of_a_sensor_are_in_doubt() -> None:
-    twin = replayed(measured()).twin
-    whole = twin.observer._wanted_trust.copy()
-    assert whole.max() > 0.5
-    twin.observer.tracks[0].is_doubted = True
-    twin.step((5.0, 0.0, 0.0), DT)
-    np.testing.assert_allclose(twin.observer._wanted_trust, 0.5 * whole)
-
-
 def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
     _twin, tips, late, *_ = good()
     true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()

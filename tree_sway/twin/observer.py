@@ -48,12 +48,6 @@ _FADE = 0.3
 _TRUSTED_WITHIN = 2.0
 """Time constant in [s] with which the applied shares follow those of new gains."""
 
-_DOUBTED = 0.5
-"""
-Share of a correction that is applied while the times of its sensors are in doubt: of one that is a
-second late it makes the error that the tree has without, and of a right one it keeps most.
-"""
-
 
 class Observer:
     """
@@ -110,7 +104,7 @@ class Observer:
         self._estimate: Estimate | None = None
         self.trust = np.zeros(n)
         """Share of the correction of each coordinate that is applied [-], (count,)."""
-        self._gains_trust, self._wanted_trust = np.zeros((2, n))
+        self._wanted_trust = np.zeros(n)
         self.noise = np.zeros(0)
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, tuple[Floats, int]] = {}
@@ -224,15 +218,13 @@ class Observer:
         # Where each measurement is among the readings, (k, 9).
         rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
         self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
-        self.noise, self._gains_trust = gains.noise, gains.trust
+        self.noise, self._wanted_trust[:] = gains.noise, gains.trust
         for k in gains.used:
             self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}
 
     def _correct(self, estimate: Estimate, at: int, n_periods: int) -> None:
         """Correct the estimate by the measurements of a step, unless it was done before."""
-        is_doubted = all([self.tracks[k].is_doubted for k in self._design.used])
-        np.multiply(self._gains_trust, _DOUBTED if is_doubted else 1.0, out=self._wanted_trust)
         share = 0.0
         if at >= 0:
             # More than one step where sensors have become less late.

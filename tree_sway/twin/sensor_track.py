@@ -69,8 +69,6 @@ _ALIEN = (
 
 _AGAIN = 'it was left, and is followed again: its lean in gusts is that of its own times'
 
-_DOUBTED = ' that of the tree in this wind, or in time: half of what it tells is followed'
-
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
@@ -157,8 +155,7 @@ class FoundMounting(NamedTuple):
 
     ``lag`` is by how many steps the tree moves later than the model, ``left_for`` the lag
     [s] for which the sensor is not to be followed, 0 if it is that of another wind, and None if it
-    is right. ``late`` is its likeliest lag [s]. ``is_doubted`` is whether that is likelier than
-    none, not by enough for it to be left, and no other sensor tells.
+    is right. ``late`` is its likeliest lag [s].
     """
 
     alignment: Alignment
@@ -166,7 +163,6 @@ class FoundMounting(NamedTuple):
     lag: int = 0
     left_for: float | None = None
     late: float = 0.0
-    is_doubted: bool = False
 
 
 def _mounting(
@@ -226,10 +222,7 @@ def _mounting(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    is_doubted = lags.is_told and not lags.others and left_for is None and left.is_doubtful
-    if is_doubted and not found.problem:
-        found = replace(found, notes=(*found.notes, f'{left}{_DOUBTED}'))
-    return FoundMounting(found, bias, lag, left_for, left.seconds, is_doubted)
+    return FoundMounting(found, bias, lag, left_for, left.seconds)
 
 
 def _is_off(found: SensorLag, lags: LagRange) -> bool:
@@ -380,8 +373,6 @@ class SensorTrack:
         self._left_for: float | None = None
         self.late = 0.0
         """Its likeliest lag behind the model when its mounting was found last [s]."""
-        self.is_doubted = False
-        """Whether its times may be off, and nothing tells for sure."""
         self._behind, self._whole_from = 0, 0
         self._moved = np.zeros(9)
         self.native = NativeSensor(
@@ -546,7 +537,6 @@ class SensorTrack:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
         self._left_for, self.late = mounting.left_for, mounting.late
-        self.is_doubted = mounting.is_doubted
         is_left = mounting.left_for is not None
         is_kept = native.is_mounted and not native.is_refused and not is_left
         if found.problem and is_kept:
