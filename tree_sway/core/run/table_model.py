@@ -54,6 +54,7 @@ class TableOscillators:
         self.stand = stand
         self.number = 0
         self.shapes = modal.shapes
+        self._count = modal.shapes.shape[1]
         self.compliance = modal.compliance
         self.limit = modal.limit
         self.tunable = modal.tunable
@@ -96,17 +97,17 @@ class TableOscillators:
     @property
     def n_shown(self) -> int:
         """Return the number of coordinates that are shown."""
-        return self.shapes.shape[1] - int(self._state.left_out[self.number])
+        return self._count - int(self._state.left_out[self.number])
 
     @property
     def n_solved(self) -> int:
         """Return the number of coordinates that are solved, shown or not."""
-        return self.shapes.shape[1] - int(self._state.at_rest[self.number])
+        return self._count - int(self._state.at_rest[self.number])
 
     def keep_only(self, count: int) -> None:
         """Solve the first coordinates only, from rest on, until `reset`."""
         come_to_rest(self._state, self.number)
-        n_dropped = self.shapes.shape[1] - count
+        n_dropped = self._count - count
         self._state.at_rest[self.number] = n_dropped
         self._state.left_out[self.number] = n_dropped
 
@@ -138,13 +139,13 @@ class TableOscillators:
     @cached_property
     def swing(self) -> tuple[Floats, ...]:
         """Displacement, rate and force of each coordinate, (m,)."""
-        count = self.shapes.shape[1]
-        return tuple(getattr(self._state, name)[self.number, :count] for name in STATE_FIELDS[:3])
+        return tuple(
+            getattr(self._state, name)[self.number, : self._count] for name in STATE_FIELDS[:3]
+        )
 
     def per_force(self) -> Floats:
         """Displacement and rate by a force that is added to a step, (2, m)."""
-        count = self.shapes.shape[1]
-        return self.modal.per_force(self._state.diagonal[self.number, :count])
+        return self.modal.per_force(self._state.diagonal[self.number, : self._count])
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
