@@ -33,7 +33,7 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> dict[str, EntryPoint]:
 
 def mine(model, branches):
     """Make a model of this file: a tree that does not move."""
-    return RigidBank(branches, model)
+    return RigidBank(model)
 
 
 @pytest.mark.parametrize('model', OF_LAB)
@@ -84,7 +84,7 @@ def test_rotations_of_another_number_are_refused_before_they_are_read(installed,
             return np.zeros(1)
 
     def make(model, branches):
-        return Short(branches, model)
+        return Short(model)
 
     installed['short'] = type('Point', (), {'load': staticmethod(lambda: make)})()
     sim = make_simulator(fork(), model='short', cache=None)

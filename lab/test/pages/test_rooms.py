@@ -43,7 +43,6 @@ def test_the_house_has_no_circle_and_the_core_imports_no_other_room() -> None:
     assert len(rooms) > 20
     heights = storeys(rooms)
     assert heights['errors'] == heights['core/arrays'] == 0
-    assert heights['lab'] == max(heights.values())
     for room, others in rooms.items():
         assert 'lab' not in others
         if not room.startswith(('ros/', 'lab')):

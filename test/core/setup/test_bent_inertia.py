@@ -13,7 +13,7 @@ from tree_sway.core.tree.segment_frame import ends_of_poses
 
 def slopes_of(sim):
     """Slopes of the inertia of the first coordinates."""
-    return sim.banks[0].oscillators.modal.inertia_slopes
+    return sim.models[0].inertia_slopes
 
 
 def middles(sim, x):
