@@ -21,9 +21,7 @@ STUDY_COLUMNS = ('wind_mean [m/s]', 'tip_largest [m]', 'base_moment_largest [N m
 """Columns of a study that are drawn, over the first one."""
 
 
-def wind_and_tip(
-    time: ArrayLike, wind: ArrayLike, tip: ArrayLike, title: str = ''
-) -> Figure:
+def wind_and_tip(time: ArrayLike, wind: ArrayLike, tip: ArrayLike, title: str = '') -> Figure:
     """
     Plot the wind's speed and the tip's displacement over time.
 

@@ -24,6 +24,7 @@ _TREE = np.dtype(
 _EVERY_ROOM = ctypes.c_size_t(-1).value
 """``SWAY_EVERY_ROOM`` of the header."""
 
+
 class States(NamedTuple):
     """States of the trees of a stand, views of its memory; M is the width of a row."""
 
