@@ -10,7 +10,7 @@ times as long on the clock that stamps and arrivals are read from.
 from __future__ import annotations
 
 from collections import deque
-from statistics import median
+from statistics import median_high
 import time
 from typing import Any
 
@@ -81,7 +81,8 @@ class ClockRate:
         self._intervals.append((passed, step))
         if len(self._intervals) < _FEWEST:
             return
-        middle = median(step / passed for passed, step in self._intervals)
+        # One of the rates that were measured, so that some interval is like it.
+        middle = median_high(step / passed for passed, step in self._intervals)
         alike = [
             (passed, step)
             for passed, step in self._intervals

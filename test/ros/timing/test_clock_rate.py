@@ -77,3 +77,15 @@ def test_a_busy_moment_changes_little(player: Player) -> None:
     player.now, player.shown = player.now + 0.3, player.shown + 1.5
     player.note()
     assert player.measured.rate == pytest.approx(5.0, rel=1e-3)
+
+
+def test_a_clock_of_which_half_the_intervals_go_back_has_the_rate_of_the_others(
+    player: Player,
+) -> None:
+    player.note()
+    for _ in range(3):
+        for step in (-0.05, 0.5):
+            player.now += 0.1
+            player.shown += step
+            player.note()
+    assert player.measured.rate == pytest.approx(5.0)
