@@ -211,7 +211,7 @@ void main() {
   vec3 up = sky * (0.17 + 0.9 * near) * (0.75 + 0.25 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.05, 1.1, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (1.3 * max(0.65 * across + 0.35, 0.0) + through);
+  vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = vec3(0.97, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
