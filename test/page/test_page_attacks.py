@@ -27,6 +27,7 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway import doorkeeper  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import access, guard  # noqa: E402
+from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import make_token, read_token  # noqa: E402
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
@@ -602,3 +603,26 @@ def test_pictures_of_other_pages_cause_no_files(tmp_path: Path) -> None:
             thread.join()
         assert sorted(statuses) == 4 * [200] + 8 * [503]
         assert running[1] == 1
+
+
+def test_a_page_that_answers_no_ping_is_gone_and_sent_nothing_wrong(
+    server: PageServer, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(server_module, '_HEARTBEAT', 0.1)
+
+    async def stay_silent() -> None:
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f'{server.url}stream', autoping=False) as page,
+        ):
+            while (await page.receive(DEADLINE)).type not in {
+                aiohttp.WSMsgType.CLOSE,
+                aiohttp.WSMsgType.CLOSED,
+                aiohttp.WSMsgType.ERROR,
+            }:
+                pass
+
+    asyncio.run(stay_silent())
+    until(lambda: not server._clients)
+    assert server.n_refused == 0
+    assert not lines_of(caplog)

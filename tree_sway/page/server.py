@@ -37,6 +37,9 @@ LARGEST_MESSAGE = 4096
 _STATUS_PERIOD = 0.5
 """Interval of the status, and of the search for clients that do not read [s]."""
 
+_HEARTBEAT = 20.0
+"""Interval of the pings that a page answers [s]; one that does not is gone."""
+
 _CLOSING_TIME = 2.0
 """Time in which a page that is sent away may answer before its socket is closed [s]."""
 _START_TIMEOUT = 10.0
@@ -332,7 +335,10 @@ class PageServer:
         if len(self._clients) >= self.settings.max_clients:
             return self._guard.refused(503, 'too many pages are connected')
         socket = web.WebSocketResponse(
-            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=_CLOSING_TIME
+            compress=False,
+            max_msg_size=LARGEST_MESSAGE,
+            heartbeat=_HEARTBEAT,
+            timeout=_CLOSING_TIME,
         )
         await socket.prepare(request)
         may_control = self._guard.may_control(request)
@@ -344,6 +350,8 @@ class PageServer:
         try:
             async for message in socket:
                 client.last_heard = time.monotonic()
+                if isinstance(message.data, asyncio.TimeoutError):
+                    break  # it answered no ping: it is gone, and sent nothing wrong
                 try:
                     if message.type is not WSMsgType.TEXT:
                         raise ValueError('bytes instead of text')
