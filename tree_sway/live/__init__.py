@@ -21,12 +21,9 @@ if TYPE_CHECKING:
     from tree_sway.live.camera.point_tracker import PointTracker as PointTracker
     from tree_sway.live.live_wind import LiveWind as LiveWind
     from tree_sway.live.motion.live_motion import LiveMotion as LiveMotion
-    from tree_sway.live.motion.live_motion import MotionSample as MotionSample
     from tree_sway.live.motion.motion_feed import MotionFeed as MotionFeed
-    from tree_sway.live.motion.motion_feed import PlacedSensor as PlacedSensor
     from tree_sway.live.motion.motion_registry import open_motion as open_motion
     from tree_sway.live.readers.instrument_lines import InstrumentLines as InstrumentLines
-    from tree_sway.live.reading import WindReading as WindReading
     from tree_sway.live.registry import open_source as open_source
 else:
     __getattr__, __dir__, __all__ = face(__name__)
