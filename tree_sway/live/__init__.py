@@ -6,8 +6,8 @@ Live instruments: wind and motion from a network, a serial port, a phone, the in
 `open_source` makes a `LiveWind` from an address such as ``udp://:10110``: `transports` deliver
 bytes and connect again, `readers` say what they mean, and a file of `sources` puts one of each
 together. One sender is followed; another is refused, counted and named. `open_motion` and
-`MotionFeed` do the same for motion sensors. A new instrument is one file in `sources`
-(``CONTRIBUTING.md``).
+`MotionFeed` do the same for motion sensors. A new kind of source is one file in
+`sources` and its row there (``CONTRIBUTING.md``).
 """
 
 from typing import TYPE_CHECKING
