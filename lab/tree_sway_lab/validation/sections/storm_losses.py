@@ -116,4 +116,4 @@ def _trees(rows: Sequence[Row], in_leaf: Sequence[Row]) -> str:
 
 
 def _percent(share: float) -> str:
-    return f'{100.0 * share:.2g} %'
+    return f'{float(f"{100.0 * share:.2g}"):g} %'
