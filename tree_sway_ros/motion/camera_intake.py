@@ -103,7 +103,7 @@ class CameraIntake:
         }
         faults = [f'{refused} refused: {self._cause}'] if refused else []
         faults += filter(None, [followed.clock_problem, *followed.faults()])
-        said = '; '.join([twin.said if twin.sees else 'no picture comes', *faults])
+        said = '; '.join([twin.said, *faults])
         return Status(
             f'camera {self.topic}', WARN if faults or not twin.sees else OK, said, values
         )

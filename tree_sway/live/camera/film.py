@@ -18,6 +18,8 @@ _PREFIX = 'camera:'
 _AGAIN = 3.0
 """Time in [s] after which a camera that stopped is opened again."""
 _KEPT = 300
+_COUNTED = 60
+"""Number of pictures whose rate is told."""
 
 
 def is_camera(address: str) -> bool:
@@ -98,11 +100,19 @@ class LiveFilm:
 
     def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
         self._film, self.view, self._log = film, view, log
+        self.name = film.name
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
         self.problem = 'no picture yet'
         """Why no picture comes; empty if they come."""
+        self._times: deque[float] = deque(maxlen=_COUNTED)
+
+    @property
+    def rate(self) -> float:
+        """Pictures per second [Hz]; 0 before two of them."""
+        times = list(self._times)
+        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0
 
     def start(self) -> None:
         """Begin."""
@@ -126,6 +136,7 @@ class LiveFilm:
                 at, picture = self._film.newest()
                 if picture is not None:
                     self._say('')
+                    self._times.append(at)
                     self._sightings.append(self.view.follow(at, picture))
                     continue
                 self._say('no picture comes: check the camera and its connection')

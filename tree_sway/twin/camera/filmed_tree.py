@@ -260,6 +260,12 @@ class FilmedTree(ObservedTree):
         return float(np.sqrt(self._square / max(self._n_seen, 1)))
 
     @property
+    def error(self) -> float:
+        """Median of the errors of the points [px]; 0 before any."""
+        errors = self.filter.errors
+        return float(np.median(errors)) if len(errors) else 0.0
+
+    @property
     def said(self) -> str:
         """What the camera tells, or why it tells nothing, one sentence."""
         n_points = len(self.points.row)
@@ -269,11 +275,12 @@ class FilmedTree(ObservedTree):
                 why = f'{n_points} points on the tree are too few: check the clicks'
             return f'the camera moves nothing: {why}'
         used = int((self.filter.weights > _USED).sum())
-        error = float(np.median(self.filter.errors))
         told = (
             f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
-            f'{error:.1f} px; {self.refused} pictures refused'
+            f'{self.error:.1f} px; {self.refused} pictures refused'
         )
+        if not self.sees:
+            told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '
