@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 
-_PROFILES = ('none', 'power', 'log', 'canopy')
+PROFILES = ('none', 'power', 'log', 'canopy')
 """Kinds of profile."""
 
 
@@ -57,7 +57,7 @@ class WindProfile:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        one_of('wind profile', self.kind, _PROFILES)
+        one_of('wind profile', self.kind, PROFILES)
         within('anemometer_height', self.anemometer_height, 0.0, 1e4, 'm', above=True)
         if self.kind == 'canopy':
             within('canopy_height', self.canopy_height, 0.0, 200.0, 'm', above=True)
