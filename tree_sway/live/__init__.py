@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.live.camera.camera_view import CameraView as CameraView
     from tree_sway.live.camera.film import Film as Film
     from tree_sway.live.camera.film import is_camera as is_camera
     from tree_sway.live.camera.film import LiveFilm as LiveFilm
     from tree_sway.live.camera.point_tracker import PointTracker as PointTracker
+    from tree_sway.live.camera.point_tracker import Sighting as Sighting
     from tree_sway.live.live_wind import LiveWind as LiveWind
     from tree_sway.live.motion.live_motion import LiveMotion as LiveMotion
     from tree_sway.live.motion.motion_feed import MotionFeed as MotionFeed

@@ -94,10 +94,10 @@ def parts_of(tree: Tree, leaf_area: Floats | float = 0.0) -> CrownDelays:
         way = centre[:, None] - middle
         apart = np.linalg.norm(way, axis=2)
         nearest = apart.argmin(axis=1)
-        share = np.bincount(nearest, wood, len(middle))
+        load = np.bincount(nearest, wood, len(middle))
         moments = [np.bincount(nearest, wood * x, len(middle)) for x in centre.T]
-        means = moments / np.maximum(share, 1e-12)
-        middle = np.where(share > 0.0, means, middle.T).T
+        means = moments / np.maximum(load, 1e-12)
+        middle = np.where(load > 0.0, means, middle.T).T
     share = _shares(nearest, wood + leaf_area)
     return CrownDelays(nearest, share, 0.0)
 
