@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.leaves import FLUTTER_GAIN, LARGEST_ANGLE, LeafClusters
+from tree_sway.core.leaves import FLUTTER, LeafClusters
 from tree_sway.core.run import SwaySimulator
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description
@@ -98,7 +98,7 @@ def describe_scene(
         'trees': trees,
     }
     if any(each is not None for each in leaves):
-        header['flutter'] = {'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+        header['flutter'] = FLUTTER
     return encode_description(header, arrays)
 
 

@@ -31,6 +31,9 @@ FLUTTER_GAIN = float(np.sqrt(2.0) / (740.0**2 * AIR_VISCOSITY * np.pi))
 LARGEST_ANGLE = 0.7
 """Amplitude at which flutter levels off in [rad]."""
 
+FLUTTER = {'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+"""The two constants of the law, for whoever draws leaves."""
+
 _LAW = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
 
 
@@ -77,7 +80,6 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     }
     described['flutter'] = {
         'law': _LAW,
-        'gain': FLUTTER_GAIN,
-        'largest_angle': LARGEST_ANGLE,
+        **FLUTTER,
     }
     return described

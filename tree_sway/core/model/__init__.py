@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from tree_sway.core.model.model_cache import ModelCache as ModelCache
     from tree_sway.core.model.model_cache import PREPARED as PREPARED
     from tree_sway.core.model.records import Branch as Branch
-    from tree_sway.core.model.records import branch_layout as branch_layout
-    from tree_sway.core.model.records import fill_arms as fill_arms
+    from tree_sway.core.model.records import branches_at_rest as branches_at_rest
     from tree_sway.core.model.records import LOADED as LOADED
     from tree_sway.core.model.records import MAX_COORDINATES as MAX_COORDINATES
     from tree_sway.core.model.records import MOST_IN_ALL as MOST_IN_ALL

@@ -90,14 +90,32 @@ LOADED = (
 """The same, of its wind load."""
 
 
-def fill_arms(records: Records, tree: Tree, first: Ints) -> None:
-    """Fill bases, tips and arms of branches, (b,), by the first segment of each in a tree."""
-    last = np.append(first[1:], tree.n_segments) - 1
+def branches_at_rest(tree: Tree, parent: Ints, first: Ints, room: int) -> Records:
+    """
+    Begin the records of branches: parents, segments, bases, tips and arms, (b,).
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    parent
+        Parent branch of each, -1 for the stem, (b,).
+    first
+        First segment of each, and the number of segments at the end, (b + 1,).
+    room
+        Room for fields, of `ROOMS`.
+
+    """
+    records = np.zeros(len(parent), dtype=branch_layout(room))
     root = tree.start[0]
-    base = tree.start[first] - root
-    arm = base - base[np.maximum(records['parent'], 0)]
+    base = tree.start[first[:-1]] - root
+    arm = base - base[np.maximum(parent, 0)]
     square = np.square(arm).sum(axis=1)
+    records['parent'] = parent
+    records['first'] = first[:-1]
+    records['end'] = first[1:]
     records['base'] = base
-    records['tip'] = tree.end[last] - root
+    records['tip'] = tree.end[first[1:] - 1] - root
     records['arm'] = arm
     records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
+    return records

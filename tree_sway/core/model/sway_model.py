@@ -29,8 +29,7 @@ from tree_sway.core.arrays import Floats, Ints, Records, Singles
 from tree_sway.core.checks import GREATEST
 from tree_sway.core.drag import DragLaw
 from tree_sway.core.model.records import (
-    branch_layout,
-    fill_arms,
+    branches_at_rest,
     LOADED,
     N_AZIMUTHS,
     N_HARMONICS,
@@ -374,14 +373,11 @@ class SwayModel:
     @cached_property
     def branches(self) -> Records:
         """Records of the branches, (b,)."""
-        layout = branch_layout(self.branch_twist.shape[1])
-        records: Records = np.zeros(len(self.branch_parent), dtype=layout)
-        records['first'] = self.branch_first[:-1]
-        records['end'] = self.branch_first[1:]
+        room = self.branch_twist.shape[1]
+        records = branches_at_rest(self.tree, self.branch_parent, self.branch_first, room)
         records['n_coordinates'] = self.branch_keys
-        for name in ('parent', 'base_segment', 'coordinate', *PLACED, *LOADED):
+        for name in ('base_segment', 'coordinate', *PLACED, *LOADED):
             records[name] = getattr(self, f'branch_{name}')
-        fill_arms(records, self.tree, self.branch_first[:-1])
         return records
 
     def by_table(self) -> SwayModel:

@@ -21,9 +21,8 @@ if TYPE_CHECKING:
     from tree_sway.core.scene.make import simulator_of as simulator_of
     from tree_sway.core.scene.make import solved as solved
     from tree_sway.core.scene.placed_tree import Kind as Kind
-    from tree_sway.core.scene.placed_tree import LARGEST as LARGEST
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
-    from tree_sway.core.scene.placed_tree import SMALLEST as SMALLEST
+    from tree_sway.core.scene.placed_tree import SCALES as SCALES
     from tree_sway.core.scene.placement_records import own_step as own_step
     from tree_sway.core.scene.run import Run as Run
     from tree_sway.core.scene.scene import Scene as Scene

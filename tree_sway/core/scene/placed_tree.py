@@ -13,13 +13,14 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import number_of, one_of, refuse_other_kind, within
+from tree_sway.core.rotation import about_up
 from tree_sway.core.settings import model_of, Settings
 from tree_sway.core.setup import is_in_leaf
 from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree, tree_and_species
 from tree_sway.errors import inside, ParameterError, TreeError
 
-SMALLEST, LARGEST = 0.2, 5.0
+SCALES = 0.2, 5.0
 """Smallest and largest scale of a placed tree."""
 
 MOST_SEGMENTS = 5_000_000
@@ -85,7 +86,7 @@ class PlacedTree:
         if not all(map(math.isfinite, numbers)):
             what = f'a pose of {pose[:3]} m and {self.yaw} rad'
             raise ParameterError(what, where=self.name, cure='give finite numbers')
-        within(f'{self.name}: scale', self.scale, SMALLEST, LARGEST)
+        within(f'{self.name}: scale', self.scale, *SCALES)
         one_of(f'leaf_on of {self.name}', self.leaf_on, (True, False, None))
         if self.model is not None:
             with inside(self.name):
@@ -106,13 +107,11 @@ class PlacedTree:
     def placed(self) -> Tree:
         """Return the tree in the scene's frame, under its name there."""
         tree = self.tree
-        c = math.cos(self.yaw)
-        s = math.sin(self.yaw)
         root = tree.start[0]
         here = np.array([self.x, self.y, self.z])
         if (self.scale, self.yaw) == (1.0, 0.0) and (root == here).all():
             return replace(tree, name=self.name)
-        turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turn = self.scale * about_up(self.yaw)
 
         def moved(nodes: Floats) -> Floats:
             return np.asarray(here + (nodes - root) @ turn.T)

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model import branch_layout, fill_arms
+from tree_sway.core.model import branches_at_rest
 from tree_sway.core.setup.beams.branch_model import BranchModel
 from tree_sway.core.setup.branch_places import Places
 from tree_sway.core.setup.fitted_load import fill_loads
@@ -23,21 +23,19 @@ def branch_records(
     speed_profile: Floats,
 ) -> Records:
     """
-    Fill the branches for stepping and placing: records of `branch_layout`, (b,).
+    Fill the branches for stepping and placing, records of `Branch`, (b,).
 
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
-    records = np.zeros(tree.n_branches, dtype=branch_layout(places.segment_turn.shape[1]))
+    room = places.segment_turn.shape[1]
+    records = branches_at_rest(tree, places.parent, places.first, room)
     for alike in _of_one_shape(models):
         own = [models[branch] for branch in alike]
         segments = [tree.branch_first[b] + models[b].beam.segment for b in alike]
         fill_loads(own, speed_profile[np.array(segments)], np.array(alike), records)
-    for name in ('parent', 'base_segment', 'coordinate', 'n_coordinates', 'frame', 'offset'):
+    for name in ('base_segment', 'coordinate', 'n_coordinates', 'frame', 'offset'):
         records[name] = getattr(places, name)
-    records['first'] = places.first[:-1]
-    records['end'] = places.first[1:]
     records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
-    fill_arms(records, tree, records['first'])
     return records
 
 

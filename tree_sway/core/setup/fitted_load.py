@@ -92,7 +92,7 @@ def fill_loads(
     rows
         Rows of the branches in the records, (k,).
     records
-        Records of `branch_layout`, written.
+        Records of `Branch`, written.
 
     """
     panels = _panels_of(models)

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.scene import LARGEST, PlacedTree, Scene, SMALLEST
+from tree_sway.core.scene import PlacedTree, SCALES, Scene
 from tree_sway.core.species import Species
 from tree_sway.core.tree import GrownTree, rooted
 from tree_sway.errors import ParameterError, TreeSwayError
@@ -137,10 +137,11 @@ class _Growing:
 def _placed(inventory: Inventory, row: int, kind: GrownTree, key: str, yaw: float) -> PlacedTree:
     height = float(inventory.height[row])
     scale = height / kind.tree.height
-    if not SMALLEST <= scale <= LARGEST:
+    smallest, largest = SCALES
+    if not smallest <= scale <= largest:
         raise ParameterError(
             f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'",
-            cure=f'give {SMALLEST:g} to {LARGEST:g} times',
+            cure=f'give {smallest:g} to {largest:g} times',
         )
     return PlacedTree(
         inventory.names[row],
