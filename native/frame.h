@@ -6,6 +6,7 @@
 
 #include "library.h"
 #include "model.h"
+#include "past_caches.h"
 
 namespace sway {
 
@@ -74,7 +75,7 @@ struct Room {
   // Placing.
   double *keys;   // key rotations (N), and some more that are read with them
   double *bases;  // orientation of the base of each branch and half its key rotation (b, 8)
-  double *poses;  // one tree (n, 7)
+  double *poses[2];  // of a tree (n, 7); the second where writes pass the caches
   double *slots;  // values of the sixteen branches of a block
   // A step; rows of coordinates.
   double *middle, *middle_rate, *change;
@@ -110,8 +111,8 @@ struct Frame {
                        State &state, LimpTree &tree, Room &room, const double wind[3]);
   // Write the key rotations of a state to the room.
   void (*find_keys)(const sway_model &model, const State &state, Room &room);
-  // Place a tree by the key rotations in the room, to (n, 7).
-  void (*place)(const sway_model &model, const Place &place, Room &room, double *poses);
+  // Place a tree by the key rotations in the room, to (n, 7), and write meanwhile what is late.
+  void (*place)(const sway_model &model, const Place &place, Room &room, double *poses, Late &late);
   // Write where the segments of a limp tree are at key rotations, a place of `Limp`, and the
   // directions of the segments unless null.
   void (*find_place)(const sway_model &model, Room &room, const double *keys, double *out,

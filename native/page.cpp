@@ -130,8 +130,9 @@ SWAY_API void page_place(page_placer *placer, const float *coordinates, double x
   for (size_t i = 0; i < count; i++)
     room.keys[count_of(turns[2 * i], model.sizes.keys - 1)] += turns[2 * i + 1];
   const Place place = {__builtin_cos(0.5 * yaw), __builtin_sin(0.5 * yaw), scale, {x, y, z}};
-  frame.place(model, place, room, room.poses);
-  const double *pose = room.poses;
+  Late none = {};
+  frame.place(model, place, room, *room.poses, none);
+  const double *pose = *room.poses;
   for (int64_t i = 0; i < model.sizes.segments; i++, pose += 7, out += 8) {
     for (int axis = 0; axis < 3; axis++) out[axis] = float(pose[axis]);
     out[3] = float(scale);

@@ -277,8 +277,18 @@ INLINE void write_poses(const Block &block, const Slots &slots, int64_t rank, in
       poses[7 * (block.first[slot] + rank) + row] = slots.pose[row][slot];
 }
 
+// Write some lines of the poses of the tree before.
+INLINE void write_late(Late &late, int64_t lines) {
+  if (!PASSES_CACHES || !late.lines) return;
+  if (lines > late.lines) lines = late.lines;
+  late.lines -= lines;
+  for (; lines > 0; lines--, late.from += Late::LINE, late.to += Late::LINE)
+    for (int i = 0; i < Late::LINE; i += LANES) store_past(late.to + i, load(late.from + i));
+}
+
 // Place every segment by the key rotations in the room.
-static void place(const sway_model &model, const Place &where, Room &room, double *poses) {
+static void place(const sway_model &model, const Place &where, Room &room, double *poses,
+                  Late &late) {
   Slots slots(room.slots, model.rows + 4);
   for (int64_t number = 0; number < model.n_blocks; number++) {
     const Block &block = model.blocks[number];
@@ -305,8 +315,10 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
         bend_plain<0>(segment, slots, where.scale, has_blend, bound, count);
       if (!block.is_joined) go_aside(slots.pose, slots.start, where.scale, segment.chord, count);
       write_poses(block, slots, rank, segment.n_slots, poses);
+      write_late(late, segment.n_slots);
     }
   }
+  write_late(late, late.lines);
 }
 
 // Write the key rotations of a state to the room: shapes times what is shown of the coordinates. The

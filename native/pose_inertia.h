@@ -39,9 +39,10 @@ static void find_place(const sway_model &model, Room &room, const double *keys, 
   const int64_t n = model.sizes.segments, each = limp.each;
   const Place at_origin = {1.0, 0.0, 1.0, {0.0, 0.0, 0.0}};
   memcpy(room.keys, keys, model.sizes.keys * sizeof(double));
-  place(model, at_origin, room, room.poses);
+  Late none = {};
+  place(model, at_origin, room, *room.poses, none);
   for (int64_t i = 0; i < n; i++) {
-    const double *pose = room.poses + 7 * i;
+    const double *pose = *room.poses + 7 * i;
     const Quaternion<double> q = {pose[6], pose[3], pose[4], pose[5]};
     const Vector<double> along = axis(q);
     const double directions[] = {along.x, along.y, along.z};

@@ -44,7 +44,8 @@ void open_room(Memory &memory, const sway_model *const *models, size_t n_models,
   }
   memory.take(keys + 64 + KEYS_BEYOND, room.keys);
   memory.take(8 * branches, room.bases);
-  memory.take(7 * segments, room.poses);
+  memory.take(7 * segments, room.poses[0]);
+  if (PASSES_CACHES) memory.take(7 * segments, room.poses[1]);
   memory.take(slots_of(rows + 4), room.slots);
   memory.take(padded, room.middle, room.middle_rate, room.change);
   memory.take(padded, room.turned, room.damped, room.single_rate, room.shown);

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "gusts.h"
-#include "past_caches.h"
 #include "propagate.h"
 #include "text.h"
 #include "threads.h"
@@ -81,6 +80,12 @@ State state_of(const sway_stand &stand, size_t tree) {
           scalars + 5,
           scalars + 6,
           crown};
+}
+
+// Bring the state of a tree near while another one is at work.
+void fetch_state(const sway_stand &stand, size_t tree) {
+  const double *first = stand.states + tree * stand.stride;
+  for (size_t i = 0; i < ROWS * stand.width + SCALARS; i += 8) __builtin_prefetch(first + i);
 }
 
 bool is_tree(const sway_tree &tree, size_t n_models) {
@@ -225,8 +230,12 @@ void step_part(void *work, size_t room, size_t from, size_t count) {
   Steps &steps = *static_cast<Steps *>(work);
   sway_stand *stand = steps.stand;
   int64_t n_clamped = 0, n_restarted = 0;
+  const auto number_of = [&](size_t i) {
+    return steps.is_all ? size_t(stand->order[i] - stand->trees) : steps.first + i;
+  };
   for (size_t i = from; i < from + count; i++) {
-    const size_t number = steps.is_all ? stand->order[i] - stand->trees : steps.first + i;
+    const size_t number = number_of(i);
+    if (i + 1 < from + count) fetch_state(*stand, number_of(i + 1));
     const Tree &tree = stand->trees[number];
     const Kind &kind = stand->kinds[tree.model];
     const sway_model &model = *kind.model;
@@ -265,14 +274,18 @@ void place_part(void *work, size_t room, size_t from, size_t count) {
   const sway_stand *stand = places.stand;
   Room &own = stand->rooms[room];
   const bool is_large = PASSES_CACHES && stand->is_large;
-  for (const int64_t *row = places.rows + 2 * from; row < places.rows + 2 * (from + count);
-       row += 2) {
+  const int64_t *row = places.rows + 2 * from, *end = row + 2 * count;
+  Late late = {};
+  for (int number = 0; row < end; row += 2, number ^= 1) {
     const Tree &tree = stand->trees[row[0]];
     const sway_model &model = *stand->kinds[tree.model].model;
     stand->frame->find_keys(model, state_of(*stand, row[0]), own);
     double *out = places.poses + 7 * row[1];
-    stand->frame->place(model, tree.place, own, is_large ? own.poses : out);
-    if (is_large) write_past_caches(own.poses, 7 * model.sizes.segments, out);
+    // The last is written where it goes, as none is placed after it.
+    const bool is_late = is_large && row + 2 < end;
+    if (is_late) fetch_state(*stand, row[2]);
+    stand->frame->place(model, tree.place, own, is_late ? own.poses[number] : out, late);
+    if (is_late) late.begin(own.poses[number], 7 * model.sizes.segments, out);
   }
   if (is_large) end_of_writes();
 }
@@ -393,6 +406,7 @@ void sway_place_keys(sway_stand *stand, size_t room, size_t tree, const double *
   const Tree &own = stand->trees[tree];
   const sway_model &model = *stand->kinds[own.model].model;
   memcpy(stand->rooms[room].keys, keys, model.sizes.keys * sizeof(double));
-  stand->frame->place(model, own.place, stand->rooms[room], poses);
+  Late none = {};
+  stand->frame->place(model, own.place, stand->rooms[room], poses, none);
 }
 }

@@ -175,22 +175,24 @@ def test_threads_sleep_between_calls_and_end_with_the_stand(model):
     assert n_threads() == before
 
 
-def test_a_stand_beyond_the_caches_is_placed_as_each_of_its_trees(model):
-    segments = model.tree.n_segments
-    count = 100_000 // segments + 1
-    stand, rows, _ = forest_of([model], count)
+def test_a_stand_beyond_the_caches_is_placed_as_each_of_its_trees(model, hanging):
+    sizes = [each.tree.n_segments for each in (model, hanging)]
+    count = 200_000 // sum(sizes) + 2
+    stand, rows, n_poses = forest_of([model, hanging], count)
     rng = np.random.default_rng(2)
     for _ in range(3):
         assert stand.step(rng.normal(0.0, 5.0, (count, 3))) == (0, 0)
-    keys, expected = np.zeros(stand.models[0].sizes.keys), np.zeros((segments, 7))
     for first in (0, 1):  # poses begin at any number of a line
-        poses = np.zeros((count * segments + 1, 7))[first:]
+        poses = np.zeros((n_poses + 1, 7))[first:]
         stand.place(rows, poses)
-        for tree in range(0, count, 997):
+        for tree in [*range(0, count, 97), count - 1]:
+            kind = tree % 2
+            keys = np.zeros(stand.models[kind].sizes.keys)
+            expected = np.zeros((sizes[kind], 7))
             stand.keys(tree, keys)
             stand.place_keys(tree, keys, expected)
-            assert np.array_equal(poses[rows[tree, 1] :][:segments], expected)
-        assert not poses[count * segments :].any()
+            assert np.array_equal(poses[rows[tree, 1] :][: sizes[kind]], expected)
+        assert not poses[n_poses:].any()
 
 
 AT_EXIT = """

@@ -120,7 +120,7 @@ class GustHistory:
         self._step_wind[:] = x, y, z
         follow_mean(self._mean, x, y, dt, self._averaging)
         east, north, _ = self._mean.tolist()
-        self._wanted = _delays(self._along, east, north, self.convection_ratio)
+        self._wanted[:] = _delays(self._along, east, north, self.convection_ratio)
         if self.anemometer is None:
             self._first[0] = self._wanted.min()
             self._wanted -= self._first[0]

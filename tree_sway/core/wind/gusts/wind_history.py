@@ -9,10 +9,13 @@ over any span is then the difference of two runs over the span.
 
 from __future__ import annotations
 
+import ctypes
+from functools import partial
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.native import address, LastAddress, LIBRARY
+from tree_sway.core.native import address, LIBRARY
 
 
 class WindHistory:
@@ -38,7 +41,8 @@ class WindHistory:
         # longest delay and the steps at its ends.
         self._finest = 2.0 * longest / (capacity - 4)
         self._memory_at = address(self._memory)
-        self._given_at = tuple(LastAddress() for _ in range(4))
+        self._given: tuple[Floats, ...] = (self._memory,) * 4
+        self._dt = ctypes.c_double()
 
     def add(self, wind: Floats, dt: float, wanted: Floats, delay: Floats, out: Floats) -> None:
         """
@@ -46,19 +50,21 @@ class WindHistory:
 
         Delays (t,) [s] move towards those wanted, (t,); the past wind of each is written, (t, 3).
         """
-        wanted_at, delay_at, wind_at, out_at = self._given_at
-        LIBRARY.sway_past_winds(
-            self._memory_at,
-            len(self._run),
-            self._finest,
-            wanted_at.of(wanted),
-            delay_at.of(delay),
-            len(delay),
-            self._longest,
-            wind_at.of(wind),
-            dt,
-            out_at.of(out),
-        )
+        last = self._given
+        if not (wind is last[0] and wanted is last[1] and delay is last[2] and out is last[3]):
+            self._take(wind, wanted, delay, out)
+        self._dt.value = dt
+        self._add()
+
+    def _take(self, *given: Floats) -> None:
+        """Make the arguments of `add`, which takes longer than the call."""
+        wind_at, wanted_at, delay_at, out_at = (ctypes.c_void_p(address(each)) for each in given)
+        memory_at, size = ctypes.c_void_p(self._memory_at), ctypes.c_size_t(len(self._run))
+        finest, longest = ctypes.c_double(self._finest), ctypes.c_double(self._longest)
+        delays = wanted_at, delay_at, ctypes.c_size_t(len(given[2])), longest
+        past = memory_at, size, finest, *delays, wind_at, self._dt, out_at
+        self._add = partial(LIBRARY.sway_past_winds, *past)
+        self._given = given
 
     @property
     def count(self) -> int:
