@@ -220,7 +220,7 @@ def _years(rate: float) -> float:
 def _falling(rates: Sequence[Floats]) -> float:
     """Share of trees that falls in `_LIFE` years [%], to two digits, by rates of its limits."""
     falling = -np.expm1(-_LIFE * np.sum(rates, axis=0))
-    return float(f'{100.0 * float(falling.mean()):.2g}')
+    return round(float(f'{100.0 * float(falling.mean()):.2g}'), 2)
 
 
 def _winds(

@@ -22,6 +22,7 @@ blended with those of vertical winds.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,7 +45,7 @@ _BEYOND = 1.1
 """Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
 _AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
-_ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
+_ELEVATIONS = np.deg2rad([0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
 _MOST_ENERGY = 1.5
@@ -60,15 +61,18 @@ some three on, and the equilibria of storms depend on smaller ones.
 _N_CALM = int(np.searchsorted(SPEEDS, _STORM))
 """Number of `SPEEDS` below a storm."""
 
+LoadsOfWinds = Callable[[Floats], Floats]
+"""Loads (k, m) of winds (k, 3) at 1 kg/m^3."""
+
 _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
 
 
 def load_table(
-    coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw
+    coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw, at_rest: LoadsOfWinds
 ) -> dict[str, Any]:
-    """Find the arrays and numbers of the table of a `SwayModel`."""
-    found = _WindTable(coordinates, wind_moments, drag_law).arrays
+    """Find the arrays and numbers of the table of a `SwayModel`; ``at_rest``: `rest_loads`."""
+    found = _WindTable(coordinates, wind_moments, drag_law, at_rest).arrays
     return {
         name: each if np.ndim(each) == 0 else np.ascontiguousarray(each, dtype=TYPES[name])
         for name, each in found.items()
@@ -119,6 +123,8 @@ class _WindTable:
         Loads of the tree.
     drag_law
         C and N of the species.
+    at_rest
+        Loads on the coordinates of the tree at rest.
 
     Attributes
     ----------
@@ -127,7 +133,13 @@ class _WindTable:
 
     """
 
-    def __init__(self, bank: Coordinates, wind_moments: WindMoments, drag_law: DragLaw) -> None:
+    def __init__(
+        self,
+        bank: Coordinates,
+        wind_moments: WindMoments,
+        drag_law: DragLaw,
+        at_rest: LoadsOfWinds,
+    ) -> None:
         """Find the loads of the tree in all winds."""
         self._shapes = bank.shapes
         self._moments = wind_moments
@@ -144,7 +156,7 @@ class _WindTable:
         each = 2 if wind_moments.n_branches <= _LARGE else 3
         self._azimuths = _AZIMUTHS[::each]
         table['motion'] = bank.mean_square_motion
-        table['harmonics'], table['limit'] = fit_harmonics(wind_moments, bank.shapes)
+        table['harmonics'], table['limit'] = fit_harmonics(at_rest)
         self._fill_standing(table)
         self._fill_aslant(table)
         table['most_pressure'] = float(_BEYOND * self._pressures[-1])
@@ -290,9 +302,9 @@ class _WindTable:
         table['steep_damping'] = np.array([steep, steep])
 
 
-def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]:
+def fit_harmonics(at_rest: LoadsOfWinds) -> tuple[Floats, Floats]:
     """
-    Fit the load on shapes (N, m) at rest in all winds, horizontal ones with most weight.
+    Fit the load at rest in all winds, horizontal ones with most weight.
 
     Returns harmonics, (h, m), and the largest loads, (m,), both at 1 kg/m/s^2.
     """
@@ -300,10 +312,11 @@ def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]
     azimuth = np.tile(_AZIMUTHS, len(_ELEVATIONS))
     directions = direction(azimuth, elevation)
     likeliness = np.exp(-0.5 * (elevation / _ELEVATION_SPREAD) ** 2) + 0.02
+    likeliness[elevation > 0.0] *= 2.0  # the opposite wind has the opposite load
     solid_angle = np.maximum(np.cos(elevation), 1.0 / N_AZIMUTHS)
     weight = np.sqrt(likeliness)
     weight *= np.sqrt(solid_angle)
-    loads = moments.at_rest(directions, shapes)
+    loads = at_rest(directions)
     values = harmonics_at(directions) * weight[:, None]
     weighted = loads * weight[:, None]
     fitted = np.linalg.lstsq(values, weighted, rcond=None)[0]

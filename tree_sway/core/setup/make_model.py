@@ -10,6 +10,7 @@ load of all uniform winds on them a table (`load_table`).
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from tree_sway.core.setup.modal_arrays import Coordinates, modal_arrays
 from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.reduced_tree import ReducedTree
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.rest_loads import rest_loads
 from tree_sway.core.setup.stream_basis import (
     arrays_of_stream,
     basis_of_responses,
@@ -33,7 +35,6 @@ from tree_sway.core.setup.stream_basis import (
 )
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
 from tree_sway.core.setup.threads import one_thread
-from tree_sway.core.setup.wind_moments import WindMoments
 from tree_sway.core.wind.gusts import delays_of, N_DELAYS, parts_of
 
 
@@ -66,7 +67,12 @@ def _coupled_tree(reductions: TreeReductions) -> SwayModel:
     )
     table: dict[str, Any] = {}
     if isinstance(settings.model, int) and modes.circular.size:
-        table = load_table(coordinates, reductions.wind_moments, reductions.drag_law)
+        table = load_table(
+            coordinates,
+            reductions.wind_moments,
+            reductions.drag_law,
+            partial(rest_loads, reduced, shapes, None),
+        )
     order = np.argsort(reduced.branches['first'])
     return SwayModel(
         **_whole(reductions, reduced),
@@ -211,10 +217,10 @@ def _limbs(
         'limb_share': delays.share,
     }
     if shapes is not None:
-        loads = []
-        for delay in range(N_DELAYS):
-            limbs = reduced.branches.copy()
-            limbs['area'][of_piece != delay] = 0.0
-            loads.append(fit_harmonics(WindMoments(limbs), shapes)[0])
-        found['limb_harmonics'] = np.array(loads)
+        found['limb_harmonics'] = np.array(
+            [
+                fit_harmonics(partial(rest_loads, reduced, shapes, of_piece == delay))[0]
+                for delay in range(N_DELAYS)
+            ]
+        )
     return found

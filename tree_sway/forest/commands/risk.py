@@ -35,7 +35,7 @@ _LEFT_OUT = (
     'it is no verdict on a tree'
 )
 _ERRS = (
-    'it errs early: in eight storms 1.1 to 2.4 times as many trees fall here as were counted, '
+    'it errs early: in eight storms 1.2 to 2.6 times as many trees fall here as were counted, '
     'rotten ones among them'
 )
 _NAMED = 40
