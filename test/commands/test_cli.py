@@ -63,7 +63,7 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
         (
             ['calibrate', 'benjamina', '--at', '3'],
-            'unrecognized arguments: --at 3; see tree-sway calibrate --help',
+            'unrecognized arguments: --at 3; example: tree-sway calibrate goldcrest',
         ),
         (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
         (['convert', 'benjamina'], '--output: no file to write; name it last'),
@@ -71,7 +71,10 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
             ['calibrate', 'benjamina', '--frequency', '3'],
             '--output: no file to write; name it last',
         ),
-        (['convert', 'benjamina', 'a.yaml', 'b.yaml'], 'unrecognized arguments: a.yaml b.yaml'),
+        (
+            ['convert', 'benjamina', 'a.yaml', 'b.yaml'],
+            'unrecognized arguments: a.yaml b.yaml; example: tree-sway convert goldcrest -o',
+        ),
         (
             ['simulate', 'benjamina', '--seconds', '12m'],
             "--seconds: '12m' is no number; give it in s, with a point",

@@ -51,6 +51,8 @@ class _OneLineParser(argparse.ArgumentParser):
         elif wrong := _NO_NUMBER.search(message):
             message = f"argument {wrong[1]}: '{wrong[2]}' is no number"
             guess = f'give it {self._unit_of(wrong[1])}with a point, as 12 or 0.45'
+        if not guess and message.startswith('unrecognized') and self.chosen:
+            guess = str(self.chosen.epilog)
         where = (self.chosen or self).prog
         text = '; '.join(filter(None, (message, guess, f'see {where} --help')))
         print(f'{where}: {text}', file=sys.stderr)

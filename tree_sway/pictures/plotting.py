@@ -32,6 +32,19 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def checked_picture(path: str | Path) -> Path:
+    """Return the path of a picture; a `FormatError` for a suffix of none."""
+    target = Path(path)
+    known = new_figure(1.0, 1.0).canvas.get_supported_filetypes()
+    if target.suffix[1:].lower() not in known:
+        raise FormatError(
+            f"'{target.suffix}' is no picture format",
+            where=str(target),
+            cure=f'end the name with one of: {", ".join("." + k for k in sorted(known))}',
+        )
+    return target
+
+
 def save_figure(
     figure: Figure,
     path: str | Path,
@@ -45,14 +58,7 @@ def save_figure(
     its numbers is recognised. Raises a `FormatError` for an unknown format, or a file that cannot
     be written.
     """
-    target = Path(path)
-    known = figure.canvas.get_supported_filetypes()
-    if target.suffix[1:].lower() not in known:
-        raise FormatError(
-            f"'{target.suffix}' is no picture format",
-            where=str(target),
-            cure=f'end the name with one of: {", ".join("." + k for k in sorted(known))}',
-        )
+    target = checked_picture(path)
     with whole_file(target) as partial:
         figure.savefig(
             partial,

@@ -73,12 +73,13 @@ def test_plot_refuses_a_wind_too_short_to_draw(
     assert 'wind.csv: the wind is too short' in capsys.readouterr().err
 
 
-def test_plot_refuses_a_format_it_cannot_draw(
+@pytest.mark.parametrize('tree', [SEEDLING, 'nothing.yaml'])
+def test_plot_refuses_a_format_it_cannot_draw_before_all_else(
     tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str],
-    installed: Callable[..., None],
+    installed: Callable[..., None], tree: str,
 ) -> None:  # fmt: skip
     installed('plot')
-    arguments = ['plot', SEEDLING, '--wind', str(wind_file), '-o', str(tmp_path / 'x.doc')]
+    arguments = ['plot', tree, '--wind', str(wind_file), '-o', str(tmp_path / 'x.doc')]
     assert cli.main(arguments) == 2
     assert "'.doc' is no picture format" in capsys.readouterr().err
 

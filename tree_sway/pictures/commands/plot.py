@@ -32,7 +32,7 @@ from tree_sway.files.commands import (
     simulated_speed,
 )
 from tree_sway.parameters import SWAY
-from tree_sway.pictures import figure_in_wind, save_figure
+from tree_sway.pictures import checked_picture, figure_in_wind, save_figure
 from tree_sway.pictures.plots import (
     strength_over_wind,
     STUDY_COLUMNS,
@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         drawing = '--strength' if arguments.strength else '--portrait'
         cure = f'give --speed, or leave {drawing} out'
         raise ParameterError(f'{drawing} draws no recording', where='--wind', cure=cure)
-    output = output_path(arguments)
+    output = checked_picture(output_path(arguments))
     if rows := _rows_of_study(arguments.tree):
         try:
             figure = study_over_wind(rows)

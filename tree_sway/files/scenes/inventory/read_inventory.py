@@ -107,10 +107,9 @@ def inventory_of(
     if not needs_place:
         missing = [each for each in missing if 'place' not in each]
     if missing:
-        what = why_missing(table) or 'no column of an inventory'
-        raise table.error(
-            what, cure='name them so in the header, if it is an inventory (doc/trees.md)'
-        )
+        cure = 'give a row for each tree, with place, species, and height or dbh'
+        cure = f'name them so in the header, if it is an inventory: {cure} (doc/trees.md)'
+        raise table.error(why_missing(table) or 'no column of an inventory', cure=cure)
     columns = InventoryColumns(table)
     found = places_of(columns)
     zero = np.zeros(columns.n_rows)
