@@ -74,6 +74,7 @@ def test_every_topic_may_be_said_by_somebody():
     assert {topic.name for topic in TOPICS} - allowed == {
         'camera',
         'imu',
+        'image',
         '~/push',
         '~/pull',
         '~/wind_at',

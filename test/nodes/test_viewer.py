@@ -14,6 +14,8 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
+from rclpy.serialization import deserialize_message  # noqa: E402
+
 from tree_sway.page.page_settings import PageSettings  # noqa: E402
 import tree_sway.page.server as server_module  # noqa: E402
 from tree_sway.page.server import PageServer  # noqa: E402
@@ -33,7 +35,13 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     TREE_STATE,
     WIND,
 )
-from tree_sway_ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
+from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
+from tree_sway_ros.wire.tree_state import (  # noqa: E402
+    ModalState,
+    read_state,
+    read_state_entry,
+    StateWriter,
+)
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 DEADLINE = 60.0
@@ -231,6 +239,25 @@ def test_a_second_system_in_the_domain_is_told_and_not_mixed_in(
         observer.until(lambda: page.description.short_identity != shown, 'the other tree')
         page.wait(DEADLINE, frames=page.received + 5)
         second.check()
+
+
+def test_states_that_are_not_of_the_tree_are_refused_and_told(compose, tree_file):
+    """As of a second system that the graph does not show yet, or of a new model."""
+    nodes = compose(solver={'tree': tree_file, 'model': '5'}, viewer=QUIET)
+    viewer = nodes['viewer']
+    with StreamClient(viewer.server.url) as page:
+        page.wait(DEADLINE)
+        for numbers, why in (
+            ([0.0] * 3, '3 coordinates of a tree with 5'),
+            ([np.nan] * 5, 'not finite'),
+        ):
+            sent = StateWriter(len(numbers)).to_bytes(ModalState(0, np.zeros(3), 0, numbers))
+            viewer._receive(deserialize_message(sent, message_class(TREE_STATE)), {})
+            (status,) = viewer._refusals.statuses()
+            assert status.level == WARN
+            assert why in status.message
+    assert status.values == {'refused': 2}
+    nodes.check()
 
 
 def test_who_may_set_nothing_may_not_pull(compose):

@@ -45,3 +45,21 @@ def test_a_forked_process_has_a_thread_of_its_own() -> None:
         threading.Timer(60.0, os._exit, [1]).start()
         os._exit(LaterWork(lambda: 0, 1).advance() or 0)
     assert os.waitpid(child, 0)[1] == 0
+
+
+@pytest.mark.skipif(not hasattr(os, 'fork'), reason='no processes by fork')
+@pytest.mark.filterwarnings('ignore:.*fork:DeprecationWarning')
+def test_a_forked_process_finds_what_its_parent_had_begun() -> None:
+    asked, parent = threading.Event(), os.getpid()
+
+    def find() -> int:
+        assert os.getpid() != parent or asked.wait(60.0)
+        return 7
+
+    work = LaterWork(find, 1)
+    if not (child := os.fork()):
+        threading.Timer(30.0, os._exit, [1]).start()
+        os._exit(work.advance() or 0)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+    asked.set()
+    assert work.advance() == 7

@@ -35,6 +35,14 @@ def _date_and_digits(parts: Sequence[str]) -> str:
     return f'{parts[0]} {clock[:-2]}:{clock[-2:]}'
 
 
+def _day_of_year(parts: Sequence[str]) -> str:
+    year, day, clock = parts
+    if not (year.isdigit() and day.isdigit()):
+        return ''
+    date = datetime(int(year), 1, 1) + timedelta(days=int(day) - 1)
+    return _date_and_digits((date.date().isoformat(), clock))
+
+
 def _date_and_clock(parts: Sequence[str]) -> str:
     year, month, day, clock = parts
     return f'{year}-{month}-{day} {clock}'
@@ -54,6 +62,7 @@ _JOINS: dict[str, Join] = {
     'date, digits': _date_and_digits,
     'date, time': _date_and_time,
     'year, month, day, time': _date_and_clock,
+    'year, day, digits': _day_of_year,
 }
 PARTS = tuple((tuple(names.split()), _JOINS[join]) for names, join in TIME_PARTS.items())
 """Columns that make a time together, and how."""

@@ -243,7 +243,7 @@ def split_row(line: str, separator: str) -> Sequence[str]:
 
 def separator_of(header: str) -> str:
     """Return the sign between the cells of a header, the one that it has most; else a space."""
-    found = max(SEPARATORS, key=header.count)
+    found = '\t' if header.count('\t') > 1 else max(SEPARATORS, key=header.count)
     return found if found in header or not _WORDS.fullmatch(header.strip()) else ' '
 
 
@@ -308,11 +308,12 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
     separator = separator_of(header)
-    filled = list(filter(None, split_row(header, separator)))
+    cells = split_row(header, separator)
+    filled = list(filter(None, cells if len(cells) > 1 else header.split()))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
     if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):
         raise FormatError(
-            f"no header: the first line, '{header[:40]}', has no names",
+            f"no header: the first line, '{header[:40].strip()}', has no names",
             where=f'{source}:{numbers[0]}',
             cure=_NAME,
         )

@@ -32,6 +32,7 @@ from tree_sway.page.wind_ahead import wind_ahead
 from tree_sway.simulation import blow, RecordedWind, SimulatedWind, WindSource
 from tree_sway.stream import Refused, SceneState, Value
 from tree_sway.twin import ObservedTree, sensor_reports
+from tree_sway.twin.camera import FilmedTree
 
 _LOGGER = logging.getLogger('tree_sway.page')
 RATE = 60.0
@@ -268,7 +269,7 @@ class Session:
             status['record_time'] = self.wind.time(self._now)
         if isinstance(self.wind, (RecordedWind, SimulatedWind)):
             status['wind_ahead'] = wind_ahead(self.wind, self._now)
-        if self._motion.sensors:
+        if self._motion.sensors or self._motion.film:
             status['motion'] = self._motion_status(simulator)
         return status
 
@@ -289,10 +290,23 @@ class Session:
             }
             for each in sensor_reports(simulator)
         ]
-        told: dict[str, object] = {
-            'sensors': sensors,
-            'explained': round(simulator.explained, 3),
-        }
+        film = self._motion.film
+        if film is not None and isinstance(simulator, FilmedTree):
+            said, sees = simulator.said, simulator.sees
+            sensors.append(
+                {
+                    'name': film.name,
+                    'in_use': sees,
+                    'problem': film.problem or ('' if sees else said),
+                    'residual': round(simulator.error, 2),
+                    'rate': round(film.rate, 1),
+                    'refused': simulator.refused,
+                    'notes': [said],
+                }
+            )
+        told: dict[str, object] = {'sensors': sensors}
+        if simulator.sensors:
+            told['explained'] = round(simulator.explained, 3)
         if changes := simulator.sway_changes:
             first = max(changes, key=lambda each: each.size)
             change: dict[str, object] = {

@@ -4,17 +4,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from tree_sway.core.scene import Scene
 from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
-from tree_sway.twin.camera import Camera, FilmedTree
 from tree_sway.twin.observed_tree import ObservedTree
 
 
 def observed_scene(
-    scene: Scene, settings: Settings, camera: Camera | None = None, **sensors: Any
+    scene: Scene,
+    settings: Settings,
+    kind: Callable[..., ObservedTree] = ObservedTree,
+    **sensors: Any,
 ) -> ObservedTree:
     """
     Make the simulator of the one tree of a scene with motion sensors on the real one.
@@ -23,10 +26,10 @@ def observed_scene(
     ----------
     scene, settings
         The scene, and settings as for `Scene.simulator`.
-    camera
-        Camera that films the real tree, if there is one.
+    kind
+        What makes it: `ObservedTree`, or `FilmedTree` where a camera films the real tree.
     **sensors
-        ``at``, ``rate`` and other arguments of `ObservedTree`.
+        ``at``, ``rate`` and other arguments of that.
 
     Raises
     ------
@@ -38,7 +41,4 @@ def observed_scene(
         what = f'motion sensors on a scene of {len(scene.trees)} trees'
         raise ParameterError(what, where=scene.name, cure='open the tree that they are on')
     one = scene.trees[0]
-    where = scene.settings_of(0, settings)
-    if camera is not None:
-        return FilmedTree(one.placed(), one.species, where, camera=camera, **sensors)
-    return ObservedTree(one.placed(), one.species, where, **sensors)
+    return kind(one.placed(), one.species, scene.settings_of(0, settings), **sensors)

@@ -3,6 +3,6 @@
 """
 Motion sensors of the solver: an annex, which the node finds by its entry point.
 
-Without this folder the solver has no parameters `imu`, `learn` and `history`, and sways by the
-wind alone.
+Without this folder the solver has no parameters `imu`, `camera`, `learn` and
+`history`, and sways by the wind alone.
 """

@@ -6,21 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
-import time
 from typing import Any
 
 from tree_sway.core.scene import Run
 from tree_sway.errors import ParameterError
 from tree_sway.twin import ObservedTree, sensor_reports
+from tree_sway_ros.motion.followed_topic import FollowedTopic
 from tree_sway_ros.process.topics import IMU, refuse_topic_name
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
-from tree_sway_ros.reports.one_publisher import OnePublisher
-from tree_sway_ros.solver import SolverAnnex, UNHEARD
+from tree_sway_ros.solver import SolverAnnex
 from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
-
-_APART = 5_000_000_000
-"""Largest difference of a stamp from the node's clock in [ns]."""
 
 _TYPE = 'sensor_msgs/Imu'
 
@@ -56,10 +51,10 @@ class ImuIntake(SolverAnnex):
         """Subscribe to each sensor."""
         self._run = run
         self._arrived = arrived
-        self._clocks_apart: dict[str, tuple[int, float]] = {}
-        self._newest: dict[str, int] = {}
         self._band: dict[str, float] = {}
-        self._followed = {topic: OnePublisher() for topic in self.twin.sensors}
+        self._followed = {
+            topic: FollowedTopic(self.node, topic, _TYPE) for topic in self.twin.sensors
+        }
         for topic in self.twin.sensors:
             self.node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
@@ -68,21 +63,16 @@ class ImuIntake(SolverAnnex):
         self.twin.set_time(felt)
 
     def _callback_of(self, topic: str) -> Any:
-        publishers = partial(self.node.count_publishers, topic)
+        followed = self._followed[topic]
 
         def receive(message: Any, info: Mapping[str, object]) -> None:
-            if not self._followed[topic].admits(info, publishers, time.monotonic()):
-                return
             sample = motion_from_message(message)
-            now = int(self.node.get_clock().now().nanoseconds)
-            stamp = sample.stamp or now
-            limits = self.node.stamp_limits
-            if not -_APART - limits['lag'] <= stamp - now <= _APART + limits['lead']:
-                count, _ = self._clocks_apart.get(topic, (0, 0.0))
-                self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
+            stamp = followed.admitted(sample.stamp, info)
+            if stamp is None:
                 return
+            now = int(self.node.get_clock().now().nanoseconds)
             self._run.request(lambda: self._offer(topic, stamp, sample, now))
-            self._newest[topic] = stamp
+            followed.newest = stamp
             self._arrived()
 
         return receive
@@ -91,10 +81,9 @@ class ImuIntake(SolverAnnex):
         """Tell which sensors have not yet sent what a step reads of them."""
         # A step averages the samples within half a period about its time.
         read = end - round(1e9 * self._run.behind(delay)) + self._run.period // 2
-        for topic in self.twin.sensors:
-            newest = self._newest.get(topic, UNHEARD)
-            if newest <= read and (newest != UNHEARD or self.node.count_publishers(topic)):
-                yield topic, newest
+        for topic, followed in self._followed.items():
+            if followed.lacks(read):
+                yield topic, followed.newest
 
     def _offer(self, topic: str, stamp: int, sample: ImuSample, now: int) -> None:
         """Offer a sample, in the thread of the steps."""
@@ -137,16 +126,15 @@ class ImuIntake(SolverAnnex):
         for each in sensor_reports(self.twin):
             problem = each.problem
             counts = each.counts
-            others = self._followed[each.name].refused
-            apart, by = self._clocks_apart.get(each.name, (0, 0.0))
+            followed = self._followed[each.name]
             values = {
                 'place': self.twin.at[each.name],
                 'rate [Hz]': round(each.rate, 1),
                 'residual over its expected size': round(each.residual, 2),
                 'accepted': counts.accepted,
                 'refused': counts.refused,
-                'refused for their stamps': apart,
-                'of other publishers, refused': others,
+                'refused for their stamps': followed.apart,
+                'of other publishers, refused': followed.of_others,
                 'silent': counts.silent,
                 'disagreed': counts.disagreed,
                 'late [s]': round(each.late, 4),
@@ -154,9 +142,8 @@ class ImuIntake(SolverAnnex):
                 **self._band,
                 **self._learned_values(),
             }
-            if apart and not counts.accepted:
-                problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
-                problem += 'synchronise the clocks (chrony, or that of micro-ROS)'
+            if not counts.accepted:
+                problem = followed.clock_problem or problem
             said = ['the tree follows it', *each.notes]
             has_changed = False
             if each.change is not None:
@@ -165,7 +152,7 @@ class ImuIntake(SolverAnnex):
                 values['frequencies over those before'] = round(each.change.ratio, 3)
                 values['their error by chance and wind'] = round(each.change.error, 3)
             faults = [problem] if problem else []
-            faults += self._followed[each.name].faults(self.node.publishers_of(each.name, _TYPE))
+            faults += followed.faults()
             level = WARN if faults or has_changed else OK
             text = '; '.join([*([] if problem else said), *faults])
             found.append(Status(f'imu {each.name}', level, text, values))

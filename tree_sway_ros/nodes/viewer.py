@@ -39,6 +39,7 @@ from tree_sway_ros.process.topics import (
 )
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.one_publisher import OnePublisher
+from tree_sway_ros.reports.refusals import Refusals
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 
 USUAL_OR_FREE = -1
@@ -76,6 +77,7 @@ class ViewerNode(TreeSwayNode):
         self._description: Description | None = None
         self._described = ''
         self._followed = OnePublisher()
+        self._refusals = Refusals(['states'])
         self._held: Any = None
         self._sequence = 0
         self._subscription: Any = None
@@ -182,20 +184,27 @@ class ViewerNode(TreeSwayNode):
         server = self.server
         if description is None or server is None:
             return
-        stamp, wind, flags, coordinates = read_state(message)
+        try:
+            stamp, wind, flags, coordinates = read_state(message)
+        except FormatError as error:
+            self._refusals.note('states', str(error))
+            return
         count = len(description.scale)
-        is_other = len(coordinates) < count or (len(coordinates) - count) % 2 > 0
-        if is_other and len(self._solvers) > 1:
-            self._followed.refused += 1
+        if len(coordinates) < count or (len(coordinates) - count) % 2 > 0:
+            self._refuse_another(len(coordinates), count)
             return
         if not self._followed.admits(info, lambda: len(self._solvers), time.monotonic()):
             return
-        if is_other:
-            what = f'{len(coordinates)} coordinates of a tree with {count}'
-            raise FormatError(what, where='tree_state')
         frame = encode_state(description, self._sequence, stamp, wind, coordinates, flags)
         self._sequence += 1
         server.publish(frame)
+
+    def _refuse_another(self, sent: int, count: int) -> None:
+        """Count a state that is of another tree, by its numbers of coordinates."""
+        if len(self._solvers) > 1:
+            self._followed.refused += 1
+        else:
+            self._refusals.note('states', f'{sent} coordinates of a tree with {count}')
 
     def _statuses(self) -> list[Status]:
         n_pages = 0 if self.server is None else self.server.n_clients
@@ -209,11 +218,12 @@ class ViewerNode(TreeSwayNode):
         }
         text = f'{n_pages} pages'
         solvers = self._solvers
+        refusals = self._refusals.statuses()
         if len(solvers) < 2:
-            return [Status('page', OK, text, values)]
+            return [Status('page', OK, text, values), *refusals]
         mixed = f'{len(solvers)} solvers in this domain: {", ".join(solvers)}'
         cure = 'one is shown; give each system a ROS_DOMAIN_ID or a namespace'
-        return [Status('page', WARN, f'{text}; {mixed}: {cure}', values)]
+        return [Status('page', WARN, f'{text}; {mixed}: {cure}', values), *refusals]
 
     def _apply(self, name: str, value: Any) -> None:
         """Forward a viewer's change to its node; a refusal arrives later."""

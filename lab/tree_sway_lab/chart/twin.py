@@ -109,7 +109,7 @@ def four_motions() -> Motions:
     film = [tree.rest_poses.astype(np.float32), *poses[every - 1 :: every]]
     truth = FilmedTruth(winds, np.empty((0, 0, 3)), np.array(film))
     filmed = FilmedTree(tree, species, camera=found.camera, **apart)
-    seen, _ = followed(tree, truth, camera, found.camera, rng, only_points=False)
+    seen, _ = followed(tree, truth, camera, found, rng, only_points=False)
     for picture in seen:
         filmed.film(*picture)
     models = _shown(alone, winds), _played(twin, winds), _shown(filmed, winds)

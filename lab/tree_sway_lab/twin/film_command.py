@@ -6,12 +6,20 @@
 The true tree is that of `gusty_truth`, drawn by the seed, in a field of gusts; its film has
 clouds, a shadow, fluttering leaves, a bird, noise and a fifth of the points lost for seconds at a
 time. The camera is set up by five clicks on the stem and four on limbs, each off by some pixels, a
-bearing off by some degrees and a distance off by some percent. Of each tree there is a row for the
-tree at rest (``still``), the model in the mast's wind (``model``), the camera alone (``camera``)
-and the camera with the mast's wind (``with wind``): the error of all tips in space
-about their means over their motion, that of the means over the lean, that of the tip of the stem,
-the roughness, the time of a picture's step without and that of following its points, in
-milliseconds, and how far the tree moves in the picture, root mean square in pixels.
+bearing off by some degrees and a distance off by some percent. Of each tree there is a row for
+
+- ``still``: the tree at rest,
+- ``model`` and ``expected``: the model in the mast's wind, and in the wind expected at the crown,
+- ``camera``: the camera alone,
+- ``with wind``: with the mast's wind too, whose distance and bearing are told,
+- ``IMU``: one motion sensor on the stem, at 0.6 of its length, with that wind,
+- ``with IMU``: that sensor, the camera and that wind.
+
+Of each are told the error of all tips in space about their means over their motion, that of the
+means over the lean, that of the tip of the stem, the roughness, the time of a picture's step
+without and that of following its points, in milliseconds, and how far the tree moves in the
+picture, root mean square in pixels. They are scored from ``--settled`` on; a motion sensor takes
+half a minute and more to be found.
 
 ``--points`` draws no pictures: points are projected, and disturbed as a tracker's would be.
 ``-o`` writes the film, the wind of the mast and the clicks as files, for ``tree-sway simulate``.
@@ -23,10 +31,12 @@ import argparse
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
+import sys
 import time
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tree_sway.commands import Ending
 from tree_sway.core.arrays import Floats
@@ -36,17 +46,23 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.extras import refuse_missing
 from tree_sway.files.export import write_tree
-from tree_sway.live import Film, PointTracker
-from tree_sway.twin.camera import Camera, drawn_wood, FilmedTree
+from tree_sway.live import CameraView
+from tree_sway.twin.camera import Camera, FilmedTree
 from tree_sway_lab.twin.film_pictures import pictures, write_film
 from tree_sway_lab.twin.film_points import followed_points
-from tree_sway_lab.twin.film_truth import camera_before, filmed_truth, FilmedTruth, FRAMES, set_up
-from tree_sway_lab.twin.gusty_truth import kinds_of, Outside
-from tree_sway_lab.twin.true_tree import DT, tree_called
+from tree_sway_lab.twin.film_truth import (
+    camera_before,
+    filmed_truth,
+    FilmedTruth,
+    FRAMES,
+    set_up,
+    SetUp,
+)
+from tree_sway_lab.twin.gusty_truth import kinds_of, mast_of, Outside
+from tree_sway_lab.twin.simulated_sensor import SimulatedSensor
+from tree_sway_lab.twin.true_tree import DT, sensor_places, tree_called
 
 _HEAD = 'tree', 'motion', 'error', 'lean', 'stem', 'rough', 'ms', 'ms to follow', 'px'
-_SCORED = 0.25
-"""Share of a film from which on it is scored."""
 _LOST = 0.2
 
 
@@ -67,6 +83,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--seconds', type=float, default=40.0, help='length of the film [s] (%(default)s)')
     add('--speed', type=float, default=default.speed, help='mean wind [m/s] (%(default)s)')
     add('--seed', type=int, default=default.seed, help='of tree, gusts and camera (%(default)s)')
+    add('--settled', type=float, help='time [s] from which it is scored (a quarter of the film)')
     add('-o', '--output', type=Path, help='folder for the film, its wind and its clicks')
 
 
@@ -83,35 +100,52 @@ def _try(name: str, arguments: argparse.Namespace) -> None:
     tree, species = tree_called(name)
     seed = arguments.seed
     outside = Outside(seconds=arguments.seconds, speed=arguments.speed, seed=seed).drawn(tree)
-    true = filmed_truth(tree, species, outside)
+    place = sensor_places(tree, 1)[0]
+    true = filmed_truth(tree, species, outside, [place])
     rng = np.random.default_rng(seed + 2)
     camera = camera_before(tree, rng)
     found = set_up(tree, camera, rng)
     if arguments.output is not None:
         _write(arguments.output, tree, species, true, camera, found.clicks)
-    seen, cost = followed(tree, true, camera, found.camera, rng, arguments.points)
+    seen, cost = followed(tree, true, camera, found, rng, arguments.points)
     rest = tips_of_poses(tree, make_simulator(tree, species).place())
     nodes = np.array([camera.project(each[:, :3].astype(float)) for each in true.poses[::3]])
     pixels = float(np.sqrt(np.square(nodes.std(axis=0)).sum(axis=1).mean()))
-    still = np.broadcast_to(rest, true.tips.shape)
-    _print(name, 'still', _scored(still, true.tips, rest, 0.0), 0.0, pixels)
-    calm = np.zeros_like(true.wind)
-    model = make_simulator(tree, species)
-    _print(name, 'model', _swayed(model, true.wind, [], true.tips, rest), 0.0, pixels)
-    for motion, wind in (('camera', calm), ('with wind', true.wind)):
-        filmed = _filmed(tree, species, found.camera)
-        _print(name, motion, _swayed(filmed, wind, seen, true.tips, rest), cost, pixels)
+    settled = arguments.settled if arguments.settled is not None else 0.25 * arguments.seconds
+    distance, bearing = mast_of(outside)
+    far: dict[str, Any] = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+    measured = SimulatedSensor(mount=Rotation.random(rng=rng)).measured(true.at[place], DT, rng)
 
+    def show(motion: str, tips: Floats, spent: float = 0.0, following: float = 0.0) -> None:
+        score = _scored(tips, true.tips, rest, round(settled / DT), spent)
+        _print(name, motion, score, following, pixels)
 
-def _filmed(tree: Tree, species: Species, camera: Camera) -> FilmedTree:
-    return FilmedTree(tree, species, camera=camera)
+    show('still', np.broadcast_to(rest, true.tips.shape))
+    show('model', *_swayed(make_simulator(tree, species), true.wind, []))
+    expected = make_simulator(tree, species, gusts='expected', **far)
+    show('expected', *_swayed(expected, true.wind, []))
+    for motion, has_wind, has_sensor, film in (
+        ('camera', False, False, seen),
+        ('with wind', True, False, seen),
+        ('IMU', True, True, []),
+        ('with IMU', True, True, seen),
+    ):
+        at = {place: place} if has_sensor else {}
+        filmed = FilmedTree(tree, species, camera=found.camera, at=at, **(far if has_wind else {}))
+        if has_sensor:
+            rows = {'acceleration': measured.acceleration, 'rate': measured.rate}
+            filmed.replay(place, measured.time, **rows)
+        wind = true.wind if has_wind else np.zeros_like(true.wind)
+        show(motion, *_swayed(filmed, wind, film), cost if film else 0.0)
+        for each in filmed.problems:
+            print(f'{name}: {each}', file=sys.stderr)
 
 
 def followed(
     tree: Tree,
     true: FilmedTruth,
     camera: Camera,
-    found: Camera,
+    found: SetUp,
     rng: np.random.Generator,
     only_points: bool,
 ) -> tuple[list[tuple[float, int, Floats]], float]:
@@ -123,14 +157,12 @@ def followed(
     cv2 = import_module('cv2')
     cv2.setNumThreads(1)
     film: Iterable[Any] = pictures(cv2, tree, true.poses, camera, rng)
-    tracker, spent, seen = None, list[float](), list[tuple[float, int, Floats]]()
+    view = CameraView(tree, found.clicks, lambda text: None)
+    spent, seen = list[float](), list[tuple[float, int, Floats]]()
     lost = np.zeros(0, dtype=bool)
     for k, picture in enumerate(film):
-        if tracker is None:
-            wood = drawn_wood(found, tree.start, tree.end, tree.base_diameter)
-            tracker = PointTracker(cv2, Film.mask(cv2, picture.shape, wood))
         begun = time.thread_time()
-        sighting = tracker.follow(k / FRAMES, picture)
+        sighting = view.follow(k / FRAMES, picture)
         spent.append(time.thread_time() - begun)
         points = sighting.points.copy()
         if k % (3 * FRAMES) == 0:
@@ -145,11 +177,10 @@ def _swayed(
     sim: SwaySimulator,
     winds: Floats,
     seen: list[tuple[float, int, Floats]],
-    true: Floats,
-    rest: Floats,
-) -> _Score:
-    """Step a tree in winds, with its pictures."""
-    tips, block = np.empty_like(true), np.empty((sim.tree.n_segments, 7))
+) -> tuple[Floats, float]:
+    """Step a tree in winds, with its pictures: tips (n, b, 3), and time of a step in [ms]."""
+    tips = np.empty((len(winds), sim.tree.n_branches, 3))
+    block = np.empty((sim.tree.n_segments, 7))
     waiting, spent = iter(seen), list[float]()
     picture = next(waiting, None)
     for k, wind in enumerate(winds):
@@ -163,11 +194,10 @@ def _swayed(
         if is_new or not seen:
             spent.append(time.thread_time() - begun)
         tips[k] = tips_of_poses(sim.tree, sim.place(block))
-    return _scored(tips, true, rest, 1e3 * float(np.median(spent)))
+    return tips, 1e3 * float(np.median(spent))
 
 
-def _scored(tips: Floats, true: Floats, rest: Floats, cost: float) -> _Score:
-    first = round(_SCORED * len(tips))
+def _scored(tips: Floats, true: Floats, rest: Floats, first: int, cost: float) -> _Score:
     found, wanted = tips[first:] - rest, true[first:] - rest
     wrong = found - wanted
     moved, motion = wrong - wrong.mean(axis=0), wanted - wanted.mean(axis=0)

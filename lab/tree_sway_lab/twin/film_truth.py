@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import place_on
 from tree_sway.twin.camera import Camera, camera_of_clicks, Click, looking, told_by
 from tree_sway_lab.twin.gusty_truth import Outside, swayed_outside
-from tree_sway_lab.twin.true_tree import DT
+from tree_sway_lab.twin.true_tree import DT, pose_at
 
 FRAMES = 30
 """Pictures per second [Hz]."""
@@ -27,26 +28,41 @@ _CLICK = 1.5
 
 
 class FilmedTruth(NamedTuple):
-    """Wind of the mast (n, 3), tips (n, b, 3), and poses of every segment by picture (k, s, 7)."""
+    """
+    What is filmed, and what is measured beside it.
+
+    Wind of the mast (n, 3), tips (n, b, 3), poses of every segment by picture (k, s, 7), and those
+    of the places of sensors by name, (n, 7).
+    """
 
     wind: Floats
     tips: Floats
     poses: Floats
+    at: Mapping[str, Floats] = {}
 
 
 def filmed_truth(
-    tree: Tree, species: Species, outside: Outside, *, in_leaf: bool = False
+    tree: Tree,
+    species: Species,
+    outside: Outside,
+    places: Sequence[str] = (),
+    *,
+    in_leaf: bool = False,
 ) -> FilmedTruth:
     """Sway the tree outside from rest; the first picture is of rest, the next 1 / 30 s later."""
     every = round(1.0 / (FRAMES * DT))
     winds, tips = [], []
     poses = [tree.rest_poses.astype(np.float32)]
+    at: dict[str, list[Floats]] = {name: [] for name in places}
     for wind, block in swayed_outside(tree, species, outside, in_leaf=in_leaf):
         winds.append(wind.copy())
         tips.append(tips_of_poses(tree, block))
+        for name, felt in at.items():
+            felt.append(pose_at(tree, block, place_on(tree, name)))
         if len(winds) % every == 0:
             poses.append(block.astype(np.float32))
-    return FilmedTruth(np.array(winds), np.array(tips), np.array(poses))
+    by_place = {name: np.array(each) for name, each in at.items()}
+    return FilmedTruth(np.array(winds), np.array(tips), np.array(poses), by_place)
 
 
 def camera_before(tree: Tree, rng: np.random.Generator) -> Camera:

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 import threading
 import time
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ from tree_sway.core.species.species import species_named  # noqa: E402
 from tree_sway.core.wind.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.live import Sighting  # noqa: E402
 from tree_sway.live.motion import motion_feed  # noqa: E402
 from tree_sway.live.motion.live_motion import LiveMotion, MotionSample  # noqa: E402
 from tree_sway.live.motion.motion_feed import MotionFeed, PlacedSensor  # noqa: E402
@@ -35,6 +37,7 @@ from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.simulation.wind_source import RecordedWind  # noqa: E402
+from tree_sway.twin.camera import Camera, looking  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
@@ -149,13 +152,36 @@ class LateMachine:
         self._sensor.now += seconds + self._late * (self._left % 300 == 150)
 
 
-def session_of(placed: list[PlacedSensor]) -> Session:
+class StillFilm:
+    """The part of a live film that a feed reads: a tree that hangs still, until pictures end."""
+
+    name, problem, rate, is_over = 'camera:0', '', 30.0, False
+
+    def __init__(self, sensor: Sensor) -> None:
+        self._clock = sensor
+        away = 2.0 * float(TREE.end[:, 2].max())
+        axes = looking(0.0, 0.0, 0.0)
+        height = 0.3 * away
+        self.view = SimpleNamespace(
+            camera=Camera(np.array([0.0, -away, height]), axes, 900.0, np.array([640.0, 360.0]))
+        )
+        middles = 0.5 * (TREE.start + TREE.end)
+        self._points = self.view.camera.project(middles)
+
+    def drain(self) -> list[Sighting]:
+        """Return a picture of now."""
+        return [] if self.is_over else [Sighting(self._clock.now, 0, self._points)]
+
+
+def session_of(placed: list[PlacedSensor], film: StillFilm | None = None) -> Session:
     """Make a session with the wind of the truth."""
     wind = truth().wind
     record = RecordedWind(DT * np.arange(len(wind)), wind)
     arguments = show_arguments()
     feed = MotionFeed(placed)
+    feed.film = film  # type: ignore[assignment]
     added = [added_sensors(arguments, feed.places)]
+    added[0].motion = feed
     session = Session(
         lambda wanted: show.build_scene(wanted, arguments, added),
         Choices('goldcrest'),
@@ -238,6 +264,30 @@ def test_what_a_page_learns_is_kept_and_gone_on_with(
     tmp_path.rmdir()
     added.note(twin)
     assert 'own.twin.yaml: cannot be written' in capsys.readouterr().err
+
+
+def test_the_page_says_what_a_camera_tells(sensor: Sensor) -> None:
+    film = StillFilm(sensor)
+    session = session_of([], film)
+
+    def told(steps: int) -> dict[str, Any]:
+        for _ in range(steps):
+            sensor.now += DT
+            session._step(0.0)
+        status = session.status()['motion']
+        assert 'explained' not in status  # it is the share that motion sensors leave
+        (camera,) = status['sensors']  # type: ignore[index]
+        return dict(camera)
+
+    seen = told(60)
+    assert seen['name'] == 'camera:0'
+    assert seen['in_use']
+    assert seen['rate'] == 30.0
+    assert 'points on the tree' in seen['notes'][0]
+    film.is_over = True
+    lost = told(60)
+    assert not lost['in_use']
+    assert 'no picture' in lost['problem']
 
 
 def test_a_viewer_moves_the_sensor_and_a_place_that_is_none_is_refused(sensor: Sensor) -> None:

@@ -12,6 +12,7 @@ of states. The longest of these in the document is the table.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+import re
 from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
@@ -28,6 +29,7 @@ from tree_sway.files.layouts.station_messages import (
 from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 12
+_DECIMAL = re.compile(r'-?\d+,\d+')
 Cells = dict[str, str]
 
 
@@ -112,9 +114,9 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         quantities = list(_quantities(node, ''))
         if quantities:
             yield _by_time(quantities, source)
-        table = _columns(node, units, source)
-        if table is not None:
-            yield table
+        for table in (_columns(node, units, source), _rows(node, source)):
+            if table is not None:
+                yield table
         for name, each in node.items():
             own_units = object_of(node.get(f'{name}_units', _said_units(node)))
             yield from _tables(each, own_units, source, depth + 1)
@@ -129,9 +131,11 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
 
 
 def _said_units(node: dict[str, Any]) -> Cells:
-    """System of units that the metadata of weather.com's history gives (e, m, h or s)."""
+    """System of units of weather.com's history (e, m, h or s), or titles of columns behind #."""
     system = object_of(node.get('metadata')).get('units')
-    return {'*': system} if isinstance(system, str) else {}
+    channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
+    titles = {f'#{name}': title for name, title in channel.items() if isinstance(title, str)}
+    return {'*': system} if isinstance(system, str) else titles
 
 
 def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
@@ -149,6 +153,18 @@ def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | Non
     return table_of_cells(names, rows, source, units=units_of_columns)
 
 
+def _rows(node: dict[str, Any], source: str) -> TextTable | None:
+    """Return the table of a list of rows, beside a list of its names and maybe one of units."""
+    lists = [each for each in node.values() if isinstance(each, list) and each]
+    for rows in lists:
+        size = len(rows[0]) if isinstance(rows[0], list) else 0
+        heads = [each for each in lists if len(each) == size and isinstance(each[0], str)]
+        if heads and all(isinstance(row, list) for row in rows):
+            names, units, *_ = [[_text(cell) for cell in each] for each in (*heads, [])]
+            return table_of_cells(names, [[*map(_text, row)] for row in rows], source, units=units)
+    return None
+
+
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = units.get('*')
@@ -163,7 +179,8 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     names = list(empty)
     units_of_columns = [_unit(_unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
-    return table_of_cells(names, rows, source, units=units_of_columns)
+    titles = [units.get(f'#{name}', name) for name in names]
+    return table_of_cells(titles, rows, source, units=units_of_columns)
 
 
 def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, str]]:
@@ -240,7 +257,8 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
 
 
 def _text(cell: Any) -> str:
-    return '' if isinstance(cell, bool) else cell_of(cell)
+    text = '' if isinstance(cell, bool) else cell_of(cell)
+    return text.replace(',', '.') if _DECIMAL.fullmatch(text) else text
 
 
 def _unit(cell: Any) -> str:

@@ -38,7 +38,7 @@ from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.zipped import tables_in
 
@@ -51,7 +51,7 @@ _EARTH = re.compile('freeacc')
 """Accelerations of Xsens and Movella that are east, north, up."""
 _GRAVITY = (8.5, 11.2)
 """Range of the median of accelerations with gravity [m/s^2]."""
-_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665}
+_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665, 'mm/s^2': 0.001}
 """Units that gravity tells, of which none is that of SI."""
 _FASTEST = 35.0
 """Largest angular rate that a sensor measures [rad/s]: 2,000 degrees per second."""
@@ -59,6 +59,9 @@ _LARGEST = 0.999
 """Share of the rates that the largest exceeds: a few more may be faults."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
+_FINER = {'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9}
+_USUAL_STEP = (2e-3, 0.2)
+"""Times between samples that tell the unit of their times in [s]."""
 _SHORTEST = 5e-4
 """Time between samples that no motion sensor falls below [s]."""
 _NAMES = (
@@ -84,7 +87,7 @@ def read_motion_table(path: Path) -> MotionRecord:
     lines_of = dict(tables_in(path))
     beside = path.with_name(_ABOUT)
     if len(lines_of) == 1 and beside.is_file() and beside != path:
-        about = read_table_lines(beside)
+        about = read_lines(beside)
     else:
         about = next((each for name, each in lines_of.items() if name.endswith(_ABOUT)), [])
     for name, lines in lines_of.items():
@@ -113,6 +116,8 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
             cure=_NAMES,
         )
     table.refuse_several()
+    if clock and not table.unit_of(clock[0][0], 'time'):
+        times = _by_samples(times, table.columns[clock[0][0]])
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
     _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
@@ -140,6 +145,18 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
         times.epoch,
         tuple(filter(None, notes)),
     )
+
+
+def _by_samples(times: Times, name: str) -> Times:
+    """Return times without a unit in that in which a sensor's samples are usual."""
+    steps = np.diff(times.seconds[np.isfinite(times.seconds)])
+    step = float(np.median(steps)) if len(steps) else 0.0
+    for unit, factor in _FINER.items():
+        is_it = _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]
+        if step > _SLOWEST and is_it and times.epoch is None and 'sec' not in name.lower():
+            note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
+            return Times(times.seconds * factor, None, note)
+    return times
 
 
 def _is_of_apple(about: Sequence[str]) -> bool:
@@ -243,7 +260,8 @@ def _without_unit(
     name = table.columns[column]
     if known := maker.get(quantity):
         return table.known_factor(quantity, known), f'{name} is in {known}, as of {maker["maker"]}'
-    unit, most = ('m/s^2', _GRAVITY[1]) if quantity == 'acceleration' else ('rad/s', _FASTEST)
+    of_rate = ('rad/s', _FASTEST, 'deg/s')
+    unit, most, other = ('m/s^2', _GRAVITY[1], 'g') if quantity == 'acceleration' else of_rate
     for told in _gravity(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
         return _UNITS[told], said if told else ''
@@ -257,9 +275,8 @@ def _without_unit(
     if size > most:
         raise table.error(
             f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
-            cure=f'give its unit, as {name} [mg] or {name} [deg/s]',
+            cure=f'give its unit, as {name} [{other}]',
         )
-    other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return 1.0, note
 

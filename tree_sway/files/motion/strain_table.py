@@ -23,7 +23,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.table_file import filled_lines, split_row
-from tree_sway.files.text_file import finite, read_table_lines
+from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.twin import as_orientation
 
@@ -64,7 +64,7 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    _, lines = filled_lines(read_table_lines(path))
+    _, lines = filled_lines(read_lines(path))
     first = lines[0] if lines else ''
     separator = next((each for each in '\t;,' if each in first), ' ')
     head, *rows = (split_row(line, separator) for line in lines or [''])

@@ -140,7 +140,9 @@ class WindRows:
         speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
-            self.refuse(self.number[index], f'{speed[index]:.3g} m/s at {time[index]:g} s')
+            is_late = np.isfinite(time[index])
+            why = f'{speed[index]:.3g} m/s at {time[index]:g} s' if is_late else 'no time in it'
+            self.refuse(self.number[index], why)
         late = ~increasing(time[good])
         for index in np.flatnonzero(good)[late]:
             self.refuse(self.number[index], 'its time is out of order')

@@ -26,6 +26,7 @@ from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
 from tree_sway.files.column_names import folded, rank_of, unit_factor
 from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
 from tree_sway.files.time_stamps import Times
@@ -39,8 +40,11 @@ from tree_sway.files.zipped import tables_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
-_HEIGHT = re.compile(r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))')
-"""Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``."""
+_HEIGHT = re.compile(
+    r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
+    r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
+)
+"""Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``, Spd80mN."""
 _WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
 _CIRCLE = 2.0 * np.pi
 _USUAL = 10.0
@@ -72,14 +76,15 @@ def read_table_wind(
     tables = [(name, lines) for name, lines in tables_in(path) if lines]
     is_wind = [each for each in tables if looks_like_wind('\n'.join(each[1][:_HEAD]))]
     name, lines = (is_wind or tables)[0]
-    table = table_of(lines, name)
-    table.refuse_several()
-    table, note = _at_one_height(with_units_in_head(table))
+    whole = table_of(lines, name)
+    whole.refuse_several()
+    table, note = _at_one_height(with_units_in_head(whole))
     rows = WindRows(table.source)
     notes = [note] if note else []
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
+        notes += _repeated(table, components)
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
@@ -90,12 +95,18 @@ def read_table_wind(
         from_where = found.get('wind_direction') or direction
         has_speed = bool(components) or 'wind_speed' in found
         has_direction = bool(components) or from_where is not None
-        _refuse_missing(table, time is not None, has_speed, has_direction)
+        _refuse_missing(whole, time is not None, has_speed, has_direction)
         assert from_where is not None
         index = found['wind_speed'].index
         factor, note = speed_factor(table, index, 'wind_speed', speed_unit)
         notes += [note] if note else []
         speed = Column(index, factor)
+        if isinstance(from_where, Column) and not table.unit_of(
+            from_where.index, 'wind_direction'
+        ):
+            unit = maker_of(table).get('direction') or 'deg'
+            from_where = Column(from_where.index, table.known_factor('angle', unit))
+        notes += _repeated(table, [speed])
         convention = direction_convention or 'from'
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
         notes += _doubt(table, from_where)
@@ -126,7 +137,7 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         found = [each for each in _WIND if at and rank_of(plain, each) is not None]
         if at and found:
             names[index] = plain
-            heights.setdefault(found[0], {})[index] = float(at[1])
+            heights.setdefault(found[0], {})[index] = float(at[1] or at[2])
     known = set[float]()
     for of_quantity in heights.values():
         known |= {*of_quantity.values()}
@@ -134,9 +145,18 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
             names[index] = names[index] if height == min(of_quantity.values()) else ''
     if not known or known == {_USUAL}:
         return table, ''
-    first, *others = sorted(known)
+    of_speed = heights.get('wind_speed') or heights[next(iter(heights))]
+    first = min(of_speed.values())
+    others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
     return replace(table, columns=tuple(names)), f'the wind at {first:g} m{more}'
+
+
+def _repeated(table: TextTable, used: list[Column]) -> list[str]:
+    """Return a note on a used column of which there are more of the same name."""
+    names = [table.columns[column.index] for column in used]
+    twice = [name for name in names if table.columns.count(name) > 1][:1]
+    return [f'of {table.columns.count(name)} columns {name} the first is read' for name in twice]
 
 
 def _points(table: TextTable, speed: Column) -> Column | None:

@@ -6,25 +6,20 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from importlib import import_module
 import threading
 import time
 from typing import Any
 
-import numpy as np
-
 from tree_sway.errors import ParameterError
-from tree_sway.extras import refuse_missing
-from tree_sway.live.camera.point_tracker import PointTracker, Sighting
-from tree_sway.twin.camera import Camera, DrawnWood
+from tree_sway.live.camera.camera_view import CameraView, opencv
+from tree_sway.live.camera.point_tracker import Sighting
 
 _PREFIX = 'camera:'
-_BESIDE = 8
-"""Width in pixels about the wood in which points are found."""
 _AGAIN = 3.0
 """Time in [s] after which a camera that stopped is opened again."""
 _KEPT = 300
-_RED = (0, 0, 255)
+_COUNTED = 60
+"""Number of pictures whose rate is told."""
 
 
 def is_camera(address: str) -> bool:
@@ -53,8 +48,7 @@ class Film:
     """
 
     def __init__(self, address: str, late: float = 0.07) -> None:
-        refuse_missing(['cv2'], f'simulate --motion {address}')
-        cv2 = self._cv2 = import_module('cv2')
+        cv2 = self._cv2 = opencv(f'simulate --motion {address}')
         self.name = address
         source = address.removeprefix(_PREFIX)
         self._source: int | str = int(source) if source.isdecimal() else source
@@ -72,36 +66,9 @@ class Film:
                 cure='give camera:0, camera:FILE.mp4 or camera:rtsp://host/path',
             )
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
-        return self.first.shape[1], self.first.shape[0]
-
-    def tracker(self, wood: DrawnWood) -> PointTracker:
-        """Return a tracker of points on and about wood."""
-        return PointTracker(self._cv2, self.mask(self._cv2, self.first.shape, wood))
-
-    @staticmethod
-    def mask(cv2: Any, shape: tuple[int, ...], wood: DrawnWood) -> Any:
-        """Return where wood is in a picture, 255 there and 0 elsewhere, (high, wide)."""
-        mask = np.zeros(shape[:2], dtype=np.uint8)
-        _draw(cv2, mask, wood, 255, _BESIDE)
-        return mask
-
-    def check(self, path: str, wood: DrawnWood) -> None:
-        """Write the first picture with lines where the wood should be."""
-        picture = self.first.copy()
-        _draw(self._cv2, picture, wood, _RED, 0)
-        if not self._cv2.imwrite(path, picture):
-            raise ParameterError(
-                f"'{path}' cannot be written",
-                where='--at',
-                cure='give a .png or .jpg in a folder that is there',
-            )
-
-    def sightings(self, tracker: PointTracker) -> Iterator[Sighting]:
+    def sightings(self, view: CameraView) -> Iterator[Sighting]:
         """Follow the points of a file's pictures, with times from its first one on in [s]."""
-        yield tracker.follow(0.0, self.first)
+        yield view.follow(0.0, self.first)
         before = 0.0
         rate = self._capture.get(self._cv2.CAP_PROP_FPS) or 30.0
         while True:
@@ -111,7 +78,7 @@ class Film:
             at = 1e-3 * (self._capture.get(self._cv2.CAP_PROP_POS_MSEC) - self._begun)
             # Some containers tell no times; pictures are then as far apart as the rate says.
             before = at if at > before else before + 1.0 / rate
-            yield tracker.follow(before, picture)
+            yield view.follow(before, picture)
 
     def newest(self) -> tuple[float, Any]:
         """Wait for a picture: its time on this clock [s]; None where none comes."""
@@ -129,19 +96,23 @@ class Film:
 
 
 class LiveFilm:
-    """Points of a live camera that stands somewhere, followed from `start` to `stop`."""
+    """Points of a live camera, followed in a view of it from `start` to `stop`."""
 
-    def __init__(
-        self, film: Film, camera: Camera, tracker: PointTracker, log: Callable[[str], None]
-    ) -> None:
-        self.camera = camera
-        """Where it stands."""
-        self._film, self._tracker, self._log = film, tracker, log
+    def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
+        self._film, self.view, self._log = film, view, log
+        self.name = film.name
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
         self.problem = 'no picture yet'
         """Why no picture comes; empty if they come."""
+        self._times: deque[float] = deque(maxlen=_COUNTED)
+
+    @property
+    def rate(self) -> float:
+        """Pictures per second [Hz]; 0 before two of them."""
+        times = list(self._times)
+        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0
 
     def start(self) -> None:
         """Begin."""
@@ -165,7 +136,8 @@ class LiveFilm:
                 at, picture = self._film.newest()
                 if picture is not None:
                     self._say('')
-                    self._sightings.append(self._tracker.follow(at, picture))
+                    self._times.append(at)
+                    self._sightings.append(self.view.follow(at, picture))
                     continue
                 self._say('no picture comes: check the camera and its connection')
                 self._stop.wait(_AGAIN)
@@ -179,12 +151,3 @@ class LiveFilm:
         if problem != self.problem:
             self.problem = problem
             self._log(f'{self._film.name}: {problem or "pictures come"}')
-
-
-def _draw(cv2: Any, picture: Any, wood: DrawnWood, colour: Any, beside: int) -> None:
-    """Draw wood as wide as it is, and wider, or as lines if it is to be no wider."""
-    for first, last, width in zip(wood.first, wood.last, wood.width, strict=True):
-        if np.isfinite([*first, *last]).all():
-            both = np.clip([first, last], -9999, 9999).astype(int).tolist()
-            thick = int(width) + beside if beside else 1
-            cv2.line(picture, *map(tuple, both), colour, min(thick, 255))

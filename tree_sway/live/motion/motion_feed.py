@@ -70,7 +70,7 @@ class MotionFeed:
     @property
     def camera(self) -> Camera | None:
         """Where the camera stands; None without one."""
-        return None if self.film is None else self.film.camera
+        return None if self.film is None else self.film.view.camera
 
     def feed(self, simulator: object, until: float, due: float | None = None) -> None:
         """

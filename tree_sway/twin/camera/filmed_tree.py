@@ -86,13 +86,16 @@ class FilmedTree(ObservedTree):
     *arguments, **options
         Those of `ObservedTree`; ``at`` may be empty, or name motion sensors.
     camera
-        The camera.
+        The camera; None where its first picture will tell where it stands.
 
     """
 
-    def __init__(self, *arguments: Any, camera: Camera, at: Any = None, **options: Any) -> None:
+    def __init__(
+        self, *arguments: Any, camera: Camera | None = None, at: Any = None, **options: Any
+    ) -> None:
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
+        """The camera; pictures are refused while it is None."""
         self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
         n = self._n = min(_MOST_COORDINATES, self.banks[0].oscillators.shapes.shape[1])
         self._filmed = np.zeros((2, n))
@@ -154,7 +157,7 @@ class FilmedTree(ObservedTree):
             self._past.popleft()
         while self._waiting and self._waiting[0][0] <= self.now:
             self._look(*self._waiting.popleft())
-        if self.now - self._seen_at < _LOST:
+        if self.sees:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
             self._calm(dt, self.filter.ahead(ticks))
         else:
@@ -189,7 +192,7 @@ class FilmedTree(ObservedTree):
 
     def _look(self, time: float, reference: int, image: Floats) -> None:
         """Follow the points of a picture."""
-        if time < self._past[0][0] - 0.1 or time <= self._seen_at:
+        if self.camera is None or time < self._past[0][0] - 0.1 or time <= self._seen_at:
             self.refused += 1
             return
         if not np.isfinite(self._seen_at) or time - self._seen_at > 5.0:
@@ -202,7 +205,7 @@ class FilmedTree(ObservedTree):
         shapes = self.banks[0].oscillators.shapes
         poses = self.place_rotations(np.ascontiguousarray(shapes @ eta), self._poses)
         if reference != self._reference:
-            self._begin(reference, poses, image)
+            self._begin(self.camera, reference, poses, image)
         expected = self.camera.project(self.points.at(poses)) + self._offset
         missed = image[self.points.row] - expected
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
@@ -214,16 +217,16 @@ class FilmedTree(ObservedTree):
         self._n_seen += 1
         self.filter.see(self._slopes, missed)
 
-    def _begin(self, reference: int, poses: Floats, image: Floats) -> None:
+    def _begin(self, camera: Camera, reference: int, poses: Floats, image: Floats) -> None:
         """Follow the points of another picture, in which the tree has these poses."""
         self._reference = reference
-        found = matched_points(self.tree, poses, self.camera, image)
+        found = matched_points(self.tree, poses, camera, image)
         self.points = found
         at = found.at(poses)
         self._begun_at = image[found.row]
-        self._offset = self._begun_at - self.camera.project(at)
+        self._offset = self._begun_at - camera.project(at)
         slopes = found.slopes(self)[:, :, : self._n]
-        self._slopes = self.camera.slopes(at) @ slopes
+        self._slopes = camera.slopes(at) @ slopes
         self.filter.begin(len(found.row))
 
     def _computed(self, time: float) -> Floats:
@@ -247,9 +250,20 @@ class FilmedTree(ObservedTree):
         self.filter = MotionFilter(law, stationary_covariance(law))
 
     @property
+    def sees(self) -> bool:
+        """Whether a picture of the last moments corrects it."""
+        return self.now - self._seen_at < _LOST
+
+    @property
     def motion(self) -> float:
         """How far the points moved in the picture, root mean square [px]; 0 before any."""
         return float(np.sqrt(self._square / max(self._n_seen, 1)))
+
+    @property
+    def error(self) -> float:
+        """Median of the errors of the points [px]; 0 before any."""
+        errors = self.filter.errors
+        return float(np.median(errors)) if len(errors) else 0.0
 
     @property
     def said(self) -> str:
@@ -261,11 +275,12 @@ class FilmedTree(ObservedTree):
                 why = f'{n_points} points on the tree are too few: check the clicks'
             return f'the camera moves nothing: {why}'
         used = int((self.filter.weights > _USED).sum())
-        error = float(np.median(self.filter.errors))
         told = (
             f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
-            f'{error:.1f} px; {self.refused} pictures refused'
+            f'{self.error:.1f} px; {self.refused} pictures refused'
         )
+        if not self.sees:
+            told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '

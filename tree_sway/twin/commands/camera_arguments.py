@@ -7,7 +7,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 import sys
 from typing import NamedTuple, TYPE_CHECKING
 
@@ -15,21 +14,20 @@ from tree_sway.commands import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.files import read_text
-from tree_sway.live import Film, is_camera, LiveFilm, PointTracker
+from tree_sway.live import CameraView, Film, is_camera, LiveFilm
 from tree_sway.live.commands import sensors_and_places
-from tree_sway.twin.camera import camera_of_clicks, drawn_wood, FilmedMotion, told_by
+from tree_sway.twin.camera import FilmedMotion
 
 if TYPE_CHECKING:
     from tree_sway.twin.camera import Camera
 
 
 class PlacedCamera(NamedTuple):
-    """A film, where its camera stands, and a tracker of the tree in it."""
+    """A film, where its camera stands, and its view of the tree."""
 
     film: Film
     camera: Camera
-    tracker: PointTracker
+    view: CameraView
 
 
 def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | None:
@@ -53,16 +51,13 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
     others = [pair for pair in pairs if not is_camera(pair[0])]
     arguments.motion, arguments.at = [[pair[k] for pair in others] for k in (0, 1)]
     (address, at), *_ = cameras
-    if ';' not in at and '\n' not in at:
-        at = read_text(Path(at))
-    told = told_by(at)
-    film = Film(address, late=told.late)
-    found = camera_of_clicks(tree, film.size, told.clicks, told.told)
-    print(f'note: {address}: {found}', file=sys.stderr)
-    wood = drawn_wood(found.camera, tree.start, tree.end, tree.base_diameter)
-    if told.check:
-        film.check(told.check, wood)
-    return PlacedCamera(film, found.camera, film.tracker(wood))
+
+    def say(text: str) -> None:
+        print(f'note: {address}: {text}', file=sys.stderr)
+
+    view = CameraView(tree, at, say, f'simulate --motion {address}')
+    film = Film(address, late=view.told.late)
+    return PlacedCamera(film, view.place(film.first), view)
 
 
 @contextmanager
@@ -80,7 +75,7 @@ def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator
     if not placed.film.is_live:
         cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
         raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
-    live = LiveFilm(placed.film, placed.camera, placed.tracker, _say)
+    live = LiveFilm(placed.film, placed.view, _say)
     live.start()
     try:
         yield live
@@ -109,6 +104,6 @@ def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | N
     with waiting('following the film'):
         seen = [
             (each.time + starts, each.reference, each.points)
-            for each in placed.film.sightings(placed.tracker)
+            for each in placed.film.sightings(placed.view)
         ]
     return FilmedMotion(placed.camera, seen)

@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 import sys
 import time
 from weakref import WeakKeyDictionary
@@ -24,6 +25,7 @@ from tree_sway.page import Choices, RATE
 from tree_sway.page.commands import PageAddition
 from tree_sway.stream import Control
 from tree_sway.twin import observed_scene, ObservedTree
+from tree_sway.twin.camera import FilmedTree
 from tree_sway.twin.commands.camera_arguments import filming
 from tree_sway.twin.commands.learn_argument import add_learn_argument, check_learn_argument
 
@@ -91,7 +93,8 @@ class SensorsOnThePage(PageAddition):
         if (path := self.arguments.learn) is not None:
             file = LearnedFile(path, scene.trees[0], settings.in_leaf)
             scene = scene.of_species(file.opened.species)
-        twin = observed_scene(scene, settings, camera, at=places, rate=RATE, has_band=True)
+        kind = partial(FilmedTree, camera=camera) if camera else ObservedTree
+        twin = observed_scene(scene, settings, kind, at=places, rate=RATE, has_band=True)
         if file is not None:
             twin.learned_before = file.opened.learned
             self._learned[twin] = file

@@ -14,7 +14,7 @@ from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_ge
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.text_file import read_lines
 from tree_sway.files.zipped import tables_in
 
 _HEAD = 60
@@ -29,7 +29,7 @@ def inventory_table(path: Path, head: str) -> TextTable:
     if path.suffix.lower() in ('.xlsx', '.xlsm'):
         return read_spreadsheet(path)
     if looks_like_geojson(head):
-        return read_geojson('\n'.join(read_table_lines(path)), str(path))
+        return read_geojson('\n'.join(read_lines(path)), str(path))
     found = list(tables_in(path))
     name, lines = next((each for each in found if _is_inventory(each[1])), found[0])
     return PLAIN.read(lines, name)
