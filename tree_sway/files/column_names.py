@@ -111,9 +111,6 @@ def unit_factor(kind: str, unit: str) -> float | None:
     scaled = _SCALED.fullmatch(unit.strip())
     if scaled is not None and kind in UNITS and (of_one := unit_factor(kind, scaled[2])):
         return float(scaled[1]) * of_one
-    *before, last = unit.split() or ['']
-    if len(before) > 1 and '=' in before:  # North = 0 degrees
-        return unit_factor(kind, last)
     return UNITS.get(kind, {}).get(_folded_unit(unit))
 
 

@@ -31,7 +31,7 @@ def _date_and_hour(parts: Sequence[str]) -> str:
 
 
 def _date_and_digits(parts: Sequence[str]) -> str:
-    clock = parts[1].zfill(4)
+    clock = parts[1].replace(':', '').zfill(4)
     return f'{parts[0]} {clock[:-2]}:{clock[-2:]}'
 
 
@@ -39,8 +39,7 @@ def _day_of_year(parts: Sequence[str]) -> str:
     year, day, clock = parts
     if not (year.isdigit() and day.isdigit()):
         return ''
-    date = datetime(int(year), 1, 1) + timedelta(days=int(day) - 1)
-    return _date_and_digits((date.date().isoformat(), clock))
+    return _date_and_digits((str(np.datetime64(year, 'D') + int(day) - 1), clock))
 
 
 def _date_and_clock(parts: Sequence[str]) -> str:

@@ -98,18 +98,7 @@ class TextTable:
 
     def known_factor(self, kind: str, unit: str) -> float:
         """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
-        factor = unit_factor(kind, unit)
-        if factor is None:
-            what = f"unknown unit '{unit[:20]}'"
-            usual: dict[float, str] = {}
-            for name, each in UNITS[kind].items():
-                usual.setdefault(each, name)
-            raise FormatError(
-                what,
-                where=f'{self.source}:{self.unit_line}',
-                cure=f'use {", ".join([*usual.values()][:_MOST_UNITS])}',
-            )
-        return factor
+        return known_factor(kind, unit, f'{self.source}:{self.unit_line}')
 
     def find(self, quantity: str) -> Column | None:
         """Return the column of a quantity of `COLUMNS` whose name comes first there, or None."""
@@ -224,6 +213,18 @@ class TextTable:
                     cure=f'name one that is, or {none[0]} for the root',
                 )
         return labels, parents
+
+
+def known_factor(kind: str, unit: str, where: str) -> float:
+    """Factor of a unit to SI; a `FormatError` that names usual ones if it is not of the kind."""
+    factor = unit_factor(kind, unit)
+    if factor is None:
+        usual: dict[float, str] = {}
+        for name, each in UNITS[kind].items():
+            usual.setdefault(each, name)
+        cure = f'use {", ".join([*usual.values()][:_MOST_UNITS])}'
+        raise FormatError(f"unknown unit '{unit[:20]}'", where=where, cure=cure)
+    return factor
 
 
 def split_row(line: str, separator: str) -> Sequence[str]:

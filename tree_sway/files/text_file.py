@@ -114,8 +114,7 @@ def read_text(path: Path) -> str:
 def _no_text(error: UnicodeDecodeError, path: Path) -> FormatError:
     """Make the error of a file that is not text."""
     begin = error.object[:99].decode('latin-1')
-    told = [each for each in (foreign_file(path, begin), foreign_file(path)) if each[0]]
-    kind, cure = told[0] if told else ('', '')
+    kind, cure = max(foreign_file(path), foreign_file(path, begin))
     what = f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}'
     return FormatError(kind or what, where=str(path), cure=cure or 'save it as UTF-8')
 

@@ -10,30 +10,26 @@ The head has ``## COLUMN2.name u`` and ``## COLUMN2.units ms-1`` of each column;
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 import re
 
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_columns, TextTable
 
-_ENTRY = re.compile(r'#+\s*COLUMN(\d+)\.(name|units)\s+(\S.*)')
-_SINCE = re.compile(r'\s+since\s.*|\s*\(.*')
+_ENTRY = re.compile(r'#+\s*COLUMN\d+\.(?:name\s+(\S+)|units\s+(.*?))\s*(?:since\s.*|\(.*)?')
 
 
-def _told(lines: Sequence[str], what: str) -> dict[int, str]:
-    entries = filter(None, map(_ENTRY.match, lines))
-    return {int(each[1]): each[3].strip() for each in entries if each[2] == what}
+def _columns(lines: Sequence[str]) -> list[str]:
+    entries = [each.groups('') for each in map(_ENTRY.fullmatch, lines) if each]
+    pairs = zip(entries[::2], entries[1::2], strict=False)  # a name, then its unit
+    return [f'{name} [{unit}]' for (name, _), (_, unit) in pairs]
 
 
 def _is_csiro(lines: Sequence[str]) -> bool:
-    return bool(_told(lines, 'name'))
+    return bool(_columns(lines))
 
 
 def _read(lines: list[str], source: str) -> TextTable:
-    names, units = _told(lines, 'name'), _told(lines, 'units')
-    table = parse_columns(lines, source, list(names.values()))
-    plain = [_SINCE.sub('', units.get(number, '')) for number in names]
-    return replace(table, units=tuple(plain))
+    return parse_columns(lines, source, _columns(lines))
 
 
 CSIRO = Layout('csiro', _is_csiro, _read)

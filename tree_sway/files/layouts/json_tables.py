@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import cell_of, object_of, parsed
+from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -156,12 +156,11 @@ def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | Non
 def _rows(node: dict[str, Any], source: str) -> TextTable | None:
     """Return the table of a list of rows, beside a list of its names and maybe one of units."""
     lists = [each for each in node.values() if isinstance(each, list) and each]
-    for rows in lists:
-        size = len(rows[0]) if isinstance(rows[0], list) else 0
-        heads = [each for each in lists if len(each) == size and isinstance(each[0], str)]
-        if heads and all(isinstance(row, list) for row in rows):
-            names, units, *_ = [[_text(cell) for cell in each] for each in (*heads, [])]
-            return table_of_cells(names, [[*map(_text, row)] for row in rows], source, units=units)
+    for rows in (each for each in lists if isinstance(each[0], list)):
+        heads = [[*map(_text, each)] for each in lists if len(each) == len(rows[0])]
+        if any(map(any, heads)):
+            cells = [[*map(_text, list_of(row))] for row in rows]
+            return table_of_cells(heads[0], cells, source, units=[*heads, []][1])
     return None
 
 
@@ -218,16 +217,12 @@ def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
 
 def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
     """Return the table of quantities, with a row for each time that any of them has."""
-    times: set[str] = set()
-    for each in quantities:
-        times.update(each.by_time)
-    rows = []
-    for time in sorted(times):
-        values = [_text(each.by_time.get(time)) for each in quantities]
-        rows.append([time, *values])
-    names = [each.name for each in quantities]
-    units = [each.unit for each in quantities]
-    return table_of_cells(['time', *names], rows, source, units=['', *units])
+    values = [
+        (0, time, each.name, _text(value))
+        for each in quantities
+        for time, value in each.by_time.items()
+    ]
+    return wide_table(values, source, 'time', {each.name: each.unit for each in quantities})
 
 
 def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:

@@ -116,11 +116,9 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
             cure=_NAMES,
         )
     table.refuse_several()
-    if clock and not table.unit_of(clock[0][0], 'time'):
-        times = _by_samples(times, table.columns[clock[0][0]])
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
-    first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
-    _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
+    column = None if clock is None else clock[0][0]
+    times = _checked_times(table, times, np.hstack(list(values.values())), column)
     read = ', '.join(table.columns[each] for columns in picked.values() for each in columns)
     notes = [f'{Path(source).name}: read {read}', times.note]
     maker = maker_of(table)
@@ -145,18 +143,6 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
         times.epoch,
         tuple(filter(None, notes)),
     )
-
-
-def _by_samples(times: Times, name: str) -> Times:
-    """Return times without a unit in that in which a sensor's samples are usual."""
-    steps = np.diff(times.seconds[np.isfinite(times.seconds)])
-    step = float(np.median(steps)) if len(steps) else 0.0
-    for unit, factor in _FINER.items():
-        is_it = _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]
-        if step > _SLOWEST and is_it and times.epoch is None and 'sec' not in name.lower():
-            note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
-            return Times(times.seconds * factor, None, note)
-    return times
 
 
 def _is_of_apple(about: Sequence[str]) -> bool:
@@ -281,13 +267,18 @@ def _without_unit(
     return 1.0, note
 
 
-def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: str) -> None:
-    """Refuse times that are none, go back, stand still or are too far apart for samples."""
+def _checked_times(table: TextTable, times: Times, values: Floats, column: int | None) -> Times:
+    """
+    Refuse times that are none, go back, stand still or are too far apart for samples.
+
+    Those of a column without a unit are in that in which samples are as far apart as usual.
+    """
     seconds = times.seconds
     is_time = np.isfinite(seconds)
     if not is_time.any():
         raise table.error(
-            f"no time in any row: the first is '{first_cell[:40]}'", cure='give seconds or dates'
+            f"no time in any row: the first is '{table.cells(column or 0, [0])[0][:40]}'",
+            cure='give seconds or dates',
         )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
@@ -304,6 +295,12 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
             cure='export times with fractions of a second',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
+    name = '' if column is None else table.columns[column]
+    has_unit = column is None or table.unit_of(column, 'time') or 'sec' in name.lower()
+    for unit, factor in () if has_unit or times.epoch is not None else _FINER.items():
+        if step > _SLOWEST and _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]:
+            note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
+            return Times(seconds * factor, None, note)
     if step > _SLOWEST or 0.0 < step <= _SHORTEST:
         size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
         raise table.error(
@@ -311,6 +308,7 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
             cure='name the unit of time, as time [ms]; a sensor sends 20 samples per second or '
             'more',
         )
+    return times
 
 
 def _are_most(rows: NDArray[np.bool_], share: float) -> bool:

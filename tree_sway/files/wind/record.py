@@ -140,9 +140,8 @@ class WindRows:
         speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
-            is_late = np.isfinite(time[index])
-            why = f'{speed[index]:.3g} m/s at {time[index]:g} s' if is_late else 'no time in it'
-            self.refuse(self.number[index], why)
+            why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
+            self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
         late = ~increasing(time[good])
         for index in np.flatnonzero(good)[late]:
             self.refuse(self.number[index], 'its time is out of order')

@@ -24,14 +24,12 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, rank_of, unit_factor
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
-from tree_sway.files.time_stamps import Times
 from tree_sway.files.wind.cell_units import with_units_in_head
-from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
 from tree_sway.files.wind.speed_units import speed_factor
@@ -88,24 +86,21 @@ def read_table_wind(
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
-        found = {each: c for each in ('wind_speed', 'wind_direction') if (c := table.find(each))}
-        if 'wind_speed' in found and 'wind_direction' not in found:
-            points = _points(table, found['wind_speed'])
-            found |= {} if points is None else {'wind_direction': points}
-        from_where = found.get('wind_direction') or direction
-        has_speed = bool(components) or 'wind_speed' in found
+        found = table.find('wind_speed')
+        places = table.find_all('wind_direction')
+        places = [each for each in places if found is None or each != found.index]
+        from_where: Column | float | None = direction
+        if places:
+            unit = table.unit_of(places[0], 'wind_direction') or maker_of(table).get('direction')
+            from_where = Column(places[0], table.known_factor('angle', unit or 'deg'))
+        has_speed = bool(components) or found is not None
         has_direction = bool(components) or from_where is not None
         _refuse_missing(whole, time is not None, has_speed, has_direction)
+        assert found is not None
         assert from_where is not None
-        index = found['wind_speed'].index
-        factor, note = speed_factor(table, index, 'wind_speed', speed_unit)
+        factor, note = speed_factor(table, found.index, 'wind_speed', speed_unit)
         notes += [note] if note else []
-        speed = Column(index, factor)
-        if isinstance(from_where, Column) and not table.unit_of(
-            from_where.index, 'wind_direction'
-        ):
-            unit = maker_of(table).get('direction') or 'deg'
-            from_where = Column(from_where.index, table.known_factor('angle', unit))
+        speed = Column(found.index, factor)
         notes += _repeated(table, [speed])
         convention = direction_convention or 'from'
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
@@ -115,11 +110,11 @@ def read_table_wind(
     assert time is not None
     stored = np.flatnonzero(winds.good)
     times = row_times(table, *time, stored.tolist())
-    notes += [times.note] if times.note else []
     if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
         # The newest row first, as services export them.
         stored = stored[::-1]
-        times = _reversed(times)
+        times = row_times(table, *time, stored.tolist())
+    notes += [times.note] if times.note else []
     _fill(rows, table, winds, stored, times.seconds, speed_unit)
     record = rows.record(
         epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)
@@ -157,23 +152,6 @@ def _repeated(table: TextTable, used: list[Column]) -> list[str]:
     names = [table.columns[column.index] for column in used]
     twice = [name for name in names if table.columns.count(name) > 1][:1]
     return [f'of {table.columns.count(name)} columns {name} the first is read' for name in twice]
-
-
-def _points(table: TextTable, speed: Column) -> Column | None:
-    """Column called Wind with points of the compass, beside one of the speed; None without one."""
-    for index, name in enumerate(table.columns):
-        if folded(name) == 'wind' and index != speed.index:
-            degrees = degrees_of(table.cells(index, range(len(table.texts))))
-            if np.isfinite(degrees).mean() > 0.5:
-                return Column(index, unit_factor('angle', 'deg') or 1.0)
-    return None
-
-
-def _reversed(times: Times) -> Times:
-    """Put times of rows in the other order, from the oldest."""
-    first = float(times.seconds[-1])
-    epoch = None if times.epoch is None else times.epoch + first
-    return replace(times, seconds=times.seconds[::-1] - first, epoch=epoch)
 
 
 def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:

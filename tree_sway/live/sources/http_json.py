@@ -18,7 +18,7 @@ from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
-SHORTEST, LONGEST = 0.2, 86_400.0
+_SHORTEST, _LONGEST = 0.2, 86_400.0
 """Interval of requests [s]."""
 _OPTIONS = (
     *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
@@ -50,7 +50,7 @@ def open_source(address: SourceAddress) -> Source:
         theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in _OPTIONS]
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
-    every = address.number('every', 60.0, SHORTEST, LONGEST)
+    every = address.number('every', 60.0, _SHORTEST, _LONGEST)
     token = address.secret('token_file')
     headers = {'Authorization': f'Bearer {token}'} if token else {}
     transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)

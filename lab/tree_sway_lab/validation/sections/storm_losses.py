@@ -37,7 +37,7 @@ SPREAD = 0.33
 WITHIN_80 = 1.2816
 """Deviations on one side of the mean that hold 80 % on both."""
 YEARS = 20.0, 200.0
-_CRITICAL = 'critical_wind_10m [m/s]'
+_CRITICAL, _FALL = 'critical_wind_10m [m/s]', 'fall_in_50_years [%]'
 _TEXT = Path(__file__).with_suffix('.md').read_text(encoding='utf-8')
 
 
@@ -101,13 +101,13 @@ def _storms(means: Floats, shares: Floats) -> str:
 def _trees(rows: Sequence[Row], in_leaf: Sequence[Row]) -> str:
     """Return a table of the trees."""
     head = ['species', 'number', 'height [m]', 'diameter [m]', 'limited by', 'critical wind [m/s]',
-            'in leaf [m/s]', 'of it, weakest of ten [m/s]', 'years, inland', 'weakest of ten',
-            'assumed']  # fmt: skip
+            'in leaf [m/s]', 'of it, weakest of ten [m/s]', 'years, inland',
+            _FALL, 'assumed']  # fmt: skip
     found = [
         [
             tree['species'], str(tree['number']), f'{tree["height"]:g}', f'{tree["diameter"]:.2f}',
             row['limited_by'], f'{row[_CRITICAL]:.0f}', f'{leafed[_CRITICAL]:.0f}',
-            f'{leafed["low_80 [m/s]"]:.0f}', f'{row["years"]:g}', f'{row["years_low_80"]:g}',
+            f'{leafed["low_80 [m/s]"]:.0f}', f'{row["years"]:g}', f'{row[_FALL]:g}',
             row['assumed'],
         ]
         for tree, row, leafed in zip(TREES, rows, in_leaf, strict=True)

@@ -67,8 +67,8 @@ def species_of_rows(
         if not name:
             note = 'trees without a species are taken as a broadleaf of no known species'
         if other := _AMBIGUOUS.get(name.lower().replace('-', '')):
-            there = f'in {other["where"]} it is {other["meaning"]}'
-            note = f"'{name}' is taken as {known[name].title}; {there}: write that if it is"
+            note = f"'{name}' is taken as {known[name].title}; in {other['where']} it is "
+            note += f'{other["meaning"]}: write that if it is'
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
     columns.note(*[note for note in notes if note][:_MOST_NOTES])
     return names, known

@@ -32,8 +32,6 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 _POSITION = ('XX', 'YY', 'ZZ')
 _DIAMETER = 'TopDia'
-_HEADS = ('ENTITY-CODE', 'TOPO')
-"""First cell above the vertices; the second is of older files."""
 _CODE = re.compile(r'([/<+])([A-Za-z]\w*)(?=[/<+]|$)', re.ASCII)
 
 
@@ -153,7 +151,8 @@ def _before(vertex: _Vertex) -> _Vertex | None:
 def _parse(lines: list[str], source: str) -> list[_Vertex]:
     """Parse the vertices of an MTG file."""
     scales = _scales(lines)
-    begin = next((i for i, line in enumerate(lines) if line.startswith(_HEADS)), None)
+    heads = ('ENTITY-CODE', 'TOPO')  # the second in older files
+    begin = next((i for i, line in enumerate(lines) if line.startswith(heads)), None)
     if begin is None:
         raise FormatError('no line ENTITY-CODE', cure='save it as FORM-A')
     header = [cell.strip() for cell in lines[begin].split('\t')]
