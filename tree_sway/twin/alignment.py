@@ -11,13 +11,7 @@ unless it has an orientation, which tells what is upright. The azimuth of an ori
 believed: without a compass it is any, and steel turns a compass.
 
 A mast some metres away knows the lean in slow gusts, and nothing of those that shake the crown.
-So both motions are averaged over some seconds, in which an acceleration is the lean. What the
-model does not tell of it leans the tree to the same sides as what it tells, with C the covariance
-of the model's lean x up to a factor. Of a sensor's lean y the azimuth is the likeliest turn, R::
-
-    min over R, b of  ln sum of (R y - b x)' C^-1 (R y - b x)
-
-within a right angle of that of the largest correlation: an ellipse has two ends. N averages
+So both motions are averaged over some seconds, in which an acceleration is the lean. N averages
 whose correlation is r tell an azimuth with the error ``sqrt((1 - r^2) / (2 N r^2))`` of a phase
 (Bendat & Piersol 2010, *Random Data*, 9.2), and the sign s of r's rival by ``N ln (1 - r^2) / (1 -
 s^2)``, the logarithm of their likelihoods.
@@ -70,10 +64,6 @@ _UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
 """From north, east, down, or another frame whose third axis is down, to one with it up."""
 _UPRIGHT = 0.7
 """Cosine of the angle to the vertical below which the z axis of a sensor tells where it faces."""
-_ROUND = 0.1
-"""Share of the lean of a model, alike to all sides, that is added to its ellipse [-]."""
-_TURNS = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 181)
-"""Angles from the azimuth of the largest correlation that are tried [rad]."""
 _PER_DEGREE = math.pi / 180.0
 _MEDIAN_OF_SQUARE = 0.4549
 """Median of the square of a normal variable over its variance (chi-squared, one degree)."""
@@ -212,8 +202,9 @@ def align(
     error = _TOLD_ERROR
     if facing is None or not has_gravity:
         error = _azimuth_error(likeness, count)
-    if not problem and _is_below_noise(model, measures, window):
-        problem = TELLS_LITTLE
+    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
+    if not problem and (size < LEAST_NOISE / math.sqrt(window))[measures].all():
+        problem = TELLS_LITTLE  # any sensor would differ from it
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
         problem = (
             f'it moves {ratio:.2g} times as much as the tree does there in this wind: check that '
@@ -346,28 +337,20 @@ def _pairs(
 ) -> Iterator[tuple[Floats, Floats, float]]:
     """Yield each quantity (n, 3) about its mean, that of the model, and the size of this one."""
     for first in (3 * np.flatnonzero(measures)).tolist():
-        own, wanted = (_centred(each[:, first : first + 3]) for each in (moved, model))
+        both = np.stack([each[:, first : first + 3] for each in (moved, model)])
+        own, wanted = both - both.mean(axis=1, keepdims=True)
         yield own, wanted, max(float(np.square(wanted).sum()), 1e-300)
 
 
 def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
     """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
+    across = along = 0.0
     upright = (sensed.reshape(-1, 3) @ turn.T).reshape(sensed.shape)
-    products = [
-        [one[:, :2].T @ other[:, :2] / size for one in (own, wanted) for other in (own, wanted)]
-        for own, wanted, size in _pairs(upright, model, measures)
-    ]
-    (xx, xy), (yx, yy) = np.sum([shared for _, shared, _, _ in products], axis=0)
-    angles = math.atan2(xy - yx, xx + yy) + _TURNS
-    turned = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
-    misfit = np.zeros(len(angles))
-    for own, shared, _, ellipse in products:
-        weight = np.linalg.inv(ellipse + _ROUND * np.trace(ellipse) * np.eye(2))
-        alike = np.einsum('ij,jka,ki->a', weight, turned, shared)
-        left = np.einsum('ij,jka,kl,ila->a', weight, turned, own, turned)
-        left -= np.square(np.maximum(alike, 0.0)) / np.trace(weight @ ellipse)
-        misfit += np.log(np.maximum(left, 1e-12))
-    return _about_up(float(angles[np.argmin(misfit)]))
+    for own, wanted, size in _pairs(upright, model, measures):
+        along += float((own[:, :2] * wanted[:, :2]).sum()) / size
+        turned = own[:, 0] * wanted[:, 1] - own[:, 1] * wanted[:, 0]
+        across += float(turned.sum()) / size
+    return _about_up(math.atan2(across, along))
 
 
 def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:
@@ -386,16 +369,6 @@ def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tupl
         square += float(np.square(own).sum()) / size
     count = float(measures.sum())
     return product / max(math.sqrt(square * count), 1e-300), math.sqrt(square / max(count, 1.0))
-
-
-def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> bool:
-    """Whether the model moves a sensor less than its noise: any sensor would differ from it."""
-    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
-    return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
-
-
-def _centred(rows: Floats) -> Floats:
-    return np.asarray(rows - rows.mean(axis=0))
 
 
 def noise_of(moved: Floats) -> Floats:
