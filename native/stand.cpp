@@ -46,7 +46,7 @@ struct sway_stand {
   const Frame *frame;
   size_t n_trees, n_models, n_rooms, n_steps;
   Tree *trees;
-  const Tree **order;  // of steps: neighbours read the same rows of a table; null on a page
+  const Tree **order;  // of steps: neighbours read the same rows of a table
   Kind *kinds;
   OwnStep *steps;
   Room *rooms;
@@ -124,19 +124,31 @@ void open_kind(sway_stand &stand, Kind &kind, const sway_model *model) {
   memcpy(tuning.damping, model->own_damping, model->padded * sizeof(double));
 }
 
-int by_rows(const void *a, const void *b) {
-  const Tree &one = **static_cast<const Tree *const *>(a);
-  const Tree &other = **static_cast<const Tree *const *>(b);
-  if (one.model != other.model) return one.model < other.model ? -1 : 1;
-  return (one.place.cosine > other.place.cosine) - (one.place.cosine < other.place.cosine);
+bool is_before(const Tree &one, const Tree &other) {
+  return one.model != other.model ? one.model < other.model : one.place.cosine < other.place.cosine;
+}
+
+// Put the trees of a stand in order, over narrower and narrower gaps (Shell 1959, Communications of the
+// ACM 2, 30-32) that have no divisor in common with the next (Knuth 1973, The Art of Computer Programming
+// 3, 5.2.1): trees of four kinds in turns would else be left to the last.
+void sort_trees(sway_stand &stand) {
+  const Tree **order = stand.order;
+  size_t gap = 1;
+  while (gap < stand.n_trees / 3) gap = 3 * gap + 1;
+  for (; gap > 0; gap /= 3)
+    for (size_t i = gap; i < stand.n_trees; i++) {
+      const Tree *own = order[i];
+      size_t at = i;
+      for (; at >= gap && is_before(*own, *order[at - gap]); at -= gap) order[at] = order[at - gap];
+      order[at] = own;
+    }
 }
 
 bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *trees) {
   Memory &memory = stand.memory;
   memory.take(stand.n_models, stand.kinds);
   memory.take(stand.n_rooms, stand.rooms);
-  memory.take(stand.n_trees, stand.trees, stand.steps);
-  if (!ON_TABLES) memory.take(stand.n_trees, stand.order);
+  memory.take(stand.n_trees, stand.trees, stand.steps, stand.order);
   if (stand.memory.is_short) return false;
   for (size_t i = 0; i < stand.n_models; i++) {
     open_kind(stand, stand.kinds[i], models[i]);
@@ -159,7 +171,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
     const sway_tree &given = trees[i];
     n_segments += models[given.model]->sizes.segments;
     Tree &tree = stand.trees[i];
-    if (!ON_TABLES) stand.order[i] = &tree;
+    stand.order[i] = &tree;
     tree.model = given.model;
     tree.speed = given.speed;
     tree.place = {cos(0.5 * given.yaw),
@@ -173,7 +185,7 @@ bool open(sway_stand &stand, const sway_model *const *models, const sway_tree *t
   if (!ON_TABLES && stand.n_rooms > 1) stand.threads = open_threads(stand.memory, stand.n_rooms);
   stand.is_large = n_segments > BEYOND_CACHES;
   if (stand.memory.is_short) return false;
-  if (!ON_TABLES) qsort(stand.order, stand.n_trees, sizeof(*stand.order), by_rows);
+  sort_trees(stand);
   return true;
 }
 
@@ -359,7 +371,7 @@ int sway_set_step(sway_stand *stand, double dt) {
 
 int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const double *winds,
               int64_t counts[2]) {
-  Steps steps = {stand, first, !ON_TABLES && count == stand->n_trees, winds, {}};
+  Steps steps = {stand, first, count == stand->n_trees, winds, {}};
   do_parts(*stand, room, count, step_part, &steps);
   if (counts) memcpy(counts, steps.counts, sizeof(steps.counts));
   return (steps.counts[0] ? SWAY_CLAMPED : SWAY_OK) | (steps.counts[1] ? SWAY_RESTARTED : SWAY_OK);

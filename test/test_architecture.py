@@ -118,7 +118,11 @@ def test_every_house_has_a_storey() -> None:
 
 
 def test_a_house_is_entered_by_its_face() -> None:
-    """From outside, nothing is imported from a module within; a module alone is its own face."""
+    """
+    From outside, nothing is imported from a module within; a module alone is its own face.
+
+    The commands that a house brings belong to it: they may import its modules.
+    """
     wrong = []
     for path in FILES:
         own = house_of(name_of(path))

@@ -21,7 +21,7 @@ from typing import Any
 from tree_sway.errors import MissingDependencyError
 
 GROUP = 'tree_sway.models'
-CHOOSERS = 'tree_sway.choosers'
+_CHOOSERS = 'tree_sway.choosers'
 LABORATORY = 'tree_sway_lab'
 
 
@@ -40,7 +40,7 @@ def maker_of(model: str) -> Callable[..., Any]:
 
 def chooser_of(model: str) -> Callable[..., Any]:
     """Return the class of the simulators of a model that chooses; refuse one that is missing."""
-    for point in entry_points(group=CHOOSERS, name=model):
+    for point in entry_points(group=_CHOOSERS, name=model):
         chooser: Callable[..., Any] = point.load()
         return chooser
     raise MissingDependencyError(

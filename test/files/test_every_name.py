@@ -143,9 +143,9 @@ def test_every_maker_has_its_unit(maker: dict[str, object], tmp_path: Path) -> N
         ranks = {each: rank_of(name, each) is not None for each in WIND}
         usual = '2026-03-01 0{k}:00' if ranks['time'] else '1'
         usual = '14.0' if ranks['gust'] else usual
-        usual = '270' if ranks['wind_direction'] else usual
+        usual = ('27' if maker['direction'] else '270') if ranks['wind_direction'] else usual
         columns[name] = '10.0' if ranks['wind_speed'] else cells.get(name, usual)
-    columns |= {} if '270' in columns.values() else {'dd': '270'}
+    columns |= {} if {'27', '270'} & {*columns.values()} else {'dd': '270'}
     columns |= {} if any('{k}' in each for each in columns.values()) else {'zeit': cells['zeit']}
     assert '10.0' in columns.values(), columns
     path = tmp_path / 'wind.csv'
@@ -209,6 +209,7 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'dy': '1', 'paeivae': '1', 'pv': '1', 'date': '2026-03-01', 'datum': '2026-03-01',
         'fecha': '2026-03-01', 'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
         'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
+        'timestamp1': '2026-03-01', 'timestamp2': '{k}00', 'doy': '60',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])

@@ -23,10 +23,11 @@ from tree_sway.files.motion import read_motion
 from tree_sway.files.scenes import inventory_of, inventory_table, read_critical_winds
 from tree_sway.files.scenes.scene_yaml import parse_scene
 from tree_sway.files.text_file import read_head
-from tree_sway.files.trees import LearnedFile, read_species
+from tree_sway.files.trees import LearnedFile
 from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.trees.tree_file import read_trees, TREE_FORMATS
+from tree_sway.files.trees.yaml.tree_yaml import read_species
 from tree_sway.files.wind import read_csv_sway
 from tree_sway.files.wind.wind_file import read_wind, WIND_FORMATS
 

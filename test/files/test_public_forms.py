@@ -33,6 +33,7 @@ def wind_rows(form: str, factor: float = 1.0, comma: bool = False) -> str:
     for row, speed in enumerate(SPEEDS):
         cells = {
             'n': row,
+            'n1': row + 1,
             'clock': f'14:{row:02d}',
             'speed': f'{speed * factor:.4f}',
             'more': f'{3.0 * speed * factor:.4f}',
@@ -51,6 +52,13 @@ HOBO = (
     'Line#,Date,"Wind Speed (S-WSB 1053:1-1), m/s, Mast",'
     '"Wind Direction (S-WDA 1054:2-1), *, Mast"\n'
 )
+CSIRO = ''.join(
+    f'## COLUMN{n}.name {name}\n## COLUMN{n}.units {unit}\n'
+    for n, (name, unit) in enumerate(
+        [('Time', 'days since 2000-01-01 +8'), ('Speed', 'm s-1'), ('dir', 'Degrees N (FROM)')], 1
+    )
+)
+MAST = 'Timestamp,Spd80mN [m/s],Spd40mN [m/s],Spd40mNMax [m/s],Dir78mS,Dir38mS\n'
 STATION = '10-Minute Mean Wind Direction(Compass points),10-Minute Mean Speed(km/hour)'
 TOA5 = (
     '"TOA5","38961","CR1000","38961","CR1000.Std.26","CPU:a.CR1","50269","OutCard"\n'
@@ -73,8 +81,63 @@ TOA5 = (
             3.6,
             False,
         ),
+        (CSIRO, '{n}.0 {speed} 225', 1.0, False),
+        (
+            '# time [s], speed [m/s], angle [rad]\ntime,speed,dir\n',
+            '{n},{speed},3.926991',
+            1.0,
+            False,
+        ),
+        (MAST, '2016-01-09 {clock}:00,99,{speed},99,9,225', 1.0, False),
+        ('time,speed(m/s),windSpeed(m/s),windDirection(°)\n', '{n},11,{speed},225', 1.0, False),
+        (
+            '#\tDate Time, GMT+01:00\tWind Speed, m/s (S/N: 9)\tWind Direction, ø (S/N: 7)\n',
+            '{n}\t03/05/24 {clock}:00\t{speed}\t225',
+            1.0,
+            False,
+        ),
+        (
+            'Date/Time,Wind Speed (m/s),Wind Direction (°)\n',
+            '05 03 2018 {clock},{speed},225',
+            1.0,
+            False,
+        ),
+        (
+            'Year,DOY,MST,Avg Wind Speed @ 3m [m/s],Avg Wind Direction @ 3m [deg from N]\n',
+            '2018,291,14{n:02d},{speed},225',
+            1.0,
+            False,
+        ),
+        (
+            '# STN,YYYYMMDD,DDVEC,   FG,  FXX\n',
+            '  260,202403{n1:02d},  225, {speed}, 300',
+            10.0,
+            False,
+        ),
+        (
+            'startDateTime,windSpeedMean,windDirMean\n',
+            '2024-03-05T{clock}:00Z,{speed},225',
+            1.0,
+            False,
+        ),
     ],
-    ids=['units above', 'bearing', 'mean behind', 'old buoys', 'star is degrees', 'mean before'],
+    ids=[
+        'units above',
+        'bearing',
+        'mean behind',
+        'old buoys',
+        'star is degrees',
+        'mean before',
+        'head of columns',
+        'radians in a comment',
+        'mast',
+        'not the speed of a drone',
+        'tabs before commas',
+        'spaces in dates',
+        'day of the year',
+        'days',
+        'unit of the maker',
+    ],
 )
 def test_winds_are_read_as_they_say(
     tmp_path: Path, head: str, form: str, factor: float, comma: bool
@@ -113,6 +176,63 @@ def test_directions_that_may_be_radians_are_said(
     assert ('call it wind_direction [rad]' in notes) == is_said
 
 
+def json_rows(form: str) -> str:
+    return ','.join(
+        form.replace('N', f'{row:02d}').replace('S', str(s)) for row, s in enumerate(SPEEDS)
+    )
+
+
+@pytest.mark.parametrize(
+    ('head', 'form', 'tail'),
+    [
+        (
+            '{"legend":["time","wind_speed_avg","wind_speed_max","wind_heading"],'
+            '"units":["utc","m/s","m/s","degrees"],"data":[',
+            '["2015-05-01T00:N:00.000Z",S,30,225]',
+            ']}',
+        ),
+        (
+            '{"channel":{"field1":"Wind Direction (North = 0 degrees)","field2":'
+            '"Wind Speed (m/s)"},"feeds":[',
+            '{"created_at":"2024-03-01T00:N:00Z","field1":"225","field2":"S"}',
+            ']}',
+        ),
+        ('[', '{"fecha":"20N-01-01","dir":"22.5","velmedia":"S"}', ']'),
+    ],
+    ids=['legend', 'titles', 'tens of degrees'],
+)
+def test_json_with_names_beside_its_rows(tmp_path: Path, head: str, form: str, tail: str) -> None:
+    rows = json_rows(form)
+    if 'velmedia' in form:
+        rows = rows.replace('.', ',')
+    record = read_wind(written(tmp_path, head + rows + tail, 'a.json'), turbulence=False)
+    assert not record.refused
+    np.testing.assert_allclose(np.hypot(*record.velocity[:, :2].T).mean(), np.mean(SPEEDS))
+    blows_from = np.degrees(np.arctan2(*-record.velocity[:, :2].T)) % 360.0
+    np.testing.assert_allclose(blows_from, FROM, atol=0.1)
+
+
+def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
+    text = 'time,u,v,u,v\n0,1,1,2,2\n1,1,1,2,2\n'
+    assert 'of 2 columns u the first is read' in read_wind(written(tmp_path, text)).notes
+
+
+@pytest.mark.parametrize(
+    ('text', 'name', 'match'),
+    [
+        ('"TOB1","1","CR1000"\r\n\x00\xff', 'a.dat', 'a binary table of a Campbell logger'),
+        ('53131 20190101 1610 4.4 C 0\n' * 3, 'a.txt', 'no header: the first line'),
+        ('time,speed,direction\nnow,3,90\n', 'a.csv', 'no time in it'),
+    ],
+)
+def test_what_is_no_table_of_wind_is_told(
+    tmp_path: Path, text: str, name: str, match: str
+) -> None:
+    (tmp_path / name).write_bytes(text.encode('latin-1'))
+    with pytest.raises(FormatError, match=match):
+        read_wind(tmp_path / name)
+
+
 def motion_rows(form: str) -> str:
     lines = []
     for row in range(200):
@@ -136,8 +256,26 @@ AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
             '14246966{ms:05d},1424696631{ns:09d},{x:.5f},0,{z}',
         ),
         ('Time (s),ax (m/s^2),ay (m/s^2),az (m/s^2)\nNaN,NaN,NaN,NaN\n', '{s},{x:.5f},0,{z}'),
+        (
+            '#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],'
+            'a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n',
+            '{ns},0,0,0,{x:.5f},0,{z}',
+        ),
+        ('#time,accel_x,accel_y,accel_z\n', '{s},{x:.5f},0,9806.65'),
+        ('stamp,accX,accY,accZ\n', '{ms}000,{x:.5f},0,{z}'),
+        ('HH:MM:SS.mmm,RawData,AccX[mg],AccY[mg],AccZ[mg]\n', '12:00:0{s:.3f},0,{x:.5f},0,1000'),
     ],
-    ids=['groups', 'milliseconds', 'values', 'two clocks', 'first row'],
+    ids=[
+        'groups',
+        'milliseconds',
+        'values',
+        'two clocks',
+        'first row',
+        'frames in the name',
+        'millimetres',
+        'times by their step',
+        'clock as a name',
+    ],
 )
 def test_motions_are_read_as_they_are(tmp_path: Path, head: str, form: str) -> None:
     rows = motion_rows(form)
@@ -180,6 +318,36 @@ def test_a_tree_without_a_fix_does_not_stand_at_zero(
     assert width == pytest.approx(wide, abs=0.5)
     assert '1 no place; line 3:' in notes
     assert "is '0'" in notes
+
+
+def test_trees_of_a_plot_stand_by_their_field_coordinates(tmp_path: Path) -> None:
+    rows = [f'5.27,-52.92,{10 * n},{20 * n},Quercus,30,TRUE' for n in (1, 2, 3)]
+    rows.append('5.27,-52.92,70,70,Quercus,30,FALSE')
+    head = 'Lat,Lon,Xfield,Yfield,Genus,dbh_cm,CodeAlive'
+    trees, width, notes = scene_of(tmp_path, '\n'.join([head, *rows, '']))
+    assert len(trees) == 3
+    assert width == pytest.approx(math.hypot(20.0, 40.0))
+    assert 'one latitude and longitude' in notes
+
+
+def test_a_name_that_is_another_tree_elsewhere_is_said(tmp_path: Path) -> None:
+    notes = scene_of(tmp_path, 'x,y,species,dbh_cm\n0,0,Mountain Ash,60\n')[2]
+    assert 'in Australia it is Eucalyptus regnans' in notes
+
+
+def test_digitised_trees_with_vertices_left_out(tmp_path: Path) -> None:
+    head = (
+        'CODE:\tFORM-A\nCLASSES:\nSYMBOL\tSCALE\n$\t0\nP\t1\nB\t2\nS\t3\nMTG:\n'
+        'ENTITY-CODE\t\t\tXX\tYY\tZZ\tTopDia\n'
+    )
+    body = (
+        '/P1/B1\t\t\t0\t0\t0\t90\n# pommier à ébourgeonner\n^/S1<<S9\t\t\t0\t0\t200\t80\n'
+        '^<S10\t\t\t0\t0\t300\t60\n^+B2\n\t/S1\t\t50\t0\t350\t20\n^<S11\t\t\t0\t0\t400\t30\n'
+    )
+    (tmp_path / 'a.mtg').write_bytes((head + body).encode('cp1252'))
+    tree = open_tree(tmp_path / 'a.mtg', warn=False).tree
+    assert tree.height == pytest.approx(4.0)
+    assert tree.n_segments == 4
 
 
 def test_exchanged_degrees_are_told_with_their_cells(tmp_path: Path) -> None:

@@ -72,7 +72,13 @@ def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Pat
     # Leaves meet the summer's wind: 20 m/s is as rare as 23.8 m/s, bare it stands until 30 m/s.
     per_year = Climate().per_year(20.0 / 0.84) + Climate().per_year(30.0)
     assert rows[2]['years'] == pytest.approx(1.0 / per_year, rel=0.05)
-    assert rows[2]['years_low_80'] < 0.2 * rows[2]['years']
+    low, high = rows[2]['low_80 [m/s]'], rows[2]['high_80 [m/s]']
+    weaker = np.random.default_rng(1).normal(size=400_000) / 1.2816
+    rates = Climate().per_year(20.0 / 0.84 * (low / 20.0) ** weaker)
+    rates = rates + Climate().per_year(30.0 * (low / 20.0) ** weaker)  # load of leaves apart
+    falling = 100.0 * float(np.mean(1.0 - np.exp(-50.0 * rates)))
+    assert rows[2]['fall_in_50_years [%]'] == pytest.approx(falling, rel=0.1)
+    assert rows[3]['fall_in_50_years [%]'] < rows[2]['fall_in_50_years [%]']
     # Load d^2 in leaf, by U^2; section modulus d^3, of the stem and of roots.
     assert rows[3]['stem [m/s]'] == pytest.approx(20.0 * 1.1**0.5, abs=0.01)
     assert rows[3]['roots [m/s]'] == pytest.approx(25.0 * 1.1**0.5, abs=0.01)
@@ -80,7 +86,6 @@ def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Pat
     higher = math.log(0.75 * 20.0 / 0.03) / math.log(0.75 * 21.0 / 0.03)
     assert rows[4]['stem [m/s]'] == pytest.approx(20.0 * higher, abs=0.01)
     assert 'stem by height' in rows[4]['assumed']
-    low, high = rows[2]['low_80 [m/s]'], rows[2]['high_80 [m/s]']
     _, least, most = wood_band(in_leaf=True)
     assert low == pytest.approx(20.0 / math.sqrt(most), abs=0.01)
     assert high == pytest.approx(20.0 / math.sqrt(least), abs=0.01)

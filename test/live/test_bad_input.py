@@ -7,6 +7,7 @@ from __future__ import annotations
 from contextlib import suppress
 import json
 import math
+from pathlib import Path
 import socket
 import threading
 import time
@@ -18,12 +19,13 @@ from hypothesis import strategies as st
 import pytest
 
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.reading import Refusal, WindReading
-from tree_sway.live.registry import forms, open_source, source_kinds
+from tree_sway.live.registry import open_source, source_kinds
 from tree_sway.live.sources.ecowitt import read_upload
 from tree_sway.live.sources.metar_report import read_reports
 from tree_sway.live.sources.open_meteo import read_forecast
@@ -209,9 +211,14 @@ def test_no_text_breaks_the_registry(text: str) -> None:
                 open_source(address)
 
 
+def test_every_module_of_sources_is_in_their_table() -> None:
+    modules = {each.stem for each in Path(sources.__file__).parent.glob('[!_]*.py')}
+    assert modules == {kind.module for kind in source_kinds()}
+
+
 def test_every_form_in_the_help_opens() -> None:
-    for form in forms().split(', '):
-        text = form.replace('PORT', '8080').replace(':port', ':8080').replace('PATH', 'a.b')
+    for kind in source_kinds():
+        text = kind.form.replace('PORT', '8080').replace(':port', ':8080').replace('PATH', 'a.b')
         text = text.replace('LAT,LON', '52.5,13.4').replace('ICAO', 'EDDB')
         assert open_source(text).name
 

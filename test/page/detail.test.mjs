@@ -305,10 +305,10 @@ test("the picture of a far tree is cut to the tree, and never reaches into anoth
       if (Math.abs((x % 128) - 63.5) < wide) points[4 * (1024 * y + x) + 3] = 255;
     }
   }
-  const [[left, low], [right], [, high], [end]] = cornersAbout(points);
+  const [[left, low], [right], [, high], [end]] = cornersAbout(points, 128);
   assert.ok(left === -right && right <= 1 && end < 0.3 * right);
   assert.ok(low < 2 * (10 / 128) - 1 + 1e-6 && high > 2 * (119 / 128) - 1);
-  assert.deepEqual(cornersAbout(points.fill(0))[0], [-1, -1]);
+  assert.deepEqual(cornersAbout(points.fill(0), 128)[0], [-1, -1]);
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {

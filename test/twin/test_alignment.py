@@ -276,6 +276,16 @@ def test_the_lean_tells_an_azimuth_where_the_sway_is_that_of_other_gusts(mount: 
     assert np.sqrt(np.mean(np.square(errors))) < 2.0
 
 
+def test_a_tree_leans_to_the_sides_of_its_model_where_they_share_little() -> None:
+    errors = []
+    for seed in range(60):
+        tree, model = beside_a_mast(seed, 40.0)
+        found = align(measured_there(tree, MOUNTS[2]), model, model, window=SLOW)
+        error = (Rotation.from_matrix(found.turn) * MOUNTS[2].inv()).as_rotvec()[2]
+        errors.append(abs(np.degrees(error)))
+    assert np.quantile(errors, 0.8) < 20.0  # 27 by the correlation alone
+
+
 @pytest.mark.parametrize('mount', MOUNTS)
 def test_a_sensor_that_is_told_which_way_it_faces_needs_no_likeness(mount: Rotation) -> None:
     tree, _ = beside_a_mast(1, 60.0)

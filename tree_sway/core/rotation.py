@@ -8,6 +8,8 @@ Quaternions are w x y z, (n, 4); vectors are (n, 3).
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats
@@ -31,6 +33,13 @@ def cross_matrix(v: Floats) -> Floats:
         matrix[..., k, j] = v[..., i]
         matrix[..., j, k] = -v[..., i]
     return matrix
+
+
+def about_up(angle: float) -> Floats:
+    """Rotation about the vertical by an angle [rad], counterclockwise seen from above, (3, 3)."""
+    c = math.cos(angle)
+    s = math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def quaternion_rotated(quaternions: Floats, vectors: Floats) -> Floats:

@@ -19,7 +19,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.fidelity.adaptive import AdaptiveSimulator as AdaptiveSimulator
     from tree_sway.fidelity.adaptive import REVIEW as REVIEW
-    from tree_sway.fidelity.climate import ClimateTracker as ClimateTracker
     from tree_sway.fidelity.climate import WindClimate as WindClimate
     from tree_sway.fidelity.demand import adaptive_among as adaptive_among
     from tree_sway.fidelity.demand import set_cost_scale as set_cost_scale

@@ -31,8 +31,15 @@ def _date_and_hour(parts: Sequence[str]) -> str:
 
 
 def _date_and_digits(parts: Sequence[str]) -> str:
-    clock = parts[1].zfill(4)
+    clock = parts[1].replace(':', '').zfill(4)
     return f'{parts[0]} {clock[:-2]}:{clock[-2:]}'
+
+
+def _day_of_year(parts: Sequence[str]) -> str:
+    year, day, clock = parts
+    if not (year.isdigit() and day.isdigit()):
+        return ''
+    return _date_and_digits((str(np.datetime64(year, 'D') + int(day) - 1), clock))
 
 
 def _date_and_clock(parts: Sequence[str]) -> str:
@@ -54,6 +61,7 @@ _JOINS: dict[str, Join] = {
     'date, digits': _date_and_digits,
     'date, time': _date_and_time,
     'year, month, day, time': _date_and_clock,
+    'year, day, digits': _day_of_year,
 }
 PARTS = tuple((tuple(names.split()), _JOINS[join]) for names, join in TIME_PARTS.items())
 """Columns that make a time together, and how."""

@@ -98,18 +98,7 @@ class TextTable:
 
     def known_factor(self, kind: str, unit: str) -> float:
         """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
-        factor = unit_factor(kind, unit)
-        if factor is None:
-            what = f"unknown unit '{unit[:20]}'"
-            usual: dict[float, str] = {}
-            for name, each in UNITS[kind].items():
-                usual.setdefault(each, name)
-            raise FormatError(
-                what,
-                where=f'{self.source}:{self.unit_line}',
-                cure=f'use {", ".join([*usual.values()][:_MOST_UNITS])}',
-            )
-        return factor
+        return known_factor(kind, unit, f'{self.source}:{self.unit_line}')
 
     def find(self, quantity: str) -> Column | None:
         """Return the column of a quantity of `COLUMNS` whose name comes first there, or None."""
@@ -226,6 +215,18 @@ class TextTable:
         return labels, parents
 
 
+def known_factor(kind: str, unit: str, where: str) -> float:
+    """Factor of a unit to SI; a `FormatError` that names usual ones if it is not of the kind."""
+    factor = unit_factor(kind, unit)
+    if factor is None:
+        usual: dict[float, str] = {}
+        for name, each in UNITS[kind].items():
+            usual.setdefault(each, name)
+        cure = f'use {", ".join([*usual.values()][:_MOST_UNITS])}'
+        raise FormatError(f"unknown unit '{unit[:20]}'", where=where, cure=cure)
+    return factor
+
+
 def split_row(line: str, separator: str) -> Sequence[str]:
     """Cells of one line, stripped; quoted cells may contain the separator but no line end."""
     if separator == ' ':
@@ -243,7 +244,7 @@ def split_row(line: str, separator: str) -> Sequence[str]:
 
 def separator_of(header: str) -> str:
     """Return the sign between the cells of a header, the one that it has most; else a space."""
-    found = max(SEPARATORS, key=header.count)
+    found = '\t' if header.count('\t') > 1 else max(SEPARATORS, key=header.count)
     return found if found in header or not _WORDS.fullmatch(header.strip()) else ' '
 
 
@@ -308,11 +309,12 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
         raise FormatError('no header and rows', where=source, cure='give a header and rows')
     header, _ = _joined(texts[:_MOST_LINES], '')
     separator = separator_of(header)
-    filled = list(filter(None, split_row(header, separator)))
+    cells = split_row(header, separator)
+    filled = list(filter(None, cells if len(cells) > 1 else header.split()))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
     if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):
         raise FormatError(
-            f"no header: the first line, '{header[:40]}', has no names",
+            f"no header: the first line, '{header[:40].strip()}', has no names",
             where=f'{source}:{numbers[0]}',
             cure=_NAME,
         )

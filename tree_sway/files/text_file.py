@@ -113,18 +113,14 @@ def read_text(path: Path) -> str:
 
 def _no_text(error: UnicodeDecodeError, path: Path) -> FormatError:
     """Make the error of a file that is not text."""
-    kind, cure = foreign_file(path)
+    begin = error.object[:99].decode('latin-1')
+    kind, cure = max(foreign_file(path), foreign_file(path, begin))
     what = f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}'
     return FormatError(kind or what, where=str(path), cure=cure or 'save it as UTF-8')
 
 
 def read_lines(path: Path) -> list[str]:
-    """Read a text file in UTF-8 as lines, ended by LF, CRLF or CR, without their ends."""
-    return table_lines(read_text(path), path)
-
-
-def read_table_lines(path: Path) -> list[str]:
-    """Read a table as lines, in any encoding of `decoded`; a `FormatError` for binary data."""
+    """Read a file as lines, in any encoding of `decoded`; a `FormatError` for binary data."""
     try:
         return table_lines(decoded(read_bytes(path)), path)
     except UnicodeDecodeError as error:

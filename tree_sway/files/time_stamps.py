@@ -31,7 +31,7 @@ _STAMP = re.compile(
 _MONTHS = 'jan feb mar apr may jun jul aug sep oct nov dec'.split()
 _DATES = (
     r'(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)',
-    r'(?P<first>\d\d?)(?P<sign>[-/.])(?P<second>\d\d?)[-/.](?P<year>\d{4}|\d\d)',
+    r'(?P<first>\d\d?)(?P<sign>[-/. ])(?P<second>\d\d?)[-/. ](?P<year>\d{4}|(?<! )\d\d)',
     r'(?P<year>\d{4})(?P<month>\d\d)(?P<day>\d\d)',
     r'(?P<day>\d\d?)[- ](?P<month>[A-Za-z]{3})[a-z]*[-, ]+(?P<year>\d{4})',
     r'(?P<month>[A-Za-z]{3})[a-z]* (?P<day>\d\d?),? (?P<year>\d{4})',

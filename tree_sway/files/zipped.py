@@ -10,7 +10,7 @@ from zipfile import BadZipFile, is_zipfile, ZipFile
 import zlib
 
 from tree_sway.errors import FormatError
-from tree_sway.files.text_file import decoded, read_bytes, read_table_lines, reason_of, table_lines
+from tree_sway.files.text_file import decoded, read_bytes, read_lines, reason_of, table_lines
 
 _MOST_FILES = 200
 _MOST_BYTES = 64 << 20
@@ -25,7 +25,7 @@ def tables_in(path: Path) -> Iterator[tuple[str, list[str]]]:
     Raises a `FormatError` for a broken zip, one without a table, or one that is too large.
     """
     if path.suffix.lower() != '.zip' or not read_bytes(path, 4) or not is_zipfile(path):
-        yield str(path), read_table_lines(path)
+        yield str(path), read_lines(path)
         return
     cure = 'unpack it first'
     try:

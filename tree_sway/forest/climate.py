@@ -18,7 +18,9 @@ from dataclasses import dataclass
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
 
@@ -41,12 +43,13 @@ class Climate:
     speed: float = 22.5
     shape: float | None = None
 
-    def per_year(self, speed: float) -> float:
-        """Return how often a year has a mean wind of a speed [m/s] or more at 10 m."""
+    def per_year(self, speed: ArrayLike) -> Floats:
+        """Return how often a year has mean winds of some speeds [m/s] or more at 10 m."""
+        over = np.asarray(speed) / self.speed
         if self.shape is not None:
-            return _HOURS * math.exp(-((speed / self.speed) ** self.shape))
-        squared = (speed / self.speed) ** 2 * (1.0 + _K * _REDUCED_50)
-        return math.exp((1.0 - squared) / _K)
+            return np.asarray(_HOURS * np.exp(-(over**self.shape)))
+        squared = over**2 * (1.0 + _K * _REDUCED_50)
+        return np.asarray(np.exp((1.0 - squared) / _K))
 
     def __str__(self) -> str:
         """Say what it is."""

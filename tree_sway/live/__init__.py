@@ -6,8 +6,8 @@ Live instruments: wind and motion from a network, a serial port, a phone, the in
 `open_source` makes a `LiveWind` from an address such as ``udp://:10110``: `transports` deliver
 bytes and connect again, `readers` say what they mean, and a file of `sources` puts one of each
 together. One sender is followed; another is refused, counted and named. `open_motion` and
-`MotionFeed` do the same for motion sensors. A new instrument is one file in `sources`
-(``CONTRIBUTING.md``).
+`MotionFeed` do the same for motion sensors. A new kind of source is one file in
+`sources` and its row there (``CONTRIBUTING.md``).
 """
 
 from typing import TYPE_CHECKING
@@ -23,12 +23,9 @@ if TYPE_CHECKING:
     from tree_sway.live.camera.point_tracker import Sighting as Sighting
     from tree_sway.live.live_wind import LiveWind as LiveWind
     from tree_sway.live.motion.live_motion import LiveMotion as LiveMotion
-    from tree_sway.live.motion.live_motion import MotionSample as MotionSample
     from tree_sway.live.motion.motion_feed import MotionFeed as MotionFeed
-    from tree_sway.live.motion.motion_feed import PlacedSensor as PlacedSensor
     from tree_sway.live.motion.motion_registry import open_motion as open_motion
     from tree_sway.live.readers.instrument_lines import InstrumentLines as InstrumentLines
-    from tree_sway.live.reading import WindReading as WindReading
     from tree_sway.live.registry import open_source as open_source
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -1,23 +1,27 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Every kind of source, and a source opened by its address.
-
-A module of ``sources`` has its kinds as ``SOURCES``, and is found by itself.
-"""
+"""Every kind of source, and a source opened by its address."""
 
 from __future__ import annotations
 
 from functools import cache
 import importlib
 import math
-import pkgutil
 from typing import NamedTuple
 
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.live import sources
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import read_source_address
-from tree_sway.live.source_kind import Source, SourceKind
+from tree_sway.tables import table_beside
+
+
+class SourceKind(NamedTuple):
+    """A kind of source: its module in `sources`, schemes and an example of its addresses."""
+
+    module: str
+    schemes: tuple[str, ...]
+    form: str
 
 
 class OpenedSource(NamedTuple):
@@ -42,10 +46,11 @@ WEST = 1.5 * math.pi
 
 @cache
 def source_kinds() -> tuple[SourceKind, ...]:
-    """Return every kind, by the order of the module's names."""
-    names = sorted(module.name for module in pkgutil.iter_modules(sources.__path__))
-    modules = (importlib.import_module(f'{sources.__name__}.{name}') for name in names)
-    return tuple(kind for module in modules for kind in module.SOURCES)
+    """Return every kind, as the table beside `sources` has them."""
+    rows = table_beside(sources.__file__, 'sources.csv')
+    return tuple(
+        SourceKind(each['module'], tuple(each['schemes'].split()), each['form']) for each in rows
+    )
 
 
 def open_source(text: str) -> OpenedSource:
@@ -73,7 +78,8 @@ def open_source(text: str) -> OpenedSource:
             where='sensor',
             cure='; '.join(filter(None, (guess, f'give one of {forms}'))),
         )
-    source = kinds[address.scheme].open(address)
+    module = importlib.import_module(f'{sources.__name__}.{kinds[address.scheme].module}')
+    source: Source = module.open_source(address)
     name = address.name
     bearing = address.angle('from_degrees', WEST)
     given = address.text_of('mean')
@@ -81,8 +87,3 @@ def open_source(text: str) -> OpenedSource:
     address.refuse_others()
     shown = f'{name}, {source.name}' if name else source.name
     return OpenedSource(source, shown, bearing, mean, 'from_degrees' in address.options)
-
-
-def forms() -> str:
-    """Return the addresses of all kinds as one text, for help."""
-    return ', '.join(kind.form for kind in source_kinds())

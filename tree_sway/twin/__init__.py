@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from tree_sway.twin.alignment import Alignment as Alignment
     from tree_sway.twin.alignment import GRAVITY as GRAVITY
     from tree_sway.twin.identification.calibration import calibrate as calibrate
-    from tree_sway.twin.identification.calibration import Calibration as Calibration
-    from tree_sway.twin.identification.free_decay import FreeDecay as FreeDecay
     from tree_sway.twin.identification.measured_sway import estimate_sway as estimate_sway
     from tree_sway.twin.learned_tree import LearnedTree as LearnedTree
     from tree_sway.twin.members import uncertainty_of as uncertainty_of

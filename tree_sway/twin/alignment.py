@@ -11,7 +11,13 @@ unless it has an orientation, which tells what is upright. The azimuth of an ori
 believed: without a compass it is any, and steel turns a compass.
 
 A mast some metres away knows the lean in slow gusts, and nothing of those that shake the crown.
-So both motions are averaged over some seconds, in which an acceleration is the lean. N averages
+So both motions are averaged over some seconds, in which an acceleration is the lean. What the
+model does not tell of it leans the tree to the same sides as what it tells, with C the covariance
+of the model's lean x up to a factor. Of a sensor's lean y the azimuth is the likeliest turn, R::
+
+    min over R, b of  ln sum of (R y - b x)' C^-1 (R y - b x)
+
+within a right angle of that of the largest correlation: an ellipse has two ends. N averages
 whose correlation is r tell an azimuth with the error ``sqrt((1 - r^2) / (2 N r^2))`` of a phase
 (Bendat & Piersol 2010, *Random Data*, 9.2), and the sign s of r's rival by ``N ln (1 - r^2) / (1 -
 s^2)``, the logarithm of their likelihoods.
@@ -64,6 +70,10 @@ _UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
 """From north, east, down, or another frame whose third axis is down, to one with it up."""
 _UPRIGHT = 0.7
 """Cosine of the angle to the vertical below which the z axis of a sensor tells where it faces."""
+_ROUND = 0.1
+"""Share of the lean of a model, alike to all sides, that is added to its ellipse [-]."""
+_TURNS = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 181)
+"""Angles from the azimuth of the largest correlation that are tried [rad]."""
 _PER_DEGREE = math.pi / 180.0
 _MEDIAN_OF_SQUARE = 0.4549
 """Median of the square of a normal variable over its variance (chi-squared, one degree)."""
@@ -116,10 +126,6 @@ class Alignment:
         out[..., 3:6] = self.scale[1] * values[..., 3:6] @ self.turn.T
         out[..., 6:9] = values[..., 6:9] @ self.turn.T
         return out
-
-    def turned(self, angle: float, error: float) -> Alignment:
-        """Return it turned from east to north by an angle of an error, both in [rad]."""
-        return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)
 
 
 def align(
@@ -346,13 +352,22 @@ def _pairs(
 
 def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
     """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
-    across = along = 0.0
     upright = (sensed.reshape(-1, 3) @ turn.T).reshape(sensed.shape)
-    for own, wanted, size in _pairs(upright, model, measures):
-        along += float((own[:, :2] * wanted[:, :2]).sum()) / size
-        turned = own[:, 0] * wanted[:, 1] - own[:, 1] * wanted[:, 0]
-        across += float(turned.sum()) / size
-    return _about_up(math.atan2(across, along))
+    products = [
+        [one[:, :2].T @ other[:, :2] / size for one in (own, wanted) for other in (own, wanted)]
+        for own, wanted, size in _pairs(upright, model, measures)
+    ]
+    (xx, xy), (yx, yy) = np.sum([shared for _, shared, _, _ in products], axis=0)
+    angles = math.atan2(xy - yx, xx + yy) + _TURNS
+    turned = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
+    misfit = np.zeros(len(angles))
+    for own, shared, _, ellipse in products:
+        weight = np.linalg.inv(ellipse + _ROUND * np.trace(ellipse) * np.eye(2))
+        alike = np.einsum('ij,jka,ki->a', weight, turned, shared)
+        left = np.einsum('ij,jka,kl,ila->a', weight, turned, own, turned)
+        left -= np.square(np.maximum(alike, 0.0)) / np.trace(weight @ ellipse)
+        misfit += np.log(np.maximum(left, 1e-12))
+    return _about_up(float(angles[np.argmin(misfit)]))
 
 
 def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:

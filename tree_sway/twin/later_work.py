@@ -26,8 +26,8 @@ class LaterWork(Generic[_T]):
     Parameters
     ----------
     find
-        Finds the result. It must not read what the steps change. A process that is forked before the
-        result is due has no thread of its parent, and calls it again.
+        Finds the result. It must not read what the steps change. A process that is forked before
+        the result is due has no thread of its parent, and calls it again.
     n_steps
         Number of calls of `advance`, the last of which returns the result.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter, welch
+from scipy.signal import correlate, lfilter, welch
 
 from tree_sway.core.arrays import Floats
 
@@ -69,10 +69,10 @@ def compare_sway(
     wanted = measured - measured.mean(axis=0)
     size = float(np.sqrt(np.square(wanted).mean()))
     most = min(round(LONGEST_LAG * rate), len(found) // 4)
-    rs = [_correlation(found, wanted, lag) for lag in range(-most, most + 1)]
+    rs = _correlations(found, wanted, most)
     best = int(np.argmax(rs))
     return SwayComparison(
-        rs[best],
+        float(rs[best]),
         (best - most) / rate,
         float(np.sqrt(np.square(found - wanted).mean())) / size,
         float(np.sqrt(np.square(found).mean())) / size,
@@ -102,13 +102,23 @@ def low_passed(wind: Floats, frequency: float, rate: float) -> Floats:
     return np.asarray(lfilter([1.0 - keep], [1.0, -keep], squared, axis=0))
 
 
-def _correlation(found: Floats, wanted: Floats, lag: int) -> float:
-    """Correlation of a motion with another one that is earlier by a number of samples."""
+def _correlations(found: Floats, wanted: Floats, most: int) -> Floats:
+    """Correlation of a motion with another one that is earlier by -most to most samples."""
     n = len(found)
-    late = found[max(lag, 0) : n + min(lag, 0)]
-    early = wanted[max(-lag, 0) : n - max(lag, 0)]
-    power = np.square(late).sum() * np.square(early).sum()
-    return float((late * early).sum() / np.sqrt(max(power, 1e-300)))
+    lags = np.arange(-most, most + 1)
+    axes = zip(found.T, wanted.T, strict=True)
+    products = np.sum([correlate(late, early, method='fft') for late, early in axes], axis=0)
+    late_power = _power_until(found)
+    early_power = _power_until(wanted)
+    power = (late_power[n + np.minimum(lags, 0)] - late_power[np.maximum(lags, 0)]) * (
+        early_power[n - np.maximum(lags, 0)] - early_power[np.maximum(-lags, 0)]
+    )
+    return np.asarray(products[n - 1 + lags] / np.sqrt(np.maximum(power, 1e-300)))
+
+
+def _power_until(motion: Floats) -> Floats:
+    """Sum of the squares before each sample of a motion, and of all of them, (n + 1,)."""
+    return np.append(0.0, np.square(motion).sum(axis=1).cumsum())
 
 
 def _band_ratios(

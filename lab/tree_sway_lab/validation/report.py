@@ -33,7 +33,7 @@ from tree_sway_lab.validation.section import CHECKS, Effort, HOLDS, MISSES, Sect
 SECTIONS = (
     'kinds', 'storms', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans',
     'cut_scans', 'still_air', 'leaves', 'slopes', 'crown_gusts', 'conifers', 'published',
-    'held_out', 'forestgales', 'broadleaves', 'battery', 'paper',
+    'held_out', 'forestgales', 'storm_losses', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 

@@ -323,11 +323,6 @@ READ: dict[str, tuple[str, float]] = {
 """Texts of files, and their mean speed in [m/s]; the wind comes from 240 degrees or WSW."""
 
 REFUSED: dict[str, tuple[str, str]] = {
-    'daily means of aemet': (
-        json.dumps(records(lambda k: {
-            'fecha': f'2026-03-0{k + 1}', 'velmedia': '2,8', 'dir': '24', 'racha': '9,4',
-        })), 'no column for the speed',
-    ),
     'global summary of the day': (
         table('"STATION","DATE","WDSP","MXSPD","GUST"',
             row=lambda k: f'"7250301","2026-03-0{k + 1}","10.0","14.0","20.0"'),

@@ -11,7 +11,8 @@ from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.growth import grow
 from tree_sway.twin import place_on
-from tree_sway.twin.camera import Camera, camera_of_clicks, Click, looking, Told, told_by
+from tree_sway.twin.camera import Camera, camera_of_clicks, Click, looking, told_by
+from tree_sway.twin.camera.camera_pose import Told
 
 SIZE = 1280, 720
 BEARING, DISTANCE = 250.0, 14.0

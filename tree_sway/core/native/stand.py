@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from array import array
+from collections.abc import Callable, Sequence
 import ctypes
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -109,11 +111,22 @@ class NativeStand:
         self._counts_at = address(self._counts)
         self._winds_at = LastAddress()
         self._rows_at = LastAddress()
-        self._wind = (ctypes.c_double * 3)()
-        self._first_row = np.zeros((1, 2), dtype=np.int64)
-        self._first_row_at = address(self._first_row)
         self._keys_at = LastAddress()
         self._poses_at = LastAddress()
+        # Of a tree alone a frame takes so little time that its arguments are made once.
+        at, no, one = ctypes.c_void_p(handle), ctypes.c_size_t(0), ctypes.c_size_t(1)
+        self.wind = array('d', (0.0, 0.0, 0.0))
+        """Wind in which `step_first` steps the first tree [m/s]."""
+        wind_at = ctypes.c_void_p(self.wind.buffer_info()[0])
+        self.step_first: Callable[[], int] = partial(
+            LIBRARY.sway_step, at, no, no, one, wind_at, None
+        )
+        """Step the first tree in `wind`; returns the bits of ``sway_step``."""
+        self._first_row = np.zeros((1, 2), dtype=np.int64)
+        row_at = ctypes.c_void_p(address(self._first_row))
+        self._filled: Floats | None = None
+        self._filled_at = ctypes.c_void_p()
+        self._fill = partial(LIBRARY.sway_place, at, no, row_at, one, self._filled_at)
 
     def _views(self, count: int, opened: Opened) -> States:
         """Return views of the states; they keep its memory."""
@@ -146,14 +159,6 @@ class NativeStand:
         if LIBRARY.sway_tune(self._handle, kind, *map(address, own)):
             raise ParameterError('stiffness or damping that no tree has', where='tune')
 
-    def step_first(self, x: float, y: float, z: float) -> int:
-        """Step the first tree in a wind [m/s]; returns the bits of ``sway_step``."""
-        wind = self._wind
-        wind[0] = x
-        wind[1] = y
-        wind[2] = z
-        return int(LIBRARY.sway_step(self._handle, 0, 0, 1, wind, None))
-
     def step(self, winds: Floats) -> tuple[int, int]:
         """
         Step every tree in its wind [m/s], (t, 3).
@@ -172,7 +177,10 @@ class NativeStand:
 
     def place_first(self, out: Floats) -> None:
         """Place the first tree, (n, 7); ``out`` is contiguous."""
-        LIBRARY.sway_place(self._handle, 0, self._first_row_at, 1, self._poses_at.of(out))
+        if out is not self._filled:
+            self._filled_at.value = address(out)
+            self._filled = out
+        self._fill()
 
     def place(self, rows: Ints, out: Floats) -> None:
         """Place trees: their numbers and first rows in a pose block, (w, 2)."""

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import math
@@ -106,7 +107,8 @@ class SwaySimulator:
         self._touch: Touch | None = None
         self._dt = math.nan
         self._watch: ClampWatch | None = None
-        self._wind = np.zeros(3)
+        self._stored = array('d', (0.0, 0.0, 0.0))
+        self._wind = np.frombuffer(self._stored)  # which a number is written to in twice the time
         self._expected = (prepared.n_keys,)
         self._poses = np.zeros((tree.n_segments, 7))
         self._filled = self._poses
@@ -278,27 +280,21 @@ class SwaySimulator:
             A step that is not above 0, or longer than `LONGEST_STEP`.
 
         """
-        counts = self.counts
         x, y, z = three_numbers('wind', wind_mean)
-        is_changed = dt != self._dt
-        if is_changed:
-            refuse_time_step(dt)
-        # A transition advances with every step, also where the length of the step varies.
-        if self._tuning is not None and self._glide(dt):
-            is_changed = True
-        if is_changed:
-            self._set_step(dt)
+        if dt != self._dt or self._tuning is not None:
+            self._change_step(dt)
+        counts = self.counts
         counts.steps += 1
-        status = Outcome.OK
-        stored = self._wind
+        status = 0
         if is_wind(x, y, z, self._max_wind):
+            stored = self._stored
             stored[0] = x
             stored[1] = y
             stored[2] = z
         else:
             status = Outcome.WIND_REFUSED
             counts.refused += 1
-            x, y, z = stored.tolist()
+            x, y, z = self._stored
         if self._far is not None:
             x, y, z = self._far.push(x, y, z, dt)
         if self._gusts is not None:
@@ -418,7 +414,8 @@ class SwaySimulator:
             An array of a wrong shape or type.
 
         """
-        out = self._to_fill(out)
+        if out is not self._filled:
+            out = self._to_fill(out)
         if self._touch is None:
             self._bank.place_now(out)
             return out
@@ -487,6 +484,15 @@ class SwaySimulator:
         self._touch = self._watch = None
         self._dt = math.nan
         self._wind[:] = 0.0
+
+    def _change_step(self, dt: float) -> None:
+        """Refill the coefficients if the step [s] or the tuning has changed."""
+        is_changed = dt != self._dt
+        if is_changed:
+            refuse_time_step(dt)
+        # A transition advances with every step, also where the length of the step varies.
+        if self._glide(dt) or is_changed:
+            self._set_step(dt)
 
     def _set_step(self, dt: float) -> None:
         self._bank.oscillators.set_step(dt)

@@ -130,7 +130,12 @@ class TableOscillators:
         Returns 1 if the step was clamped to the limit of the table, -1 if the motion was not
         finite and the tree came to rest, else 0.
         """
-        outcome = self.stand.step_first(wx, wy, wz)
+        stand = self.stand
+        wind = stand.wind
+        wind[0] = wx
+        wind[1] = wy
+        wind[2] = wz
+        outcome = stand.step_first()
         if outcome == 0:
             return 0
         self.n_outside += 1

@@ -10,7 +10,6 @@ forces are k^2 and its moments k^3 times those of its kind, the stiffness of a s
 from __future__ import annotations
 
 from dataclasses import dataclass
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read
+from tree_sway.core.rotation import about_up
 from tree_sway.core.scene.placed_tree import PlacedTree
 
 if TYPE_CHECKING:
@@ -33,9 +33,7 @@ class KindFrame:
     @property
     def _rotation_kind_world(self) -> Floats:
         """Return the rotation from the world to the kind, (3, 3)."""
-        cosine = math.cos(self.tree.yaw)
-        sine = math.sin(self.tree.yaw)
-        return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return about_up(-self.tree.yaw)
 
     def to_tree(self, force: Floats, moment: Floats) -> tuple[Floats, Floats]:
         """Return a force [N] and a moment [N m] on the kind, (3,), as they are on the tree."""

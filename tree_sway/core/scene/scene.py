@@ -23,7 +23,7 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import oddities, refuse_implausible
 from tree_sway.errors import inside, ParameterError
 
-MOST_APART = 20
+_MOST_APART = 20
 """Largest number of trees apart from their anemometer, each with a model and a field of gusts."""
 
 
@@ -162,11 +162,11 @@ class Scene(PlacedTrees):
         """
         chosen = settings_with(settings, changes)
         if not self.is_one_tree:
-            if chosen.is_far and len(self.trees) > MOST_APART:
+            if chosen.is_far and len(self.trees) > _MOST_APART:
                 raise ParameterError(
                     f'a distance to the anemometer for {len(self.trees)} trees',
                     where='anemometer_distance',
-                    cure=f'leave it out above {MOST_APART} trees: each needs a model of its own',
+                    cure=f'leave it out above {_MOST_APART} trees: each needs a model of its own',
                 )
             return SceneSimulator(
                 self, chosen, tolerance=tolerance, cache=cache, progress=progress

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.rotation import quaternions_of_axes
+from tree_sway.core.rotation import about_up, quaternions_of_axes
 from tree_sway.errors import ParameterError
 
 CALM_SPEED = 0.05
@@ -98,9 +98,7 @@ class WindConvention:
 
     @cached_property
     def _enu_from_source(self) -> Floats:
-        c = math.cos(self.yaw_offset)
-        s = math.sin(self.yaw_offset)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return about_up(self.yaw_offset)
 
     def velocity(self, components: ArrayLike) -> Floats:
         """

@@ -21,14 +21,9 @@ from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, shown, SpeciesError
 from tree_sway.files import reader_options, refuse_unwritable
 from tree_sway.files.export import write_tree
-from tree_sway.files.trees import (
-    is_species_file,
-    open_scene,
-    open_tree,
-    read_species,
-    same,
-    TreeFile,
-)
+from tree_sway.files.trees import open_scene, open_tree, TreeFile
+from tree_sway.files.trees.tree_options import same
+from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
 
 T = TypeVar('T')
 

@@ -35,18 +35,14 @@ from tree_sway.files.commands.wind_arguments import (
     opened_wind,
     refuse_unused_wind,
 )
-from tree_sway.files.export import (
-    mjcf_of_tree,
-    morphing_tree,
-    ObjScene,
-    sdf_of_tree,
-    SUFFIXES,
-    write_gltf,
-    write_tree,
-    write_usd,
-)
-from tree_sway.files.models import NATIVE_SUFFIX, write_model, write_native_model
-from tree_sway.files.models import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.export import mjcf_of_tree, morphing_tree, write_tree
+from tree_sway.files.export.hinged_tree_writing import sdf_of_tree
+from tree_sway.files.export.obj_scene import ObjScene
+from tree_sway.files.export.tree_export import SUFFIXES, write_gltf
+from tree_sway.files.export.usd_writing import write_usd
+from tree_sway.files.models import write_model
+from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.models.model_writer import NATIVE_SUFFIX, write_native_model
 from tree_sway.files.trees import TreeFile
 
 

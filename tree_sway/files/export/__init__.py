@@ -15,13 +15,8 @@ if TYPE_CHECKING:
     from tree_sway.files.export.gltf_tree import morphing_tree as morphing_tree
     from tree_sway.files.export.hinged_tree import plain_names as plain_names
     from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree as mjcf_of_tree
-    from tree_sway.files.export.hinged_tree_writing import sdf_of_tree as sdf_of_tree
-    from tree_sway.files.export.obj_scene import ObjScene as ObjScene
     from tree_sway.files.export.table_writing import refuse_no_table as refuse_no_table
     from tree_sway.files.export.table_writing import write_columns as write_columns
-    from tree_sway.files.export.tree_export import SUFFIXES as SUFFIXES
-    from tree_sway.files.export.tree_export import write_gltf as write_gltf
     from tree_sway.files.export.tree_export import write_tree as write_tree
-    from tree_sway.files.export.usd_writing import write_usd as write_usd
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -12,8 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 _COMPONENTS = {
-    'int8': 5120, 'uint8': 5121, 'int16': 5122, 'uint16': 5123, 'uint32': 5125, 'float32': 5126
-}  # fmt: skip
+    'int8': 5120,
+    'uint8': 5121,
+    'int16': 5122,
+    'uint16': 5123,
+    'uint32': 5125,
+    'float32': 5126,
+}
 _SHAPES = {(): 'SCALAR', (2,): 'VEC2', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
 _LINEAR = 9729
 _LINEAR_MIPMAP_LINEAR = 9987
@@ -59,19 +64,29 @@ class GltfDocument:
         rows = columns
         stride = columns.itemsize * columns.shape[1]
         if target == ARRAY_BUFFER and stride % 4:  # vertices begin at multiples of 4 bytes
-            rows = np.pad(columns, ((0, 0), (0, -stride % 4 // columns.itemsize)))
+            missing = -stride % 4 // columns.itemsize
+            rows = np.pad(columns, ((0, 0), (0, missing)))
         view = self.add(
-            'bufferViews', buffer=0, byteOffset=len(self._bytes), byteLength=rows.nbytes,
-            byteStride=rows.strides[0] if rows is not columns else None, target=target,
-        )  # fmt: skip
-        self._bytes += np.ascontiguousarray(rows).astype(rows.dtype.newbyteorder('<')).tobytes()
+            'bufferViews',
+            buffer=0,
+            byteOffset=len(self._bytes),
+            byteLength=rows.nbytes,
+            byteStride=rows.strides[0] if rows is not columns else None,
+            target=target,
+        )
+        stored = np.ascontiguousarray(rows).astype(rows.dtype.newbyteorder('<'))
+        self._bytes += stored.tobytes()
         self._bytes += b'\0' * (-len(self._bytes) % 4)
         return self.add(
-            'accessors', bufferView=view, componentType=_COMPONENTS[array.dtype.name],
-            normalized=is_share or None, count=len(array), type=_SHAPES[array.shape[1:]],
+            'accessors',
+            bufferView=view,
+            componentType=_COMPONENTS[array.dtype.name],
+            normalized=is_share or None,
+            count=len(array),
+            type=_SHAPES[array.shape[1:]],
             min=columns.min(axis=0).tolist() if bounds else None,
             max=columns.max(axis=0).tolist() if bounds else None,
-        )  # fmt: skip
+        )
 
     def add_picture(self, name: str, png: bytes) -> int:
         """Add a PNG that goes on beyond its edges as a texture and return its number."""
@@ -90,5 +105,7 @@ class GltfDocument:
         text = json.dumps({**self._json, 'buffers': buffers}, separators=(',', ':')).encode()
         text += b' ' * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self._bytes)
-        head = struct.pack('<4sII', b'glTF', 2, size) + struct.pack('<I4s', len(text), b'JSON')
-        return head + text + struct.pack('<I4s', len(self._bytes), b'BIN\0') + bytes(self._bytes)
+        head = struct.pack('<4sII', b'glTF', 2, size)
+        head_of_text = struct.pack('<I4s', len(text), b'JSON')
+        head_of_bytes = struct.pack('<I4s', len(self._bytes), b'BIN\0')
+        return head + head_of_text + text + head_of_bytes + bytes(self._bytes)

@@ -119,9 +119,8 @@ def hinged_tree(simulator: SwaySimulator, *, has_twist_and_weight: bool = True) 
     species = simulator.models[0].species
     bodies = _bodies(tree, species.density, _spread(tree, settings.leaf_mass))
     hinges = _Hinges.of(tree, 3 if has_twist_and_weight else 2)
-    springs = _springs(
-        tree, species, settings.root_stiffness or species.root_stiffness, hinges.axes.shape[1]
-    )
+    root_stiffness = settings.root_stiffness or species.root_stiffness
+    springs = _springs(tree, species, root_stiffness, hinges.axes.shape[1])
     mass_matrix = _mass_matrix(tree, bodies, hinges)
     moment = np.zeros(springs.shape)
     weight_stiffness = sparse.csc_matrix(mass_matrix.shape)
@@ -202,8 +201,10 @@ def _drag_area(simulator: SwaySimulator) -> Floats:
     model = simulator.models[0]
     reductions = TreeReductions(tree, model.species, simulator.settings)
     mean_diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
-    area = (mean_diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
-    return 2.0 / AIR_DENSITY * drag_density(SHARED_AT, *model.drag_law) * area
+    leaf_width = _spread(tree, reductions.leaf_load_area)
+    area = (mean_diameter + leaf_width) * tree.length
+    drag = drag_density(SHARED_AT, *model.drag_law)
+    return 2.0 / AIR_DENSITY * drag * area
 
 
 class _Points(NamedTuple):
@@ -226,7 +227,9 @@ def _points(tree: Tree) -> _Points:
     length, base, tip = (
         each[:, None, None] for each in (tree.length, tree.base_diameter, tree.tip_diameter)
     )
-    return _Points(share, length * 0.25 * weight, base + (tip - base) * share)
+    part = length * 0.25 * weight
+    diameter = base + (tip - base) * share
+    return _Points(share, part, diameter)
 
 
 def _frames(tree: Tree) -> Floats:
@@ -278,8 +281,10 @@ def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
     mass = total.sum(axis=(1, 2))
     centre = (total * along).sum(axis=(1, 2)) / mass
     disc = (wood * points.diameter**2).sum(axis=(1, 2)) / 16.0
-    across = (total * along**2).sum(axis=(1, 2)) - mass * centre**2 + disc
-    return _Bodies(mass, centre, np.stack([2.0 * disc, across], axis=1))
+    about_start = (total * along**2).sum(axis=(1, 2))
+    across = about_start - mass * centre**2 + disc
+    inertia = np.stack([2.0 * disc, across], axis=1)
+    return _Bodies(mass, centre, inertia)
 
 
 class _Hinges(NamedTuple):

@@ -41,7 +41,8 @@ class ObjScene:
         self._faces = list[str]()
         first = 1
         for name, mesh in zip(('wood', 'leaves'), self._meshes, strict=False):
-            lines = '\n'.join(f'f {a} {b} {c}' for a, b, c in (mesh.triangles + first).tolist())
+            triangles = (mesh.triangles + first).tolist()
+            lines = '\n'.join(f'f {a} {b} {c}' for a, b, c in triangles)
             self._faces.append(f'g {name}\nusemtl {name}\n{lines}\n')
             first += len(mesh.points)
 

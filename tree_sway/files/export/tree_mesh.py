@@ -49,8 +49,9 @@ class TreeMesh:
 
     def placed(self, poses: Floats) -> Floats:
         """Vertices [m], (v, 3), in the frame of poses (n, 7): x y z, and quaternion x y z w."""
-        rotation = Rotation.from_quat(poses[self.segment, 3:])
-        return poses[self.segment, :3] + rotation.apply(self.points)
+        own = poses[self.segment]
+        rotation = Rotation.from_quat(own[:, 3:])
+        return own[:, :3] + rotation.apply(self.points)
 
 
 def wood_mesh(tree: Tree) -> TreeMesh:
@@ -65,20 +66,27 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     around = np.stack([np.zeros(SIDES), np.cos(angle), np.sin(angle)], axis=1)
     base = 0.5 * tree.base_diameter
     tip = 0.5 * tree.tip_diameter
-    rings = np.stack([base, tip], axis=1)[:, :, None, None] * around
+    radius = np.stack([base, tip], axis=1)
+    rings = radius[:, :, None, None] * around
     rings[:, 1, :, 0] = tree.length[:, None]
     slope = np.arctan2(base - tip, tree.length)[:, None, None]
-    outward = np.cos(slope) * around + np.sin(slope) * np.array([1.0, 0.0, 0.0])
-    texture = np.empty((n, 2, SIDES, 2))
-    texture[..., 0] = 1.0 - np.abs(1.0 - 2.0 * np.arange(SIDES) / SIDES)
+    along = np.array([1.0, 0.0, 0.0])
+    outward = np.cos(slope) * around + np.sin(slope) * along
+    normals = np.stack([outward, outward], axis=1)
+    half_turns = 2.0 * np.arange(SIDES) / SIDES
     end = np.cumsum(tree.length)
-    before = (end - tree.length)[tree.branch_first[:-1]][tree.branch_of_segment]
-    ends = np.stack([end - tree.length - before, end - before], axis=1)
-    texture[..., 1] = (ends / min(BARK_HEIGHT, 0.12 * tree.height))[:, :, None]
+    start = end - tree.length
+    start_of_branch = start[tree.branch_first[:-1]]
+    before = start_of_branch[tree.branch_of_segment]
+    way = np.stack([start - before, end - before], axis=1)
+    picture_height = min(BARK_HEIGHT, 0.12 * tree.height)
+    texture = np.empty((n, 2, SIDES, 2))
+    texture[..., 0] = 1.0 - np.abs(1.0 - half_turns)
+    texture[..., 1] = (way / picture_height)[:, :, None]
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
-    triangles = np.vstack(
+    of_cone = np.vstack(
         [
             np.stack([i, j, j + SIDES], axis=1),
             np.stack([i, j + SIDES, i + SIDES], axis=1),
@@ -86,12 +94,14 @@ def wood_mesh(tree: Tree) -> TreeMesh:
             np.stack([0 * fan, fan, fan + 1], axis=1) + SIDES,
         ]
     )
+    first = 2 * SIDES * np.arange(n)
+    triangles = first[:, None, None] + of_cone
     return TreeMesh(
         rings.reshape(-1, 3),
-        np.stack([outward, outward], axis=1).reshape(-1, 3),
+        normals.reshape(-1, 3),
         texture.reshape(-1, 2),
         np.repeat(np.arange(n), 2 * SIDES),
-        (2 * SIDES * np.arange(n)[:, None, None] + triangles).reshape(-1, 3),
+        triangles.reshape(-1, 3),
     )
 
 
@@ -103,9 +113,11 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     are given. Texture coordinates run along the shoot, and across from one side to the other.
     """
     turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
-    parts = [_cards(leaves, spray, turns, card) for card in range(min(cards, len(spray.rolls)))]
+    count = min(cards, len(spray.rolls))
+    parts = [_cards(leaves, spray, turns, card) for card in range(count)]
     points, normals = (np.concatenate(each) for each in zip(*parts, strict=True))
-    return _card_mesh(points, normals, np.tile(leaves.segment.astype(np.int64), len(parts)))
+    segment = np.tile(leaves.segment.astype(np.int64), count)
+    return _card_mesh(points, normals, segment)
 
 
 def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> TreeMesh:
@@ -119,14 +131,18 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     poses = tree.rest_poses
     corners = mesh.placed(poses).reshape(-1, 4, 3)
     segment = mesh.segment[::4]
-    number = (np.cumsum(tree.segment_parent < 0) - 1)[segment]  # of the tree in a forest
+    is_root = tree.segment_parent < 0
+    tree_of_segment = np.cumsum(is_root) - 1  # in a forest
+    number = tree_of_segment[segment]
     centre = corners.mean(axis=1)
     total = np.stack([np.bincount(number, each) for each in centre.T], axis=1)
-    middle = total / np.maximum(np.bincount(number), 1)[:, None]
-    foot = tree.start[tree.segment_parent < 0, 2][number]
+    count = np.maximum(np.bincount(number), 1)
+    middle = total / count[:, None]
+    foot = tree.start[is_root, 2]
     away = _unit(centre - middle[number])
     away[:, 2] += _SKYWARD
-    outward = Rotation.from_quat(poses[segment, 3:]).inv().apply(away)[:, None]
+    rotation = Rotation.from_quat(poses[segment, 3:])
+    outward = rotation.inv().apply(away)[:, None]
     own = mesh.normals.reshape(-1, 4, 3)
     points = mesh.points.reshape(-1, 4, 3)
     # Viewers turn the normals of a back: the front of each card is outside.
@@ -134,7 +150,8 @@ def crown_mesh(tree: Tree, leaves: LeafClusters, spray: Spray, shoots: int) -> T
     points[is_back] = points[is_back, ::-1]
     own = np.where(is_back[:, None, None], -own[:, ::-1], own)
     normals = _unit(_FLAT * own + outward)
-    is_above = corners[..., 2].min(axis=1) >= foot
+    lowest = corners[..., 2].min(axis=1)
+    is_above = lowest >= foot[number]
     return _card_mesh(points[is_above], normals[is_above], segment[is_above])
 
 
@@ -147,12 +164,15 @@ def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
     along = _SPREAD * (2.0 * (number + 0.5) / shoots - 1.0)
     aside = np.stack([along, far * np.cos(around), far * np.sin(around)], axis=1)
     size = np.repeat(leaves.size, shoots)
-    turns = Rotation.from_quat(np.repeat(leaves.orientation[:, [1, 2, 3, 0]], shoots, axis=0))
+    middle = np.repeat(leaves.offset, shoots, axis=0)
+    orientation = np.repeat(leaves.orientation, shoots, axis=0)
+    turns = Rotation.from_quat(orientation[:, [1, 2, 3, 0]])
     lean = Rotation.from_rotvec(aside[:, [0, 2, 1]] * [0.0, -1.0, 1.0])
+    quaternion = (turns * lean).as_quat()
     return LeafClusters(
         segment=np.repeat(leaves.segment, shoots),
-        offset=np.repeat(leaves.offset, shoots, axis=0) + turns.apply(size[:, None] * aside),
-        orientation=(turns * lean).as_quat()[:, [3, 0, 1, 2]],
+        offset=middle + turns.apply(size[:, None] * aside),
+        orientation=quaternion[:, [3, 0, 1, 2]],
         size=size / np.sqrt(shoots),
         frequency=np.repeat(leaves.frequency, shoots),
         phase=np.asarray(around % (2.0 * np.pi), dtype=np.float64),
@@ -161,19 +181,23 @@ def _parted(leaves: LeafClusters, shoots: int) -> LeafClusters:
 
 def _unit(vectors: Floats) -> Floats:
     """Vectors of length 1, (..., 3)."""
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1), 1e-9)[..., None])
+    length = np.linalg.norm(vectors, axis=-1)
+    return np.asarray(vectors / np.maximum(length, 1e-9)[..., None])
 
 
 def _card_mesh(points: Floats, normals: Floats, segment: Ints) -> TreeMesh:
     """Mesh of cards from their corners and the normals there, (m, 4, 3)."""
     n = len(points)
     two = np.array([[0, 1, 2], [0, 2, 3]])
+    first = 4 * np.arange(n)
+    triangles = first[:, None, None] + two
+    of_picture = _CORNERS + np.array([0.0, 0.5])
     return TreeMesh(
         points.reshape(-1, 3),
         normals.reshape(-1, 3),
-        np.tile(_CORNERS + np.array([0.0, 0.5]), (n, 1)),
+        np.tile(of_picture, (n, 1)),
         np.repeat(segment, 4),
-        (4 * np.arange(n)[:, None, None] + two).reshape(-1, 3),
+        triangles.reshape(-1, 3),
     )
 
 
@@ -187,12 +211,15 @@ def _cards(
     around = Rotation.from_rotvec(yaw[:, None] * [0.0, 0.0, 1.0])
     around *= Rotation.from_rotvec(roll[:, None] * [1.0, 0.0, 0.0])
     long = spray.length * leaves.size
+    half = 0.5 * leaves.size
     points, normals = np.empty((2, len(long), 4, 3))
     for k in range(4):
         flat = long[:, None] * [u[k], v[k] * spray.width, 0.0]
-        corner = around.apply(flat) - 0.5 * leaves.size[:, None] * [1.0, 0.0, 0.0]
+        corner = around.apply(flat)
+        corner[:, 0] -= half
         corner[:, 2] -= _BOW * long * u[k]
         points[:, k] = turns.apply(corner) + leaves.offset
         normal = np.array([0.3 * u[k], 1.2 * v[k], 1.0])
-        normals[:, k] = (turns * around).apply(normal / np.linalg.norm(normal))
+        normal /= np.linalg.norm(normal)
+        normals[:, k] = (turns * around).apply(normal)
     return points, normals

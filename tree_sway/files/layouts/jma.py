@@ -11,20 +11,20 @@ those of Japan, directions points of the compass (JMA, "format of the CSV file")
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from itertools import zip_longest
 import re
 
 from tree_sway.errors import FormatError
-from tree_sway.files.cell_table import cell_at, numbered, NumberedRow, table_of_lines
+from tree_sway.files.cell_table import cell_at, numbered, table_of_lines
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import TextTable
 
 _FIRST = 'ダウンロードした時刻'
-_SPEED = '風速(m/s)'
 _GUST = '最大瞬間風速(m/s)'
 _DIRECTION = '風向'
 _QUALITY = '品質情報'
-_MEANS = (_SPEED, '平均風速(m/s)')
+_MEANS = ('風速(m/s)', '平均風速(m/s)')
 """Elements that are a mean wind speed: of ten minutes or of a day."""
 _STATIONS = 2
 _ELEMENTS = 3
@@ -48,33 +48,17 @@ def _read(lines: list[str], source: str) -> TextTable:
         raise FormatError(
             f'several stations: {", ".join(sorted(stations)[:5])}', cure='download one at a time'
         )
-    rows = _rows(lines, first, head[_ELEMENTS:])
-    return table_of_lines(_NAMES, rows, source, _UNITS)
-
-
-def _rows(lines: Sequence[str], first: int, head: Sequence[list[str]]) -> Iterator[NumberedRow]:
-    """Yield the rows from a line on; the head has the elements, and the labels below them."""
-    mean = next((each for each in _MEANS if each in head[0]), _SPEED)
-    speed = _column(head, mean, [])
-    direction = _column(head, mean, [_DIRECTION])
-    gust = _column(head, _GUST, [])
-    quality = _column(head, mean, [_QUALITY])
+    titles = [' '.join(filter(None, each)) for each in zip_longest(*head[_ELEMENTS:])]
+    mean = next((each for each in _MEANS if each in titles), '')
+    wanted = (titles[0], mean, f'{mean} {_DIRECTION}', _GUST, f'{mean} {_QUALITY}')
+    places = [titles.index(each) if each in titles else None for each in wanted]
+    rows = []
     for number, line in numbered(lines, first):
+        cells = line.split(',')
         if _ROW.match(line):
-            cells = line.split(',')
-            is_doubtful = cell_at(cells, quality) in _DOUBTFUL
-            known_speed = '' if is_doubtful else cell_at(cells, speed)
-            yield number, [cells[0], known_speed, cell_at(cells, direction), cell_at(cells, gust)]
-
-
-def _column(head: Sequence[list[str]], element: str, labels: list[str]) -> int | None:
-    """Place of the column of an element with labels below it; None without one."""
-    elements, *below = head
-    for place, name in enumerate(elements):
-        found = [cell_at(row, place) for row in below]
-        if name == element and list(filter(None, found)) == labels:
-            return place
-    return None
+            time, speed, *others, quality = (cell_at(cells, place) for place in places)
+            rows.append((number, [time, '' if quality in _DOUBTFUL else speed, *others]))
+    return table_of_lines(_NAMES, rows, source, _UNITS)
 
 
 JMA = Layout('jma', _is_jma, _read)

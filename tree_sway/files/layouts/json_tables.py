@@ -12,11 +12,12 @@ of states. The longest of these in the document is the table.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+import re
 from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import cell_of, object_of, parsed
+from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -28,6 +29,7 @@ from tree_sway.files.layouts.station_messages import (
 from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 12
+_DECIMAL = re.compile(r'-?\d+,\d+')
 Cells = dict[str, str]
 
 
@@ -112,9 +114,9 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         quantities = list(_quantities(node, ''))
         if quantities:
             yield _by_time(quantities, source)
-        table = _columns(node, units, source)
-        if table is not None:
-            yield table
+        for table in (_columns(node, units, source), _rows(node, source)):
+            if table is not None:
+                yield table
         for name, each in node.items():
             own_units = object_of(node.get(f'{name}_units', _said_units(node)))
             yield from _tables(each, own_units, source, depth + 1)
@@ -129,9 +131,11 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
 
 
 def _said_units(node: dict[str, Any]) -> Cells:
-    """System of units that the metadata of weather.com's history gives (e, m, h or s)."""
+    """System of units of weather.com's history (e, m, h or s), or titles of columns behind #."""
     system = object_of(node.get('metadata')).get('units')
-    return {'*': system} if isinstance(system, str) else {}
+    channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
+    titles = {f'#{name}': title for name, title in channel.items() if isinstance(title, str)}
+    return {'*': system} if isinstance(system, str) else titles
 
 
 def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
@@ -149,6 +153,17 @@ def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | Non
     return table_of_cells(names, rows, source, units=units_of_columns)
 
 
+def _rows(node: dict[str, Any], source: str) -> TextTable | None:
+    """Return the table of a list of rows, beside a list of its names and maybe one of units."""
+    lists = [each for each in node.values() if isinstance(each, list) and each]
+    for rows in (each for each in lists if isinstance(each[0], list)):
+        heads = [[*map(_text, each)] for each in lists if len(each) == len(rows[0])]
+        if any(map(any, heads)):
+            cells = [[*map(_text, list_of(row))] for row in rows]
+            return table_of_cells(heads[0], cells, source, units=[*heads, []][1])
+    return None
+
+
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
     """Return the table of records; a system of units becomes a column of its own."""
     system = units.get('*')
@@ -163,7 +178,8 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     names = list(empty)
     units_of_columns = [_unit(_unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
-    return table_of_cells(names, rows, source, units=units_of_columns)
+    titles = [units.get(f'#{name}', name) for name in names]
+    return table_of_cells(titles, rows, source, units=units_of_columns)
 
 
 def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, str]]:
@@ -201,16 +217,12 @@ def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
 
 def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
     """Return the table of quantities, with a row for each time that any of them has."""
-    times: set[str] = set()
-    for each in quantities:
-        times.update(each.by_time)
-    rows = []
-    for time in sorted(times):
-        values = [_text(each.by_time.get(time)) for each in quantities]
-        rows.append([time, *values])
-    names = [each.name for each in quantities]
-    units = [each.unit for each in quantities]
-    return table_of_cells(['time', *names], rows, source, units=['', *units])
+    values = [
+        (0, time, each.name, _text(value))
+        for each in quantities
+        for time, value in each.by_time.items()
+    ]
+    return wide_table(values, source, 'time', {each.name: each.unit for each in quantities})
 
 
 def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
@@ -240,7 +252,8 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
 
 
 def _text(cell: Any) -> str:
-    return '' if isinstance(cell, bool) else cell_of(cell)
+    text = '' if isinstance(cell, bool) else cell_of(cell)
+    return text.replace(',', '.') if _DECIMAL.fullmatch(text) else text
 
 
 def _unit(cell: Any) -> str:

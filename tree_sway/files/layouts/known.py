@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from tree_sway.errors import inside
 from tree_sway.files.layouts.badc_csv import BADC_CSV
-from tree_sway.files.layouts.isd import ISD_CSV
+from tree_sway.files.layouts.csiro import CSIRO
 from tree_sway.files.layouts.jma import JMA
 from tree_sway.files.layouts.json_tables import JSON
 from tree_sway.files.layouts.layout import Layout
@@ -21,7 +21,7 @@ from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
 _LAYOUTS = (
-    *(JSON, WEATHERLINK_TEXT, ISD_CSV, BADC_CSV, JMA, METEOBLUE, MONITOR),
+    *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, METEOBLUE, MONITOR),
     *LINES,
     *LONG,
     PLAIN,

@@ -28,10 +28,6 @@ def _header(lines: Sequence[str]) -> int | None:
     return next((number for number, line in head if line.startswith('timestamp,')), None)
 
 
-def _is_meteoblue(lines: Sequence[str]) -> bool:
-    return _header(lines) is not None
-
-
 def _read(lines: list[str], source: str) -> TextTable:
     header = _header(lines) or 0
     above = [line if line.startswith('unit,') else '' for line in lines[:header]]
@@ -39,4 +35,4 @@ def _read(lines: list[str], source: str) -> TextTable:
     return PLAIN.read([*above, names, *lines[header + 1 :]], source)
 
 
-METEOBLUE = Layout('meteoblue', _is_meteoblue, _read)
+METEOBLUE = Layout('meteoblue', lambda lines: _header(lines) is not None, _read)

@@ -28,7 +28,7 @@ _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
 _DIGIT = re.compile(r'[-+]?\.?\d')
-_COMMENT = re.compile(r'(?:[#%/\s]+|;)\s*(?:[Hh]eaders\s*,)?\s*')
+_COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
 _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
@@ -117,7 +117,7 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
             break
         words.append([_unit_below(cell) for cell in cells])
     split = map(table.split, table.above)
-    above = [[*row] for row in split if len(row) == len(table.columns)]
+    above = [[*map(_unit_below, row)] for row in split if len(row) == len(table.columns)]
     rows = [row for row in (*words, *above) if _are_units(table, row)]
     if not rows:
         return table

@@ -13,9 +13,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.files.models.disk_cache import use_disk_cache as use_disk_cache
     from tree_sway.files.models.model_file import read_model as read_model
-    from tree_sway.files.models.model_file import SUFFIX as SUFFIX
-    from tree_sway.files.models.model_writer import NATIVE_SUFFIX as NATIVE_SUFFIX
     from tree_sway.files.models.model_writer import write_model as write_model
-    from tree_sway.files.models.model_writer import write_native_model as write_native_model
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -38,7 +38,7 @@ from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import counted_times, row_times, time_columns
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import Times
 from tree_sway.files.zipped import tables_in
 
@@ -51,7 +51,7 @@ _EARTH = re.compile('freeacc')
 """Accelerations of Xsens and Movella that are east, north, up."""
 _GRAVITY = (8.5, 11.2)
 """Range of the median of accelerations with gravity [m/s^2]."""
-_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665}
+_UNITS = {'': 1.0, 'g': 9.80665, 'mg': 0.00980665, 'mm/s^2': 0.001}
 """Units that gravity tells, of which none is that of SI."""
 _FASTEST = 35.0
 """Largest angular rate that a sensor measures [rad/s]: 2,000 degrees per second."""
@@ -59,6 +59,9 @@ _LARGEST = 0.999
 """Share of the rates that the largest exceeds: a few more may be faults."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
+_FINER = {'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9}
+_USUAL_STEP = (2e-3, 0.2)
+"""Times between samples that tell the unit of their times in [s]."""
 _SHORTEST = 5e-4
 """Time between samples that no motion sensor falls below [s]."""
 _NAMES = (
@@ -84,7 +87,7 @@ def read_motion_table(path: Path) -> MotionRecord:
     lines_of = dict(tables_in(path))
     beside = path.with_name(_ABOUT)
     if len(lines_of) == 1 and beside.is_file() and beside != path:
-        about = read_table_lines(beside)
+        about = read_lines(beside)
     else:
         about = next((each for name, each in lines_of.items() if name.endswith(_ABOUT)), [])
     for name, lines in lines_of.items():
@@ -114,8 +117,8 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
         )
     table.refuse_several()
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
-    first_cell = '' if clock is None else table.cells(clock[0][0], [0])[0]
-    _refuse_times(table, times, np.hstack(list(values.values())), first_cell)
+    column = None if clock is None else clock[0][0]
+    times = _checked_times(table, times, np.hstack(list(values.values())), column)
     read = ', '.join(table.columns[each] for columns in picked.values() for each in columns)
     notes = [f'{Path(source).name}: read {read}', times.note]
     maker = maker_of(table)
@@ -243,7 +246,8 @@ def _without_unit(
     name = table.columns[column]
     if known := maker.get(quantity):
         return table.known_factor(quantity, known), f'{name} is in {known}, as of {maker["maker"]}'
-    unit, most = ('m/s^2', _GRAVITY[1]) if quantity == 'acceleration' else ('rad/s', _FASTEST)
+    of_rate = ('rad/s', _FASTEST, 'deg/s')
+    unit, most, other = ('m/s^2', _GRAVITY[1], 'g') if quantity == 'acceleration' else of_rate
     for told in _gravity(values) if quantity == 'acceleration' else ():
         said = f'no unit of {name} in the header: taken in {told}, as gravity is in it'
         return _UNITS[told], said if told else ''
@@ -257,20 +261,24 @@ def _without_unit(
     if size > most:
         raise table.error(
             f'{name} without a unit is {size:.4g} {of}, which is no {unit}',
-            cure=f'give its unit, as {name} [mg] or {name} [deg/s]',
+            cure=f'give its unit, as {name} [{other}]',
         )
-    other = 'g' if quantity == 'acceleration' else 'deg/s'
     note = f'no unit of {name} in the header: taken in {unit}; call it {name} [{other}] if it is'
     return 1.0, note
 
 
-def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: str) -> None:
-    """Refuse times that are none, go back, stand still or are too far apart for samples."""
+def _checked_times(table: TextTable, times: Times, values: Floats, column: int | None) -> Times:
+    """
+    Refuse times that are none, go back, stand still or are too far apart for samples.
+
+    Those of a column without a unit are in that in which samples are as far apart as usual.
+    """
     seconds = times.seconds
     is_time = np.isfinite(seconds)
     if not is_time.any():
         raise table.error(
-            f"no time in any row: the first is '{first_cell[:40]}'", cure='give seconds or dates'
+            f"no time in any row: the first is '{table.cells(column or 0, [0])[0][:40]}'",
+            cure='give seconds or dates',
         )
     rows = np.flatnonzero(is_time)
     steps = np.diff(seconds[rows])
@@ -287,6 +295,12 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
             cure='export times with fractions of a second',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
+    name = '' if column is None else table.columns[column]
+    has_unit = column is None or table.unit_of(column, 'time') or 'sec' in name.lower()
+    for unit, factor in () if has_unit or times.epoch is not None else _FINER.items():
+        if step > _SLOWEST and _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]:
+            note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
+            return Times(seconds * factor, None, note)
     if step > _SLOWEST or 0.0 < step <= _SHORTEST:
         size = 'few to tell how a tree sways' if step > _SLOWEST else 'many for a motion sensor'
         raise table.error(
@@ -294,6 +308,7 @@ def _refuse_times(table: TextTable, times: Times, values: Floats, first_cell: st
             cure='name the unit of time, as time [ms]; a sensor sends 20 samples per second or '
             'more',
         )
+    return times
 
 
 def _are_most(rows: NDArray[np.bool_], share: float) -> bool:

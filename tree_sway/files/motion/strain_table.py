@@ -14,21 +14,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-import re
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
+from tree_sway.files.column_names import name_and_unit, unit_factor
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
 from tree_sway.files.table_file import filled_lines, split_row
-from tree_sway.files.text_file import finite, read_table_lines
+from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.twin import as_orientation
 
-_UNITS = {'': 1.0, '-': 1.0, 'strain': 1.0, 'm/m': 1.0, '%': 0.01}
-_MICRO = re.compile(r'micro|[uµμ](e|ε|m/m|strain)|ppm', re.IGNORECASE)
 _BROKEN = 0.02
 """Strain at which wood has broken long since (Kretschmann 2010, Wood Handbook, chapter 5)."""
 
@@ -64,7 +62,7 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    _, lines = filled_lines(read_table_lines(path))
+    _, lines = filled_lines(read_lines(path))
     first = lines[0] if lines else ''
     separator = next((each for each in '\t;,' if each in first), ' ')
     head, *rows = (split_row(line, separator) for line in lines or [''])
@@ -98,13 +96,11 @@ def read_strain(path: Path) -> StrainRecord:
 
 def _factor(head: Sequence[str]) -> float:
     """Factor to strain by the unit of the second column of a header."""
-    found = re.search(r'[\[(]([^\])]*)[\])]', head[1]) if len(head) > 1 else None
-    unit = found[1].strip() if found else ''
-    if _MICRO.match(unit):
-        return 1e-6
-    if unit.lower() not in _UNITS:
+    unit = name_and_unit(head[1], 'strain')[1] if len(head) > 1 else ''
+    factor = unit_factor('strain', unit) if unit else 1.0
+    if factor is None:
         raise FormatError(
             f"unknown unit of strain '{unit[:20]}'",
             cure='give strain as - or microstrain; calibrate voltages first',
         )
-    return _UNITS[unit.lower()]
+    return factor

@@ -27,10 +27,7 @@ from tree_sway.files.scenes.classes import kind_classes, own_kinds
 from tree_sway.files.scenes.inventory.inventory_file import (
     has_own_format,
     inventory_table,
-    missing_columns,
-    SPECIES,
-    table_of_head,
-    why_missing,
+    lacking_columns,
 )
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
 from tree_sway.files.text_file import read_head
@@ -40,26 +37,7 @@ from tree_sway.growth import grow, height_of_stem, stem_range
 
 def is_stand_table(head: str, path: Path | None = None) -> bool:
     """Whether the beginning of a file is an inventory; ``path`` tells those that are not text."""
-    if path is not None and has_own_format(path, head):
-        return True
-    table = table_of_head(head)
-    return table is not None and not missing_columns(table)
-
-
-def why_no_stand(head: str) -> str:
-    """
-    Return which columns of a stand the beginning of a file lacks.
-
-    The text is empty for a stand, and for a file that has no column of one.
-    """
-    table = table_of_head(head)
-    return '' if table is None else why_missing(table)
-
-
-def lacks_species_alone(head: str) -> bool:
-    """Whether the beginning of a file is an inventory but for the species."""
-    table = table_of_head(head)
-    return table is not None and missing_columns(table) == [SPECIES]
+    return (path is not None and has_own_format(path, head)) or lacking_columns(head) == []
 
 
 def read_stand_table(

@@ -22,8 +22,5 @@ if TYPE_CHECKING:
     from tree_sway.files.trees.source import unknown_tree as unknown_tree
     from tree_sway.files.trees.tree_file import TREE_FORMATS as TREE_FORMATS
     from tree_sway.files.trees.tree_options import FITTED as FITTED
-    from tree_sway.files.trees.tree_options import same as same
-    from tree_sway.files.trees.yaml.tree_yaml import is_species_file as is_species_file
-    from tree_sway.files.trees.yaml.tree_yaml import read_species as read_species
 else:
     __getattr__, __dir__, __all__ = face(__name__)

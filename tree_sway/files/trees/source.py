@@ -15,15 +15,12 @@ import numpy as np
 from tree_sway.core.scene import PlacedTree, Scene
 from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.paths import path_of
+from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
-from tree_sway.files.scenes.stand_table import (
-    is_stand_table,
-    lacks_species_alone,
-    read_stand_table,
-    why_no_stand,
-)
+from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
 from tree_sway.files.text_file import read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
@@ -189,16 +186,11 @@ def _scene(
     if read is None:
         try:
             files = [each.checked() for each in read_trees(path, head=head, **asked, **options)]
-        except UnknownFormatError as error:
-            if lacks_species_alone(head):
-                return read_stand_table(path, seed=seed, exact=exact, head=head)
-            if missing := why_no_stand(head):
-                raise FormatError(
-                    missing,
-                    where=error.where,
-                    cure='name them so in the header, if it is an inventory (doc/trees.md)',
-                ) from None
-            raise
+        except UnknownFormatError:
+            lacking = lacking_columns(head)
+            if lacking is None or len(lacking) == len(INVENTORY):
+                raise
+            return read_stand_table(path, seed=seed, exact=exact, head=head)
         return scene_of_files(files, path.stem)
     if options:
         raise ParameterError(

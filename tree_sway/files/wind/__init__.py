@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from tree_sway.files.wind.phone import read_phone_sway as read_phone_sway
     from tree_sway.files.wind.record import WindRecord as WindRecord
     from tree_sway.files.wind.sensor_line import checksum_of as checksum_of
+    from tree_sway.files.wind.sensor_line import degrees_to_bearing as degrees_to_bearing
     from tree_sway.files.wind.sensor_line import SensorLine as SensorLine
+    from tree_sway.files.wind.sensor_line import Velocity as Velocity
     from tree_sway.files.wind.sonic_ascii import KINDS as KINDS
     from tree_sway.files.wind.sonic_ascii import parse_sonic as parse_sonic
     from tree_sway.files.wind.sway_table import read_csv_sway as read_csv_sway
     from tree_sway.files.wind.sway_table import SwayRecord as SwayRecord
-    from tree_sway.files.wind.units import degrees_to_bearing as degrees_to_bearing
-    from tree_sway.files.wind.units import Velocity as Velocity
     from tree_sway.files.wind.wind_file import EXAMPLES as EXAMPLES
     from tree_sway.files.wind.wind_file import read_wind as read_wind
 else:

@@ -20,7 +20,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.bounded import Arrays, bounded_arrays
-from tree_sway.files.column_names import rank_of, unit_factor, UNITS
+from tree_sway.files.column_names import rank_of
+from tree_sway.files.table_file import known_factor
 from tree_sway.files.wind.compass import FULL_CIRCLE, velocity_to
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
@@ -160,13 +161,7 @@ def _series(variable: Any, kind: str, clock: Any, place: dict[str, int]) -> Floa
     if len(clock) > _MOST:
         raise ValueError(f'{len(clock)} times')
     unit = str(getattr(variable, 'units', _USUAL_UNITS[kind]))
-    factor = unit_factor(kind, unit)
-    if factor is None:
-        raise FormatError(
-            f"unknown unit '{unit[:20]}'",
-            where=variable.name,
-            cure=f'use {", ".join([*UNITS[kind]][:12])}',
-        )
+    factor = known_factor(kind, unit, variable.name)
     index = tuple(
         slice(None) if name in clock.dimensions else place.get(name, 0)
         for name in variable.dimensions

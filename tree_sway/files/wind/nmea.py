@@ -30,8 +30,13 @@ from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.errors import ParameterError
 from tree_sway.files.text_file import finite
 from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine
-from tree_sway.files.wind.units import degrees_to_bearing, Velocity
+from tree_sway.files.wind.sensor_line import (
+    degrees_to_bearing,
+    line_of,
+    read_sensor_log,
+    SensorLine,
+    Velocity,
+)
 
 SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
 """
@@ -123,7 +128,7 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
     if len(fields) < 8:
         return f'{len(fields)} fields of 8'
     true, _, magnetic, _, knots, _, speed, _ = fields[:8]
-    is_magnetic = _bearing(true) is None and magnetic != ''
+    is_magnetic = degrees_to_bearing(finite(true)) is None and magnetic != ''
     angle, turn = (magnetic, declination) if is_magnetic else (true, 0.0)
     is_in_knots = finite(speed) is None and finite(knots) is not None
     speed, unit = (knots, _KNOT) if is_in_knots else (speed, 1.0)
@@ -132,18 +137,13 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
 
 def _wind(what: str, angle: str, turn: float, speed: str, unit: float) -> Velocity | str:
     """Wind of the fields of an angle and a speed, or which of them has none."""
-    bearing = _bearing(angle)
+    bearing = degrees_to_bearing(finite(angle))
     size = finite(speed)
     if bearing is None:
         return _lacking(what, angle)
     if size is None or size < 0.0:
         return _lacking('speed', speed)
     return velocity_of_bearing(size * unit, bearing + turn)
-
-
-def _bearing(text: str) -> float | None:
-    degrees = finite(text)
-    return None if degrees is None else degrees_to_bearing(degrees)
 
 
 def _mda(fields: list[str], declination: float) -> Velocity | str:

@@ -140,7 +140,8 @@ class WindRows:
         speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
-            self.refuse(self.number[index], f'{speed[index]:.3g} m/s at {time[index]:g} s')
+            why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
+            self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
         late = ~increasing(time[good])
         for index in np.flatnonzero(good)[late]:
             self.refuse(self.number[index], 'its time is out of order')

@@ -8,6 +8,7 @@ from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from math import radians
 from operator import xor
 from pathlib import Path
 import re
@@ -16,7 +17,8 @@ from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.files.wind.record import WindRecord, WindRows
-from tree_sway.files.wind.units import Velocity
+
+Velocity = tuple[float, float, float]
 
 _MAX_LINE = 1024
 """Largest length of a line [characters]."""
@@ -44,6 +46,11 @@ STAMP = re.compile(
 
 ParseLine = Callable[[str], SensorLine | None]
 """Parse a line; None if it is not about the wind. Never raises."""
+
+
+def degrees_to_bearing(degrees: float | None) -> float | None:
+    """Bearing in [rad] from degrees in [0, 360]; None outside, as for a sensor's error value."""
+    return None if degrees is None or not 0.0 <= degrees <= 360.0 else radians(degrees)
 
 
 def checksum_of(body: str) -> str:

@@ -20,8 +20,14 @@ import re
 
 from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine, STAMP
-from tree_sway.files.wind.units import degrees_to_bearing, Velocity
+from tree_sway.files.wind.sensor_line import (
+    degrees_to_bearing,
+    line_of,
+    read_sensor_log,
+    SensorLine,
+    STAMP,
+    Velocity,
+)
 
 KINDS = ('gill',)
 """Kinds of lines."""

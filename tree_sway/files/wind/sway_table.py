@@ -25,7 +25,7 @@ from tree_sway.files.layouts.known import table_of
 from tree_sway.files.paths import of_file
 from tree_sway.files.row_times import Join, row_times, time_columns
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.text_file import read_lines
 
 _MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
@@ -61,7 +61,7 @@ class SwayRecord:
 @of_file
 def read_csv_sway(path: Path) -> SwayRecord:
     """Read the motion of a tree from a table, as `parse_sway`."""
-    return parse_sway(read_table_lines(path), str(path))
+    return parse_sway(read_lines(path), str(path))
 
 
 def parse_sway(lines: list[str], source: str) -> SwayRecord:

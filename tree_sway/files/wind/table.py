@@ -24,13 +24,12 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import folded, rank_of, unit_factor
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import Column, TextTable
-from tree_sway.files.time_stamps import Times
 from tree_sway.files.wind.cell_units import with_units_in_head
-from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.row_winds import RowWinds, winds_of_components, winds_of_directions
 from tree_sway.files.wind.speed_units import speed_factor
@@ -39,8 +38,11 @@ from tree_sway.files.zipped import tables_in
 
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
-_HEIGHT = re.compile(r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))')
-"""Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``."""
+_HEIGHT = re.compile(
+    r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
+    r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
+)
+"""Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``, Spd80mN."""
 _WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
 _CIRCLE = 2.0 * np.pi
 _USUAL = 10.0
@@ -72,30 +74,34 @@ def read_table_wind(
     tables = [(name, lines) for name, lines in tables_in(path) if lines]
     is_wind = [each for each in tables if looks_like_wind('\n'.join(each[1][:_HEAD]))]
     name, lines = (is_wind or tables)[0]
-    table = table_of(lines, name)
-    table.refuse_several()
-    table, note = _at_one_height(with_units_in_head(table))
+    whole = table_of(lines, name)
+    whole.refuse_several()
+    table, note = _at_one_height(with_units_in_head(whole))
     rows = WindRows(table.source)
     notes = [note] if note else []
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
+        notes += _repeated(table, components)
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
-        found = {each: c for each in ('wind_speed', 'wind_direction') if (c := table.find(each))}
-        if 'wind_speed' in found and 'wind_direction' not in found:
-            points = _points(table, found['wind_speed'])
-            found |= {} if points is None else {'wind_direction': points}
-        from_where = found.get('wind_direction') or direction
-        has_speed = bool(components) or 'wind_speed' in found
+        found = table.find('wind_speed')
+        places = table.find_all('wind_direction')
+        places = [each for each in places if found is None or each != found.index]
+        from_where: Column | float | None = direction
+        if places:
+            unit = table.unit_of(places[0], 'wind_direction') or maker_of(table).get('direction')
+            from_where = Column(places[0], table.known_factor('angle', unit or 'deg'))
+        has_speed = bool(components) or found is not None
         has_direction = bool(components) or from_where is not None
-        _refuse_missing(table, time is not None, has_speed, has_direction)
+        _refuse_missing(whole, time is not None, has_speed, has_direction)
+        assert found is not None
         assert from_where is not None
-        index = found['wind_speed'].index
-        factor, note = speed_factor(table, index, 'wind_speed', speed_unit)
+        factor, note = speed_factor(table, found.index, 'wind_speed', speed_unit)
         notes += [note] if note else []
-        speed = Column(index, factor)
+        speed = Column(found.index, factor)
+        notes += _repeated(table, [speed])
         convention = direction_convention or 'from'
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
         notes += _doubt(table, from_where)
@@ -104,11 +110,11 @@ def read_table_wind(
     assert time is not None
     stored = np.flatnonzero(winds.good)
     times = row_times(table, *time, stored.tolist())
-    notes += [times.note] if times.note else []
     if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
         # The newest row first, as services export them.
         stored = stored[::-1]
-        times = _reversed(times)
+        times = row_times(table, *time, stored.tolist())
+    notes += [times.note] if times.note else []
     _fill(rows, table, winds, stored, times.seconds, speed_unit)
     record = rows.record(
         epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)
@@ -126,7 +132,7 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         found = [each for each in _WIND if at and rank_of(plain, each) is not None]
         if at and found:
             names[index] = plain
-            heights.setdefault(found[0], {})[index] = float(at[1])
+            heights.setdefault(found[0], {})[index] = float(at[1] or at[2])
     known = set[float]()
     for of_quantity in heights.values():
         known |= {*of_quantity.values()}
@@ -134,26 +140,18 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
             names[index] = names[index] if height == min(of_quantity.values()) else ''
     if not known or known == {_USUAL}:
         return table, ''
-    first, *others = sorted(known)
+    of_speed = heights.get('wind_speed') or heights[next(iter(heights))]
+    first = min(of_speed.values())
+    others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
     return replace(table, columns=tuple(names)), f'the wind at {first:g} m{more}'
 
 
-def _points(table: TextTable, speed: Column) -> Column | None:
-    """Column called Wind with points of the compass, beside one of the speed; None without one."""
-    for index, name in enumerate(table.columns):
-        if folded(name) == 'wind' and index != speed.index:
-            degrees = degrees_of(table.cells(index, range(len(table.texts))))
-            if np.isfinite(degrees).mean() > 0.5:
-                return Column(index, unit_factor('angle', 'deg') or 1.0)
-    return None
-
-
-def _reversed(times: Times) -> Times:
-    """Put times of rows in the other order, from the oldest."""
-    first = float(times.seconds[-1])
-    epoch = None if times.epoch is None else times.epoch + first
-    return replace(times, seconds=times.seconds[::-1] - first, epoch=epoch)
+def _repeated(table: TextTable, used: list[Column]) -> list[str]:
+    """Return a note on a used column of which there are more of the same name."""
+    names = [table.columns[column.index] for column in used]
+    twice = [name for name in names if table.columns.count(name) > 1][:1]
+    return [f'of {table.columns.count(name)} columns {name} the first is read' for name in twice]
 
 
 def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:

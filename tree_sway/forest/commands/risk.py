@@ -35,8 +35,8 @@ _LEFT_OUT = (
     'it is no verdict on a tree'
 )
 _ERRS = (
-    'it errs early for sound trees: more fall here than in hurricanes; those with rot or wet soil '
-    'fall before'
+    'it errs early: in eight storms 1.1 to 2.4 times as many trees fall here as were counted, '
+    'rotten ones among them'
 )
 _NAMED = 40
 """Most trees whose names are drawn."""

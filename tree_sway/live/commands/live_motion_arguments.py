@@ -14,7 +14,8 @@ from tree_sway.errors import ParameterError
 from tree_sway.live.commands.sensor_places import add_place_argument, sensors_and_places
 
 if TYPE_CHECKING:
-    from tree_sway.live import MotionFeed, MotionSample
+    from tree_sway.live import MotionFeed
+    from tree_sway.live.motion.live_motion import MotionSample
 
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +50,8 @@ def sensing(
         address.
 
     """
-    from tree_sway.live import LiveMotion, MotionFeed, open_motion, PlacedSensor
+    from tree_sway.live import LiveMotion, MotionFeed, open_motion
+    from tree_sway.live.motion.motion_feed import PlacedSensor
 
     placed = []
     addresses = set[str]()

@@ -28,7 +28,7 @@ from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.twin import place_on
 
 if TYPE_CHECKING:
-    from tree_sway.live import MotionSample
+    from tree_sway.live.motion.live_motion import MotionSample
 
 _COLUMNS = {
     'acceleration': ('ax [m/s^2]', 'ay [m/s^2]', 'az [m/s^2]'),

@@ -17,13 +17,14 @@ import time
 from tree_sway.commands import refuse_overwriting, RowFile
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
-from tree_sway.live import LiveWind, WindReading
+from tree_sway.live import LiveWind
 from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
+from tree_sway.live.reading import WindReading
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
-INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')
-MEANS = ('time', 'wind_speed [m/s]', 'wind_direction [deg]', 'wind_gust [m/s]')
+_INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')
+_MEANS = ('time', 'wind_speed [m/s]', 'wind_direction [deg]', 'wind_gust [m/s]')
 """Columns of a table of means."""
 
 
@@ -113,5 +114,5 @@ class WindTable:
             cells = [f'{reading.speed:.3f}', degrees, gust]
         else:
             cells = [f'{value:.3f}' for value in reading.velocity(self.wind.bearing)]
-        header = MEANS if self.is_of_means else INSTANTS
+        header = _MEANS if self.is_of_means else _INSTANTS
         self.rows.write(header, [iso_date(stamp, 'milliseconds'), *cells])

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_in_name
@@ -23,7 +22,6 @@ _SHORTEST, _LONGEST = 2, 60
 """Lengths of names that are looked at: one letter may be anything in JSON."""
 _MOST = 2000
 """Largest number of values of one message."""
-_CACHED = 4096
 
 
 @dataclass(frozen=True)
@@ -114,18 +112,13 @@ def _found(
         return '', _ABSENT if found is None else found
     # Longer names are none, and would stay in the cache.
     short = (name for name in leaves if _SHORTEST <= len(name) <= _LONGEST)
-    ranked = ((_rank(name, quantity), name) for name in short)
+    ranked = ((rank_of(name, quantity), name) for name in short)
     # A boat has a speed as well as a wind_speed.
     known = [('wind' not in name.lower(), rank, name) for rank, name in ranked if rank is not None]
     if not known:
         return '', _ABSENT
     name = min(known)[2]
     return name, leaves[name]
-
-
-@lru_cache(_CACHED)
-def _rank(name: str, quantity: str) -> int | None:
-    return rank_of(name, quantity)
 
 
 def _leaves(document: Any) -> Iterator[tuple[str, Any]]:

@@ -3,5 +3,5 @@
 """
 Kinds of sources, one file each: options of its address, its transport and its reader.
 
-Each module has one `SourceKind` or more as ``SOURCES``, which the registry finds.
+Each has a function `open_source` and its row in ``sources.csv``, by which the registry finds it.
 """

@@ -16,8 +16,8 @@ from tree_sway.files import unit_factor
 from tree_sway.files.wind import form_of
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 
@@ -42,7 +42,7 @@ def _read_realtime(message: Message) -> Sequence[Reading]:
     return [WindReading(_KIND, factor * speed, radians(bearing), gust=most, interval=_INTERVAL)]
 
 
-def _open_cumulus(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a file on a server: ``cumulus:HOST/realtime.txt``."""
     if not address.place:
         raise address.error('no host', 'give cumulus:weather.example.org/realtime.txt')
@@ -50,13 +50,3 @@ def _open_cumulus(address: SourceAddress) -> Source:
     every = address.number('every', _EVERY, 0.2, 86_400.0)
     expects = 'the fields of realtime.txt'
     return Source(HttpPoll(url, every), _read_realtime, _KIND, expects, _INTERVAL)
-
-
-SOURCES = (
-    SourceKind(
-        ('cumulus',),
-        'cumulus:HOST/realtime.txt',
-        'a station of Cumulus or Cumulus MX',
-        _open_cumulus,
-    ),
-)

@@ -17,8 +17,8 @@ from urllib.parse import parse_qsl
 from tree_sway.doorkeeper import is_loopback
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.reading import Reading, Refusal
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_server import HttpServer
 from tree_sway.live.transports.transport import Message
 
@@ -40,7 +40,7 @@ def read_upload(message: Message) -> Sequence[Reading]:
     return _NAMES.read(named, _KIND)
 
 
-def _open_ecowitt(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """
     Open a server on a port: ``ecowitt:8080``, for this machine alone.
 
@@ -60,10 +60,3 @@ def _open_ecowitt(address: SourceAddress) -> Source:
     server = HttpServer(int(text), host, passkey)
     expects = 'the upload of Ecowitt or of Weather Underground, with windspeedmph'
     return Source(server, read_upload, 'weather station', expects)
-
-
-SOURCES = (
-    SourceKind(
-        ('ecowitt',), 'ecowitt:PORT', 'a station that sends to this machine', _open_ecowitt
-    ),
-)

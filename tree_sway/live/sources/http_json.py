@@ -12,13 +12,13 @@ from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.reading import Read, Reading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
-SHORTEST, LONGEST = 0.2, 86_400.0
+_SHORTEST, _LONGEST = 0.2, 86_400.0
 """Interval of requests [s]."""
 _OPTIONS = (
     *('speed', 'direction', 'gust', 'unit', 'every', 'token_file'),
@@ -37,7 +37,7 @@ def _json_reader(names: WindNames) -> Read:
     return read
 
 
-def _open_http(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """
     Open an address: ``http://host/state.json?speed=PATH&direction=PATH&every=60``.
 
@@ -50,19 +50,9 @@ def _open_http(address: SourceAddress) -> Source:
         theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in _OPTIONS]
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
-    every = address.number('every', 60.0, SHORTEST, LONGEST)
+    every = address.number('every', 60.0, _SHORTEST, _LONGEST)
     token = address.secret('token_file')
     headers = {'Authorization': f'Bearer {token}'} if token else {}
     transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
     interval = every if every >= LEAST_INTERVAL else 0.0
     return Source(transport, _json_reader(names_of(address)), address.host, _EXPECTS, interval)
-
-
-SOURCES = (
-    SourceKind(
-        ('http', 'https'),
-        'http://host/path?speed=PATH&direction=PATH&every=60',
-        'JSON of an HTTP server',
-        _open_http,
-    ),
-)

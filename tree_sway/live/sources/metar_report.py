@@ -18,8 +18,8 @@ from tree_sway.files.wind import METAR
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 
@@ -67,7 +67,7 @@ def _read(text: str, time: float | None, place: str) -> Sequence[Reading]:
     ]
 
 
-def _open_metar(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open an airport by its code of ICAO: ``metar:EDDB``."""
     code = address.place.upper()
     if not _ICAO.fullmatch(code):
@@ -76,6 +76,3 @@ def _open_metar(address: SourceAddress) -> Source:
     every = address.number('every', _EVERY, 0.2, 86_400.0)
     transport = HttpPoll(f'{server}?{urlencode({"ids": code, "format": "json"})}', every)
     return Source(transport, read_reports, f'METAR {code}', 'a METAR report', _INTERVAL, _LASTS)
-
-
-SOURCES = (SourceKind(('metar',), 'metar:ICAO', 'the reports of an airport', _open_metar),)

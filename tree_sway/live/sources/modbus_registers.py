@@ -16,8 +16,8 @@ import struct
 
 from tree_sway.live.readers.values import bearing_of, is_calm
 from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.modbus import KINDS, Modbus, PORT
 from tree_sway.live.transports.transport import Message
 
@@ -31,7 +31,7 @@ _NO_VALUE = (0x7FFF, -0x8000, -1)
 """Words of a register without a value: the largest and least, and all bits."""
 
 
-def _open_modbus(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """
     Open an instrument: ``modbus:HOST:502?...`` or ``modbus:/dev/ttyUSB0:9600?...``.
 
@@ -86,13 +86,3 @@ def _open_modbus(address: SourceAddress) -> Source:
         every=address.number('every', 1.0, 0.02, 3600.0),
     )
     return Source(transport, read, f'Modbus {place[1]}', 'registers of speed and direction')
-
-
-SOURCES = (
-    SourceKind(
-        ('modbus',),
-        'modbus:/dev/ttyUSB0:9600?speed=0&direction=1&scale=0.01',
-        'an instrument with Modbus',
-        _open_modbus,
-    ),
-)

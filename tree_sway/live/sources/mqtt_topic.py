@@ -11,13 +11,13 @@ from urllib.parse import unquote
 from tree_sway.live.readers.instrument_lines import lines_of
 from tree_sway.live.readers.values import bearing_of
 from tree_sway.live.reading import Read, Reading, WindReading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.mqtt import Mqtt, PORT, TLS_PORT
 from tree_sway.live.transports.transport import Message
 
 
-def _open_mqtt(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """
     Open a topic: ``mqtt://host/topic``, of JSON or of plain numbers.
 
@@ -68,10 +68,3 @@ class _WithVane:
         if not isinstance(reading, WindReading):
             return reading
         return WindReading(reading.kind, reading.speed, self.bearing, gust=reading.gust)
-
-
-SOURCES = (
-    SourceKind(
-        ('mqtt', 'mqtts'), 'mqtt://host/topic?field=PATH', 'a topic of an MQTT broker', _open_mqtt
-    ),
-)

@@ -19,8 +19,8 @@ from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.values import number, speed_factor
 from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 
@@ -58,7 +58,7 @@ def _dated(reading: Reading, current: dict[str, object]) -> Reading:
     return replace(reading, time=times.epoch if is_dated else None, interval=interval)
 
 
-def _open_open_meteo(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a place: ``open-meteo:52.52,13.41``; ``server`` is that of another installation."""
     place = _PLACE.fullmatch(address.place)
     latitude, longitude = (float(place[1]), float(place[2])) if place else (91.0, 0.0)
@@ -75,10 +75,3 @@ def _open_open_meteo(address: SourceAddress) -> Source:
     transport = HttpPoll(f'{server}?{urlencode(query)}', every)
     name = 'open-meteo' if 'name' in address.options else f'{latitude:g},{longitude:g}, open-meteo'
     return Source(transport, read_forecast, name, "Open-Meteo's current wind", _INTERVAL)
-
-
-SOURCES = (
-    SourceKind(
-        ('open-meteo',), 'open-meteo:LAT,LON', 'the weather at any place', _open_open_meteo
-    ),
-)

@@ -8,14 +8,14 @@ import re
 
 from tree_sway.live.question_options import question_of, silence_of
 from tree_sway.live.readers.instrument_lines import EXPECTS, lines_of
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.serial_port import NMEA_BAUD, SerialPort
 
 _PLACE = re.compile(r'(/[^\s:]+|COM\d+)(?::(\d{3,7}))?')
 
 
-def _open_serial(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a port: ``serial:/dev/ttyUSB0:4800``; the baud rate is that of NMEA if left out."""
     place = _PLACE.fullmatch(address.place)
     if place is None:
@@ -25,10 +25,3 @@ def _open_serial(address: SourceAddress) -> Source:
         place[1], int(place[2] or NMEA_BAUD), question_of(address), silence_of(address)
     )
     return Source(port, read, place[1].rpartition('/')[2], EXPECTS, messages='lines')
-
-
-SOURCES = (
-    SourceKind(
-        ('serial',), 'serial:/dev/ttyUSB0:4800', 'an instrument on a serial port', _open_serial
-    ),
-)

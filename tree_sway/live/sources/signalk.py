@@ -13,14 +13,14 @@ import json
 from tree_sway.files.wind import SIGNALK_WIND
 from tree_sway.live.question_options import silence_of
 from tree_sway.live.readers.signalk import HEADING, SignalKWind
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.websocket import WebSocket
 
 _PORT = 3000
 
 
-def _open_signalk(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a server: ``signalk://host:3000``; ``signalks`` with TLS, ``token_file`` to log in."""
     if not address.host:
         raise address.error('no host', 'give signalk://host:3000')
@@ -37,10 +37,3 @@ def _open_signalk(address: SourceAddress) -> Source:
     socket = WebSocket(url, json.dumps(subscription), headers, silence_of(address, 30.0))
     read = SignalKWind(address.angle('heading_degrees'))
     return Source(socket, read, f'Signal K {address.host}', 'deltas of environment.wind', 0.0)
-
-
-SOURCES = (
-    SourceKind(
-        ('signalk', 'signalks'), 'signalk://host:3000', 'a boat with Signal K', _open_signalk
-    ),
-)

@@ -6,20 +6,15 @@ from __future__ import annotations
 
 from tree_sway.live.question_options import question_of, silence_of
 from tree_sway.live.readers.instrument_lines import EXPECTS, lines_of
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.tcp import Tcp
 
 
-def _open_tcp(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a server: ``tcp://host:port``."""
     if not address.host:
         raise address.error('no host', 'give tcp://host:port')
     read = lines_of(address)
     link = Tcp(address.host, address.port(), question_of(address), silence_of(address))
     return Source(link, read, f'{link.host}:{link.port}', EXPECTS, messages='lines')
-
-
-SOURCES = (
-    SourceKind(('tcp',), 'tcp://host:port', 'an instrument behind a TCP server', _open_tcp),
-)

@@ -9,15 +9,15 @@ from collections.abc import Sequence
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.tempest import read_tempest
 from tree_sway.live.reading import Reading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.transport import Message
 from tree_sway.live.transports.udp import Udp
 
 _PORT = 50222
 
 
-def _open_tempest(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open the hubs of this network: ``tempest``, or one station by its ``serial`` number."""
     if address.host or address.place:
         raise address.error('its hub sends to the whole network', 'give tempest, without a place')
@@ -31,6 +31,3 @@ def _open_tempest(address: SourceAddress) -> Source:
 
     expects = "a Tempest hub's rapid_wind"
     return Source(Udp('', port, is_shared=True, silence=30.0), read, 'Tempest', expects)
-
-
-SOURCES = (SourceKind(('tempest',), 'tempest', 'a WeatherFlow Tempest', _open_tempest),)

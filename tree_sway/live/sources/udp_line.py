@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from tree_sway.live.question_options import silence_of
 from tree_sway.live.readers.instrument_lines import EXPECTS, lines_of
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.udp import Udp
 
 
@@ -23,11 +23,8 @@ def udp_of(address: SourceAddress) -> Udp:
     return Udp(address.host, port, silence=silence_of(address))
 
 
-def _open_udp(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open a port: ``udp:port``, on one address of this machine, or a multicast group."""
     read = lines_of(address)
     link = udp_of(address)
     return Source(link, read, str(link), EXPECTS, messages='lines')
-
-
-SOURCES = (SourceKind(('udp',), 'udp://:port', 'datagrams to a port of this machine', _open_udp),)

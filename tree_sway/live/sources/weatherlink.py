@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.weatherlink import read_weatherlink
 from tree_sway.live.reading import Reading
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
-from tree_sway.live.source_kind import Source, SourceKind
 from tree_sway.live.transports.http_poll import HttpPoll
 from tree_sway.live.transports.transport import Message
 
@@ -27,7 +27,7 @@ def read_conditions(message: Message) -> Sequence[Reading]:
     return read_weatherlink(parse_json(message.data))
 
 
-def _open_weatherlink(address: SourceAddress) -> Source:
+def open_source(address: SourceAddress) -> Source:
     """Open an instrument: ``weatherlink:HOST``."""
     if not address.place:
         raise address.error('no host', 'give weatherlink:192.168.1.30')
@@ -35,10 +35,3 @@ def _open_weatherlink(address: SourceAddress) -> Source:
     every = address.number('every', _EVERY, 0.2, 3600.0)
     expects = "the conditions of Davis's local interface"
     return Source(HttpPoll(url, every), read_conditions, 'WeatherLink Live', expects, 0.0)
-
-
-SOURCES = (
-    SourceKind(
-        ('weatherlink',), 'weatherlink:HOST', 'a Davis WeatherLink Live', _open_weatherlink
-    ),
-)

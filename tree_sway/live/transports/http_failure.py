@@ -1,13 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Failures of HTTP without the address, whose query may have a key in it."""
+"""Addresses of HTTP, and its failures, without the query, which may have a key in it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from urllib.parse import urlsplit
 
 import aiohttp
+
+
+def without_query(url: str) -> str:
+    """Return an address without its query, its user and its password."""
+    parts = urlsplit(url)
+    return f'{parts.scheme}://{parts.netloc.rpartition("@")[2]}{parts.path}'
 
 
 @contextmanager

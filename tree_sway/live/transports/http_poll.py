@@ -8,12 +8,11 @@ import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 import math
-from urllib.parse import urlsplit
 
 import aiohttp
 
 from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.http_failure import failure_without_address
+from tree_sway.live.transports.http_failure import failure_without_address, without_query
 from tree_sway.live.transports.transport import Message, Receiver
 
 _LARGEST = 2**20
@@ -43,8 +42,7 @@ class HttpPoll:
 
     def __str__(self) -> str:
         """Return its address, without a query that may have a key in it."""
-        parts = urlsplit(self.url)
-        return f'{parts.scheme}://{parts.netloc.rpartition("@")[2]}{parts.path}'
+        return without_query(self.url)
 
     def listen(self, receiver: Receiver) -> None:
         """Deliver each document; a `ConnectionError` for a status that is not 200."""

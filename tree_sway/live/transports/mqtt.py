@@ -18,14 +18,13 @@ import ssl
 import struct
 import time
 
-from tree_sway.live.transports.stream_lines import READ_FOR
+from tree_sway.live.transports.stream_lines import READ_FOR, received
 from tree_sway.live.transports.transport import Message, Receiver
 
 PORT, TLS_PORT = 1883, 8883
 """Ports of MQTT without and with TLS."""
 _LARGEST = 65_536
 """Largest packet that is read [bytes]; larger ones are passed over."""
-_BLOCK = 65_536
 _CONNECT_FOR = 5.0
 """Longest wait for a connection, and for its being accepted [s]."""
 _KEEP_ALIVE = 20
@@ -64,7 +63,7 @@ class Mqtt:
             heard = asked = time.monotonic()
             is_accepted = False
             while not receiver.is_over:
-                data = _received(link)
+                data = received(link)
                 now = time.monotonic()
                 if data:
                     heard = now
@@ -149,16 +148,6 @@ def _length(data: bytes, place: int) -> tuple[int, int]:
     if len(data) >= place + 5:
         raise ConnectionError('its answer is not MQTT')
     return 0, 0
-
-
-def _received(link: socket.socket) -> bytes:
-    try:
-        data = link.recv(_BLOCK)
-    except TimeoutError:
-        return b''
-    if not data:
-        raise ConnectionError('closed by the other side')
-    return data
 
 
 def _refuse(code: int) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+import socket
 import time
 
 from tree_sway.live.transports.lines import Lines, LONGEST
@@ -13,6 +14,21 @@ from tree_sway.live.transports.transport import Message, Receiver
 
 READ_FOR = 0.1
 """Interval at which a silent stream checks whether to end [s]."""
+
+
+_BLOCK = 65_536
+"""Most bytes that are read at once."""
+
+
+def received(link: socket.socket) -> bytes:
+    """Return what comes to a socket within its timeout; a `ConnectionError` at its end."""
+    try:
+        data = link.recv(_BLOCK)
+    except TimeoutError:
+        return b''
+    if not data:
+        raise ConnectionError('closed by the other side')
+    return data
 
 
 @dataclass(frozen=True)

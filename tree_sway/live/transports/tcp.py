@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 import socket
 
 from tree_sway.live.transports.stream_lines import (
@@ -12,12 +13,12 @@ from tree_sway.live.transports.stream_lines import (
     NO_QUESTION,
     Question,
     READ_FOR,
+    received,
 )
 from tree_sway.live.transports.transport import Receiver
 
 _CONNECT_FOR = 5.0
 """Longest wait for a connection [s]."""
-_BLOCK = 65_536
 
 
 @dataclass(frozen=True)
@@ -38,14 +39,4 @@ class Tcp:
         with socket.create_connection((self.host, self.port), _CONNECT_FOR) as link:
             receiver.opened()
             link.settimeout(READ_FOR)
-
-            def read() -> bytes:
-                try:
-                    data = link.recv(_BLOCK)
-                except TimeoutError:
-                    return b''
-                if not data:
-                    raise ConnectionError('closed by the other side')
-                return data
-
-            deliver_lines(receiver, read, link.sendall, self.question)
+            deliver_lines(receiver, partial(received, link), link.sendall, self.question)

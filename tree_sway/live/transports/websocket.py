@@ -6,12 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from urllib.parse import urlsplit
 
 import aiohttp
 
 from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.http_failure import failure_without_address
+from tree_sway.live.transports.http_failure import failure_without_address, without_query
 from tree_sway.live.transports.transport import Message, Receiver
 
 _LARGEST = 2**18
@@ -32,8 +31,7 @@ class WebSocket:
 
     def __str__(self) -> str:
         """Return its address, without the query."""
-        parts = urlsplit(self.url)
-        return f'{parts.scheme}://{parts.netloc.rpartition("@")[2]}{parts.path}'
+        return without_query(self.url)
 
     def listen(self, receiver: Receiver) -> None:
         """Deliver each message; a `ConnectionError` for a server that speaks something else."""

@@ -39,12 +39,14 @@ export class Placer {
     this.description = description;
     this.poses = new Float32Array(STRIDE * description.nSegments);
     this._placers = description.kinds.map((kind) => new KindPlacer(kind));
+    // Those of a kind one after another: its arrays stay in the caches.
+    this._trees = [...description.trees].sort((one, other) => one.kind - other.kind);
   }
 
   /** Rebuild the poses, the same array each time. @param {Float32Array} coordinates */
   place(coordinates) {
     const turns = beyond(coordinates, this.description.nCoordinates);
-    for (const { kind, place, firstSegment, firstCoordinate, firstKey } of this.description.trees) {
+    for (const { kind, place, firstSegment, firstCoordinate, firstKey } of this._trees) {
       const placer = this._placers[kind];
       placer.place(coordinates, firstCoordinate, place, placer.order.length, this.poses, firstSegment, turns, firstKey);
     }

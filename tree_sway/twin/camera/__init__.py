@@ -15,8 +15,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.twin.camera.camera_pose import camera_of_clicks as camera_of_clicks
     from tree_sway.twin.camera.camera_pose import Click as Click
-    from tree_sway.twin.camera.camera_pose import FoundCamera as FoundCamera
-    from tree_sway.twin.camera.camera_pose import Told as Told
     from tree_sway.twin.camera.clicked_points import told_by as told_by
     from tree_sway.twin.camera.filmed_tree import FilmedMotion as FilmedMotion
     from tree_sway.twin.camera.filmed_tree import FilmedTree as FilmedTree

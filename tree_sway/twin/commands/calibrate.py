@@ -30,7 +30,9 @@ from tree_sway.files.commands import (
     write_tree_file,
 )
 from tree_sway.files.wind import read_csv_sway, read_phone_sway, SwayRecord
-from tree_sway.twin import calibrate, Calibration, estimate_sway, FreeDecay
+from tree_sway.twin import calibrate, estimate_sway
+from tree_sway.twin.identification.calibration import Calibration
+from tree_sway.twin.identification.free_decay import FreeDecay
 
 _YAML = ('.yaml', '.yml')
 _PERIOD = 1.0

@@ -69,17 +69,20 @@ class CrownDelays(NamedTuple):
 
 def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
     """Assign delays to the branches of a tree, with leaves equivalent to areas (b,) of wood."""
-    return crown_delays(tree.branch_parent, *_loads(tree, leaf_area))
+    centre, load = _loads(tree, leaf_area)
+    return crown_delays(tree.branch_parent, centre, load)
 
 
 def _loads(tree: Tree, leaf_area: Floats | float) -> tuple[Floats, Floats]:
     """Centre (b, 3) in [m] and load (b,) of each branch."""
     first = tree.branch_first[:-1]
-    area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
-    middle = 0.5 * (tree.start + tree.end) * area[:, None]
+    diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
+    area = tree.length * diameter
+    middle = 0.5 * (tree.start + tree.end)
     wood = np.add.reduceat(area, first)
-    moment = np.add.reduceat(middle, first, axis=0)
-    return moment / np.maximum(wood, 1e-12)[:, None], wood + leaf_area
+    moment = np.add.reduceat(middle * area[:, None], first, axis=0)
+    centre = moment / np.maximum(wood, 1e-12)[:, None]
+    return centre, wood + leaf_area
 
 
 def parts_of(tree: Tree, leaf_area: Floats | float = 0.0) -> CrownDelays:
@@ -88,19 +91,22 @@ def parts_of(tree: Tree, leaf_area: Floats | float = 0.0) -> CrownDelays:
     evenly = np.linspace(0, len(centre) - 1, N_DELAYS).astype(np.intp)
     middle = centre[np.unique(evenly)]
     for _ in range(20):
-        apart = np.linalg.norm(centre[:, None] - middle, axis=2)
+        way = centre[:, None] - middle
+        apart = np.linalg.norm(way, axis=2)
         nearest = apart.argmin(axis=1)
-        share = np.bincount(nearest, wood, len(middle))
+        load = np.bincount(nearest, wood, len(middle))
         moments = [np.bincount(nearest, wood * x, len(middle)) for x in centre.T]
-        means = moments / np.maximum(share, 1e-12)
-        middle = np.where(share > 0.0, means, middle.T).T
-    return CrownDelays(nearest, _shares(nearest, wood + leaf_area), 0.0)
+        means = moments / np.maximum(load, 1e-12)
+        middle = np.where(load > 0.0, means, middle.T).T
+    share = _shares(nearest, wood + leaf_area)
+    return CrownDelays(nearest, share, 0.0)
 
 
 def _shares(part: Ints, load: Floats) -> Floats:
     """Share of each of `N_DELAYS` parts in the load of branches, (b,)."""
     loads = np.bincount(part, load, N_DELAYS)
-    return np.asarray(loads / max(float(loads.sum()), 1e-12))
+    whole = max(float(loads.sum()), 1e-12)
+    return np.asarray(loads / whole)
 
 
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
@@ -123,8 +129,10 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     away = np.linalg.norm(middle - of_crown, axis=1)
     away[0] = 0.0
     farthest = max(float(away.max()), 1e-9)
-    wanted = (np.arange(n) * _GOLDEN % 1.0) * away / farthest
-    of_branch = np.rint(wanted * (N_DELAYS - 1)).astype(np.int64)[limb]
+    even = np.arange(n) * _GOLDEN % 1.0
+    wanted = even * away / farthest
+    of_limb = np.rint(wanted * (N_DELAYS - 1)).astype(np.int64)
+    of_branch = of_limb[limb]
     spread = 3.0 * DECAY * farthest / (2.0 * math.pi)
     return CrownDelays(of_branch, _shares(of_branch, load), spread)
 

@@ -134,8 +134,10 @@ class FarWind:
     def told(self) -> float:
         """Share of the variance of the crown's gusts that the anemometer tells [-]."""
         power = _power_along()
-        known = np.mean([_told(_WAVENUMBERS, each) for each in self._weights], axis=0)
-        return float(power @ known @ self._share / power.sum())
+        in_each = [_told(_WAVENUMBERS, each) for each in self._weights]
+        known = np.mean(in_each, axis=0)
+        told = power @ known @ self._share
+        return float(told / power.sum())
 
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
@@ -161,7 +163,8 @@ class FarWind:
         factors = np.array([along, across, across])
         turned = factors[:, None] * self._turned(east, north)
         first = int(self._run[0] / _SPACING)
-        return np.asarray(self._rest[(first + offsets) % SAMPLES] @ turned)
+        rows = (first + offsets) % SAMPLES
+        return np.asarray(self._rest[rows] @ turned)
 
     def later(self, hertz: Floats, mean: tuple[float, float]) -> Complexes:
         """
@@ -184,18 +187,22 @@ class FarWind:
         """
         wavenumbers = hertz / max(math.hypot(*mean), 1.0)
         distance, bearing = self._mast
-        angle = math.atan2(mean[1], mean[0])
+        east, north = mean
+        angle = math.atan2(north, east)
         (true,) = _coherences(self._places, distance, bearing, wavenumbers, [angle])
         n_directions = len(self._weights)
-        nearest = round(angle * n_directions / (2.0 * np.pi)) % n_directions
+        towards = angle * n_directions / (2.0 * np.pi)
+        nearest = round(towards) % n_directions
         stages = _low_passes(wavenumbers)
         expected = stages @ self._weights[nearest].T @ self._share
-        turn = true @ self._share * expected.conj()
+        of_crown = true @ self._share
+        turn = of_crown * expected.conj()
         if bearing is None:
             away = _DECAYS.max() * np.hypot(distance, self._places[:, 2])
             true = np.exp(-wavenumbers[:, None] * away)
         shared = np.abs(true @ self._share)
-        return np.asarray(shared * turn / np.maximum(np.abs(turn), 1e-300))
+        size = np.maximum(np.abs(turn), 1e-300)
+        return np.asarray(shared * turn / size)
 
     @property
     def mean(self) -> tuple[float, float]:
@@ -235,7 +242,8 @@ def _power_along() -> Floats:
 
 def _low_passes(wavenumbers: Floats) -> Complexes:
     """Return what the low-passes of `LENGTHS` let through, (n, k)."""
-    return np.asarray(1.0 / (1.0 + 2j * np.pi * wavenumbers[:, None] * LENGTHS))
+    phases = 2.0 * np.pi * wavenumbers[:, None] * LENGTHS
+    return np.asarray(1.0 / (1.0 + 1j * phases))
 
 
 def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
@@ -253,7 +261,8 @@ def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
 
 def _told(wavenumbers: Floats, weights: Floats) -> Floats:
     """Share of the power of each part that low-passes by weights (g, k) tell, (n, g)."""
-    return np.asarray(np.square(np.abs(_low_passes(wavenumbers) @ weights.T)))
+    expected = _low_passes(wavenumbers) @ weights.T
+    return np.asarray(np.square(np.abs(expected)))
 
 
 def _coherences(
@@ -279,7 +288,8 @@ def _coherence(
     places: Floats, distance: float, seen: float, angle: float, wavenumbers: Floats
 ) -> Complexes:
     """Find the coherence in a wind to an angle of an anemometer that is seen at another."""
-    mast = distance * np.array([math.cos(seen), math.sin(seen), 0.0])
+    towards = np.array([math.cos(seen), math.sin(seen), 0.0])
+    mast = distance * towards
     c = math.cos(angle)
     s = math.sin(angle)
     away = places - mast
@@ -287,7 +297,8 @@ def _coherence(
     y = away[:, 1] * c - away[:, 0] * s
     along_across_up = np.stack([x, y, away[:, 2]], axis=1)
     apart = np.linalg.norm(along_across_up * _DECAYS, axis=1)
-    return np.asarray(np.exp(-wavenumbers[:, None] * (apart + 2j * np.pi * x)))
+    per_wavenumber = apart + 2j * np.pi * x
+    return np.asarray(np.exp(-wavenumbers[:, None] * per_wavenumber))
 
 
 def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, seed: int) -> Singles:
@@ -297,17 +308,22 @@ def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, see
     The first mode of the tree is at the wavenumber `first` [1/m].
     """
     count = len(places)
-    wavenumbers = np.arange(1, SAMPLES // 2) / (SAMPLES * _SPACING)
-    told = np.mean([_told(wavenumbers, each) for each in weights], axis=0)
+    run = SAMPLES * _SPACING
+    wavenumbers = np.arange(1, SAMPLES // 2) / run
+    in_each = [_told(wavenumbers, each) for each in weights]
+    told = np.mean(in_each, axis=0)
     column = wavenumbers[:, None]
-    extent = size * np.minimum(1.0, 2.0 / (1.0 + np.square(column / first)))
+    beyond = np.square(column / first)
+    extent = size * np.minimum(1.0, 2.0 / (1.0 + beyond))
     acting = 1.0 / (1.0 + _WITHIN * column * extent)
-    missing = np.sqrt(np.maximum(1.0 - told, 0.0) * acting)
+    untold = np.maximum(1.0 - told, 0.0)
+    missing = np.sqrt(untold * acting)
     apart = np.linalg.norm(places[:, None] - places, axis=2)
     shared = np.exp(-_WITHIN * column[..., None] * apart)
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(count))
     spectra = Turbulence(1.0, _HEIGHT, 1.0).spectrum(wavenumbers)
-    amplitudes = SAMPLES * np.sqrt(0.5 * spectra / spectra.sum(axis=0))
+    power = spectra / spectra.sum(axis=0)
+    amplitudes = SAMPLES * np.sqrt(0.5 * power)
     turns = np.random.default_rng(seed).random((3, len(wavenumbers), count))
     phases = np.exp(2j * np.pi * turns)
     rest = np.empty((SAMPLES, count, 3), dtype=np.float32)

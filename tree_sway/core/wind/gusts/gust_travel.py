@@ -143,9 +143,12 @@ class GustHistory:
             return np.zeros(3)
         east, north, _ = mean.tolist()
         along = np.array([[x, y]]) - self._origin
-        delay = float(_delays(along, east, north, self.convection_ratio)[0]) - first
-        now = rows[-1, 0] - min(max(delay, 0.0), self._memory)
-        span = min(_SPACING, float(rows[-1, 0] - rows[0, 0]))
+        (from_origin,) = _delays(along, east, north, self.convection_ratio).tolist()
+        delay = min(max(from_origin - first, 0.0), self._memory)
+        oldest = float(rows[0, 0])
+        newest = float(rows[-1, 0])
+        span = min(_SPACING, newest - oldest)
+        now = newest - delay
         run = _run_until(rows, now) - _run_until(rows, now - span)
         return run / span
 
@@ -157,7 +160,8 @@ class GustHistory:
         over each `_SPACING` of the last minute, x, y, z of one after the other.
         """
         rows, mean, delay, _ = self._copied()
-        count = min(self._memory, until - float(rows[0, 0])) // _SPACING
+        stored = until - float(rows[0, 0])
+        count = min(self._memory, stored) // _SPACING
         times = until + _SPACING * np.arange(-count, 1.0)
         ends, *runs_at_ends = rows.T
         runs = [np.interp(times, ends, each) for each in runs_at_ends]
@@ -213,7 +217,8 @@ def _delays(along: Floats, east: float, north: float, ratio: float) -> Floats:
     """Delays of places [m] from the origin, (t, 2), by the mean wind [m/s], in [s], (t,)."""
     speed = max(math.hypot(east, north), SLOWEST_GUST)
     on_the_way = along[:, 0] * east + along[:, 1] * north
-    return np.asarray(on_the_way / (ratio * speed * speed))
+    of_gusts = ratio * speed
+    return np.asarray(on_the_way / (of_gusts * speed))
 
 
 def _run_until(rows: Floats, time: float) -> Floats:
@@ -222,5 +227,6 @@ def _run_until(rows: Floats, time: float) -> Floats:
     later = int(np.clip(found, 1, len(rows) - 1))
     before = rows[later - 1]
     after = rows[later]
-    share = (time - before[0]) / (after[0] - before[0])
-    return np.asarray(before[1:] + share * (after[1:] - before[1:]))
+    step = after - before
+    share = (time - before[0]) / step[0]
+    return np.asarray(before[1:] + share * step[1:])

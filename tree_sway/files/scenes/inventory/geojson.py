@@ -11,15 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 import math
+from pathlib import Path
 from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
 from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import read_lines
 
 _DEEPEST = 6
-_PLACES = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
+PLACES = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
 """Properties that a geometry replaces."""
 
 
@@ -29,13 +31,13 @@ def looks_like_geojson(head: str) -> bool:
     return begun and ('"FeatureCollection"' in head or '"elements"' in head or '"Feature"' in head)
 
 
-def read_geojson(text: str, source: str) -> TextTable:
+def read_geojson(path: Path) -> TextTable:
     """
     Return a table of the features; one whose place is broken has none.
 
     Raises a `FormatError` for broken JSON, no features, or no feature with a place.
     """
-    document = object_of(parsed(text, 'GeoJSON'))
+    document = object_of(parsed('\n'.join(read_lines(path)), 'GeoJSON'))
     records = [*_elements(document), *_features(document)]
     if not records:
         raise FormatError('no features', cure='export points with properties')
@@ -46,7 +48,7 @@ def read_geojson(text: str, source: str) -> TextTable:
             cure='give each feature a geometry with coordinates of two numbers',
         )
     rows = [[record.get(name, '') for name in names] for record in records]
-    return table_of_cells(names, rows, source, row_name='feature')
+    return table_of_cells(names, rows, str(path), row_name='feature')
 
 
 def _elements(document: dict[str, Any]) -> Iterator[dict[str, str]]:
@@ -64,7 +66,7 @@ def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     for feature in map(object_of, [document] if is_one else list_of(document.get('features'))):
         properties = _flat(object_of(feature.get('properties')))
         place = _place(object_of(feature.get('geometry')).get('coordinates'))
-        taken = _PLACES if place else ()
+        taken = PLACES if place else ()
         cells = {name: each for name, each in properties.items() if name.lower() not in taken}
         yield {name: cell_of(each) for name, each in cells.items()} | place
 

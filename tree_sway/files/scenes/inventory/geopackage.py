@@ -21,6 +21,7 @@ import struct
 from tree_sway.errors import FormatError
 from tree_sway.files.bounded import Arrays, bounded_arrays, packed_rows, unpacked_rows
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.scenes.inventory.geojson import PLACES
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES
 
@@ -82,8 +83,7 @@ def _layer(
     cursor = base.execute(f'SELECT * FROM "{quoted}" LIMIT {MAX_LINES}')
     columns = [each[0] for each in cursor.description]
     at = columns.index(geometry)
-    taken = ('x', 'y', 'latitude', 'longitude', 'lat', 'lon')
-    kept = [i for i, name in enumerate(columns) if i != at and name.lower() not in taken]
+    kept = [i for i, name in enumerate(columns) if i != at and name.lower() not in PLACES]
     is_degrees = system == 4326 or system in _WEB_MAP
     names = ('longitude', 'latitude') if is_degrees else ('x', 'y')
     yield [*names, *(columns[i] for i in kept)]

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from tree_sway.errors import FormatError
@@ -14,7 +15,6 @@ from tree_sway.files.scenes.inventory.geojson import looks_like_geojson, read_ge
 from tree_sway.files.scenes.inventory.geopackage import is_geopackage, read_geopackage
 from tree_sway.files.scenes.inventory.spreadsheet import read_spreadsheet
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.text_file import read_table_lines
 from tree_sway.files.zipped import tables_in
 
 _HEAD = 60
@@ -24,12 +24,8 @@ SPECIES = 'the species'
 @of_file
 def inventory_table(path: Path, head: str) -> TextTable:
     """Return the table of an inventory's file; errors are those of its format."""
-    if is_geopackage(head, path):
-        return read_geopackage(path)
-    if path.suffix.lower() in ('.xlsx', '.xlsm'):
-        return read_spreadsheet(path)
-    if looks_like_geojson(head):
-        return read_geojson('\n'.join(read_table_lines(path)), str(path))
+    if read := _own_reader(path, head):
+        return read(path)
     found = list(tables_in(path))
     name, lines = next((each for each in found if _is_inventory(each[1])), found[0])
     return PLAIN.read(lines, name)
@@ -37,22 +33,28 @@ def inventory_table(path: Path, head: str) -> TextTable:
 
 def has_own_format(path: Path, head: str) -> bool:
     """Whether a file is of a format that inventories have and other files of trees have not."""
-    suffix = path.suffix.lower()
-    if suffix == '.zip':
+    if path.suffix.lower() == '.zip':
         return any(_is_inventory(lines) for _, lines in tables_in(path))
-    is_sheet = suffix in ('.xlsx', '.xlsm')
-    return is_geopackage(head, path) or is_sheet or looks_like_geojson(head)
+    return _own_reader(path, head) is not None
+
+
+def _own_reader(path: Path, head: str) -> Callable[[Path], TextTable] | None:
+    """Reader of a file that is no table of text; None for any other."""
+    if is_geopackage(head, path):
+        return read_geopackage
+    if path.suffix.lower() in ('.xlsx', '.xlsm'):
+        return read_spreadsheet
+    return read_geojson if looks_like_geojson(head) else None
 
 
 def _is_inventory(lines: list[str]) -> bool:
-    table = table_of_head('\n'.join(lines[:_HEAD]))
-    return table is not None and not missing_columns(table)
+    return lacking_columns('\n'.join(lines[:_HEAD])) == []
 
 
-def table_of_head(head: str) -> TextTable | None:
-    """Table at the beginning of a text file; None if it is no table."""
+def lacking_columns(head: str) -> list[str] | None:
+    """Columns of an inventory that the beginning of a text file lacks; None if it is no table."""
     try:
-        return PLAIN.read(head.splitlines()[:_HEAD], '')
+        return missing_columns(PLAIN.read(head.splitlines()[:_HEAD], ''))
     except FormatError:
         return None
 

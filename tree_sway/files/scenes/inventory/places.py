@@ -61,10 +61,13 @@ class Places:
 def places_of(columns: InventoryColumns) -> Places | None:
     """Return the places of all rows; None without columns of them."""
     by_degrees = columns.find('latitude', 'longitude')
+    by_metres = columns.find('x', 'y')
     if by_degrees is not None:
         latitude, longitude = (_degrees(columns, each.index) for each in by_degrees)
-        return _of_degrees(columns, latitude, longitude)
-    by_metres = columns.find('x', 'y')
+        is_plot = columns.n_rows > 1 and not np.ptp(latitude) + np.ptp(longitude)
+        if by_metres is None or not is_plot:
+            return _of_degrees(columns, latitude, longitude)
+        columns.note('all trees have one latitude and longitude: placed by x and y')
     if by_metres is not None:
         return _of_map(columns, by_metres[0], by_metres[1])
     by_geometry = columns.table.find('place')

@@ -108,7 +108,9 @@ def inventory_of(
         missing = [each for each in missing if 'place' not in each]
     if missing:
         what = why_missing(table) or 'no column of an inventory'
-        raise table.error(what, cure='name them so in the header (doc/trees.md)')
+        raise table.error(
+            what, cure='name them so in the header, if it is an inventory (doc/trees.md)'
+        )
     columns = InventoryColumns(table)
     found = places_of(columns)
     zero = np.zeros(columns.n_rows)

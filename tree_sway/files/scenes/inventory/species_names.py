@@ -18,7 +18,10 @@ from tree_sway.files.scenes.inventory.species_codes import (
     name_of,
     TITLES,
 )
+from tree_sway.tables import table_beside
 
+_AMBIGUOUS = {each['name']: each for each in table_beside(__file__, 'ambiguous_names.csv')}
+"""Common names of trees that are others elsewhere: where, and the Latin name there."""
 _UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
 _GENERAL = ('broadleaf', 'conifer')
@@ -63,6 +66,9 @@ def species_of_rows(
         known[name], note = (species_named(_UNKNOWN), '') if not name else species_like(name)
         if not name:
             note = 'trees without a species are taken as a broadleaf of no known species'
+        if other := _AMBIGUOUS.get(name.lower().replace('-', '')):
+            note = f"'{name}' is taken as {known[name].title}; in {other['where']} it is "
+            note += f'{other["meaning"]}: write that if it is'
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
     columns.note(*[note for note in notes if note][:_MOST_NOTES])
     return names, known

@@ -4,8 +4,9 @@
 Digitised trees in MTG files in the code FORM-A (Godin & Caraglio 1998).
 
 Each line of the section MTG has a vertex, in the column of its depth, and the values of its
-features. ``/`` decomposes, ``<`` continues, ``+`` branches; with ``^`` before, it refers to the
-vertex above in its own column, else to the latest in the column before.
+features. ``/`` decomposes, ``<`` continues, ``+`` branches, and ``E1<<E35`` leaves out those
+between; with ``^`` before, it refers to the vertex above in its own column, else to the latest in
+the column before.
 
 Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its
 diameter there in millimetres, as in AMAPmod's digitising; ``length_unit`` and ``diameter_unit``
@@ -150,7 +151,8 @@ def _before(vertex: _Vertex) -> _Vertex | None:
 def _parse(lines: list[str], source: str) -> list[_Vertex]:
     """Parse the vertices of an MTG file."""
     scales = _scales(lines)
-    begin = next((i for i, line in enumerate(lines) if line.startswith('ENTITY-CODE')), None)
+    heads = ('ENTITY-CODE', 'TOPO')  # the second in older files
+    begin = next((i for i, line in enumerate(lines) if line.startswith(heads)), None)
     if begin is None:
         raise FormatError('no line ENTITY-CODE', cure='save it as FORM-A')
     header = [cell.strip() for cell in lines[begin].split('\t')]
@@ -159,14 +161,14 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
     latest: list[_Vertex] = []
     """Latest vertex of each column."""
     for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
-        if not line.strip():
+        if not line.strip() or line.startswith('#'):
             continue
         where = f'{source}:{number}'
         cells = line.rstrip().split('\t')
         column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
         if column is None:
             raise FormatError(f'no code in the first {first} columns', where=where)
-        code = cells[column].strip()
+        code = cells[column].strip().replace('<<', '<').replace('++', '+')
         reference = _reference(latest, column, code, where)
         added = _vertices(code.removeprefix('^'), reference, scales, where)
         vertices += added
@@ -234,6 +236,8 @@ def _vertex(label: str, scale: int, edge: str, reference: _Vertex | None) -> _Ve
         # The first part of a branch has the place of its branch.
         parent = None if reference is None else reference.parent
         return _Vertex(label, scale, edge, reference, parent)
+    while reference is not None and reference.scale < scale:
+        reference = reference.parent  # below the branch of a vertex that goes on
     before = reference
     while before is not None and before.scale > scale:
         before = before.whole

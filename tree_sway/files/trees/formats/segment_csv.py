@@ -20,38 +20,32 @@ import numpy as np
 from tree_sway.core.species import species_named
 from tree_sway.core.tree import tree_from_segments
 from tree_sway.files.file_format import FileFormat, has_columns
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.imported_tree import TreeFile
 
 
 def _read(path: Path) -> TreeFile:
-    """Tree from a table of segments."""
+    """Tree from a table of segments, or of both ends and the radius of cylinders."""
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
+    wood = species_named('broadleaf')
     if {*_ENDS, 'radius'} <= columns:
-        return _read_ends(path, text)
+        start, end, radius = np.hsplit(text.strict([*_ENDS, 'radius']), [3, 6])
+        tree = tree_from_segments(start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
+        notes = ('parents are found by the ends that meet',)
+        return TreeFile(tree, wood, str(path), notes=notes)
     labels, parents = text.family('segment', 'parent', [-1], 'segment')
     tip = 'd1' if 'd1' in columns else 'd0'
     values = text.strict(['x0', 'y0', 'z0', 'x1', 'y1', 'z1', 'd0', tip])
     branch = None
     if 'branch' in columns:
         branch = text.whole(text.strict(['branch'])[:, 0], 'branch')
-    wood = species_named('broadleaf')
     tree = tree_from_segments(
         *np.hsplit(values, [3, 6]), parent=parents, branch=branch, labels=labels,
         name=path.stem, species=wood.key,
     )  # fmt: skip
     return TreeFile(tree, wood, str(path))
-
-
-def _read_ends(path: Path, text: TextTable) -> TreeFile:
-    """Tree from a table of both ends and the radius of cylinders, whose parents are inferred."""
-    values = text.strict([*_ENDS, 'radius'])
-    wood = species_named('broadleaf')
-    start, end, radius = np.hsplit(values, [3, 6])
-    tree = tree_from_segments(start, end, 2.0 * radius[:, 0], name=path.stem, species=wood.key)
-    return TreeFile(tree, wood, str(path), notes=('parents are found by the ends that meet',))
 
 
 _ENDS = ('x1', 'y1', 'z1', 'x2', 'y2', 'z2')

@@ -11,16 +11,15 @@ from __future__ import annotations
 
 from pathlib import Path
 import re
-from typing import Any
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, inside
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.file_format import FileFormat, has_columns
-from tree_sway.files.json_values import parsed
-from tree_sway.files.table_file import parse_table
-from tree_sway.files.text_file import finite, read_lines, read_text
+from tree_sway.files.json_values import cell_of, object_of, parsed
+from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.text_file import read_lines, read_text
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.rooted import cylinders_of_edges
 from tree_sway.files.trees.tree_options import FITTED
@@ -48,16 +47,20 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     table = document['cyls']
     with inside('cyls'):
         table = parsed(table) if isinstance(table, str) else table
-    return _joined(np.column_stack([_column(table, name) for name in _COLUMNS]))
+    columns = {name: each for name, each in object_of(table).items() if object_of(each)}
+    numbers = object_of(columns.get('p1'))
+    rows = [[cell_of(each.get(row)) for each in columns.values()] for row in numbers]
+    return _joined(table_of_cells([*columns], rows, str(path)))
 
 
 def _read_table(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of ``cyls`` as a table."""
-    return _joined(parse_table(read_lines(path), str(path)).strict(_COLUMNS))
+    return _joined(parse_table(read_lines(path), str(path)))
 
 
-def _joined(values: Floats) -> tuple[Cylinders, ...]:
-    """Cylinders of the columns, (n, 10)."""
+def _joined(table: TextTable) -> tuple[Cylinders, ...]:
+    """Cylinders of the rows."""
+    values = table.values(list(map(table.index_of, _COLUMNS)))
     is_point = values[:, 8] == 0.0
     values[is_point, 5:8] = 0.0  # a cylinder without length has no direction
     for row, column in np.argwhere(~np.isfinite(values))[:1]:
@@ -71,18 +74,6 @@ def _joined(values: Floats) -> tuple[Cylinders, ...]:
     point[edges[:, 0]] = values[:, 2:5]
     made = cylinders_of_edges(point, edges, values[:, 9], of_nodes=False)
     return (made,)
-
-
-def _column(table: Any, name: str) -> Floats:
-    """Return the values of a column, (n,), in the order of its rows; NaN where one is none."""
-    cells = table.get(name) if isinstance(table, dict) else None
-    if not isinstance(cells, dict) or cells.keys() != table['p1'].keys():
-        raise FormatError(
-            f"no column '{name}' in 'cyls', or one of other rows",
-            cure='save it by treegraph again',
-        )
-    values = [finite(str(cells[row])) for row in table['p1']]
-    return np.array([np.nan if each is None else each for each in values])
 
 
 FORMAT = FileFormat('treegraph', (), _is_other_json, _read, FITTED)

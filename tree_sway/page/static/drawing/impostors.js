@@ -5,8 +5,6 @@
 import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
 import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } from "./gl.js";
 
-/** Size of a picture [px]. */
-const TILE = 128;
 /** Numbers per vertex. */
 const PER_VERTEX = 13;
 /** Alpha from which on a point of the picture is drawn, 0 to 255. */
@@ -16,12 +14,14 @@ const SLOPES = [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9];
 
 export class Impostor {
   /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
-   * number of trees @param {boolean} isPlain whether to read the nearest point only, which costs less */
-  constructor(gl, used, shape, most, isPlain) {
+   * number of trees @param {boolean} isPlain whether to read the nearest point only, which costs less
+   * @param {number} tile width of a picture [px] */
+  constructor(gl, used, shape, most, isPlain, tile) {
     const { kind, low, high, rest, highest } = shape;
     const leaf = Math.max(0, ...(kind.arrays.leaf_size ?? []));
     const tall = high[2] + 0.7 * leaf;
     this.gl = gl;
+    this._tile = tile;
     /** Half width, height of the middle over the root, height [m]. */
     this.box = { wide: leaf + Math.max(...[0, 1].map((c) => Math.max(-low[c], high[c]))), middle: 0.5 * tall, tall };
     /** Highest node at rest, and its displacement per unit of each coordinate. */
@@ -29,7 +29,7 @@ export class Impostor {
     this._moves = movesOf(shape, this.tip);
     this.count = 0;
     this._corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
-    this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
+    this._atlas = canvasTexture(gl, ROUND * tile, ELEVATIONS.length * tile, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     this._values = new Float32Array(4 * PER_VERTEX * most);
     const square = [0, 1, 2, 1, 3, 2];
@@ -41,7 +41,7 @@ export class Impostor {
   /** Paint the kind from every side. @param {(camera: Float32Array, eye: number[]) => void} paint
    * @param {number[]} color of its leaves, for the edges */
   bake(paint, color) {
-    const { gl } = this;
+    const { gl, _tile: tile } = this;
     const { wide, middle, tall } = this.box;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this._atlas.target);
     gl.clearColor(0.6 * color[0], 0.6 * color[1], 0.6 * color[2], 0);
@@ -57,13 +57,13 @@ export class Impostor {
           [(-ce * c) / deep, (-ce * s) / deep, -se / deep]];
         const camera = [0, 1, 2].flatMap((k) => [...axes.map((axis) => axis[k]), 0]);
         camera.push(...axes.map((axis) => -axis[2] * middle), 1);
-        gl.viewport(side * TILE, row * TILE, TILE, TILE);
+        gl.viewport(side * tile, row * tile, tile, tile);
         paint(Float32Array.from(camera), [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
       }
     });
-    const points = new Uint8Array(4 * ROUND * TILE * ELEVATIONS.length * TILE);
-    gl.readPixels(0, 0, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA, gl.UNSIGNED_BYTE, points);
-    this._corners = cornersAbout(points);
+    const points = new Uint8Array(4 * ROUND * tile * ELEVATIONS.length * tile);
+    gl.readPixels(0, 0, ROUND * tile, ELEVATIONS.length * tile, gl.RGBA, gl.UNSIGNED_BYTE, points);
+    this._corners = cornersAbout(points, tile);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
@@ -106,17 +106,18 @@ export class Impostor {
 }
 
 /** The smallest trapezium that contains the tree in all pictures, so that little of the empty rest is drawn.
- * @param {Uint8Array} points of the pictures of all sides @returns {number[][]} its corners, -1 to 1 */
-export function cornersAbout(points) {
-  const widest = new Float32Array(TILE);
+ * @param {Uint8Array} points of the pictures of all sides @param {number} tile their width
+ * @returns {number[][]} its corners, -1 to 1 */
+export function cornersAbout(points, tile) {
+  const widest = new Float32Array(tile);
   for (let i = 3; i < points.length; i += 4) {
     if (points[i] < SEEN) continue;
-    const [x, y] = [(i >> 2) % TILE, Math.floor((i >> 2) / (ROUND * TILE)) % TILE];
-    widest[y] = Math.max(widest[y], Math.abs((2 * x + 1) / TILE - 1) + 1 / TILE);
+    const [x, y] = [(i >> 2) % tile, Math.floor((i >> 2) / (ROUND * tile)) % tile];
+    widest[y] = Math.max(widest[y], Math.abs((2 * x + 1) / tile - 1) + 1 / tile);
   }
-  const rows = Array.from(widest, (wide, y) => ({ wide, y: (2 * y + 1) / TILE - 1 })).filter(({ wide }) => wide);
+  const rows = Array.from(widest, (wide, y) => ({ wide, y: (2 * y + 1) / tile - 1 })).filter(({ wide }) => wide);
   if (!rows.length) return [[-1, -1], [1, -1], [-1, 1], [1, 1]];
-  const [low, high] = [rows[0].y - 1 / TILE, rows[rows.length - 1].y + 1 / TILE];
+  const [low, high] = [rows[0].y - 1 / tile, rows[rows.length - 1].y + 1 / tile];
   const fits = SLOPES.map((slope) => {
     const middle = Math.max(...rows.map(({ wide, y }) => wide - slope * y));
     return { slope, middle, area: middle + 0.5 * slope * (low + high) };

@@ -37,6 +37,8 @@ const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
 const CALM = 4;
 /** Height for which the picture of a far tree is painted [px]. */
 const PAINTED = 260;
+/** Width of a picture from one side where there are few kinds, and where there are more, as pictures take memory [px]. */
+const [TILES, FEW_KINDS] = [[192, 128], 16];
 /** Specular reflection of a leathery evergreen leaf, and of a card of many leaves, which face all ways. */
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
 /** First and last row of no branch. */
@@ -293,10 +295,13 @@ export class Scene {
     const shape = this._kinds[number];
     if (level === 0) return { starts: [], numbers: [], impostor: this._bake(number) };
     const look = lookOf(shape.kind);
-    const { bark: barkColor, twig: twigColor } = look;
+    const { bark: barkColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
     const isFlowering = this.isFlowering && !this.isAutumn;
     const { mesh, along, isSpread } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards, isFlowering, this.isSlow);
+    // Shoots are as green as the needles on them; so are thin twigs where few cards are drawn for the leaves on them.
+    const green = this.isAutumn || !mesh.values.length ? 0 : look.has_needles ? 0.7 : this.isSlow && this.isCrowd ? 0.5 : 0;
+    const twigColor = look.twig.map((each, c) => (1 - green) * each + green * look.green[c]);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
     const isClump = isSpread || along >= CLUMP;
     const name = `${number} ${along} ${isClump}`;
@@ -327,7 +332,7 @@ export class Scene {
     const most = trees.filter(({ kind }) => kind === number).length;
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
     const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0], numbers: [-1] };
-    const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
+    const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow, TILES[Number(this._kinds.length > FEW_KINDS)]);
     const { segments, branches } = levels[finest];
     const texels = texelsOf(segments);
     shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);

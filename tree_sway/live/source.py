@@ -1,14 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A live source of wind, and the kinds of them that the registry makes from addresses."""
+"""A live source of wind: a transport, and the reader of its messages."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from tree_sway.live.reading import Read
-from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Transport
 
 
@@ -44,27 +42,3 @@ class Source:
     interval: float | None = None
     lasts: float | None = None
     messages: str = 'messages'
-
-
-@dataclass(frozen=True)
-class SourceKind:
-    """
-    A kind of source.
-
-    Parameters
-    ----------
-    schemes
-        Schemes of its addresses, such as ``udp``.
-    form
-        Example of an address.
-    what
-        Instruments that it is for, in a few words.
-    open
-        Function that makes a source of an address; it raises a `TreeSwayError`.
-
-    """
-
-    schemes: tuple[str, ...]
-    form: str
-    what: str
-    open: Callable[[SourceAddress], Source]  # noqa: A003
