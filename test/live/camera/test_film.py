@@ -100,6 +100,9 @@ def test_a_view_refuses_clicks_beside_the_tree_and_another_size(cv2: Any) -> Non
             beside.follow(0.0, still)
     view = CameraView(tree, clicks(tree), print)
     assert len(view.follow(0.0, still).points) > 20
+    dark = CameraView(tree, clicks(tree), print)
+    assert not len(dark.follow(0.0, 0 * still).points)
+    assert len(dark.follow(0.1, still).points) > 20
     with pytest.raises(ParameterError, match='640 x 479 after those of 640 x 480'):
         view.follow(0.1, still[:-1])
 

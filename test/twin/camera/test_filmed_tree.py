@@ -13,6 +13,7 @@ from tree_sway.core.tree import ends_of_poses, tips_of_poses, Tree
 from tree_sway.growth import grow
 from tree_sway.twin.camera import Camera, FilmedTree, looking
 from tree_sway.twin.camera.motion_filter import MotionFilter
+from tree_sway.twin.observer import Observer
 from tree_sway.twin.steady_filter import stationary_covariance, sway_law
 
 CAMERA = Camera(
@@ -152,6 +153,25 @@ def test_old_pictures_are_refused(tree: Tree, film: tuple[np.ndarray, np.ndarray
     filmed.film(0.3, 0, points[18])
     filmed.step(CALM, 1.0 / RATE)
     assert filmed.refused == 1
+
+
+def test_with_a_sensor_or_a_wind_less_is_unknown(
+    tree: Tree, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sensor tells the wind of the whole crown, so that a picture moves the tree less."""
+    filmed = FilmedTree(tree, camera=CAMERA)
+    without = np.diag(filmed.filter._law.driven)
+    monkeypatch.setattr(Observer, 'is_active', property(lambda _: True))
+    filmed._follow_wind()
+    beside = np.diag(filmed.filter._law.driven)
+    assert (beside < without).all()
+    assert beside[0] < 0.6 * without[0]
+    monkeypatch.setattr(Observer, 'mean_wind', property(lambda _: 6.0))
+    filmed._follow_wind()
+    np.testing.assert_allclose(np.diag(filmed.filter._law.driven), 0.25 * beside)
+    monkeypatch.undo()
+    filmed._follow_wind()
+    np.testing.assert_allclose(np.diag(filmed.filter._law.driven), without)
 
 
 def test_the_filter_is_the_least_squares_of_points_and_prior() -> None:

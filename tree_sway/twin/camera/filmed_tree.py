@@ -41,7 +41,18 @@ _LAW_EVERY = 300
 """Steps after which the mean wind is looked at."""
 
 _UNTOLD = 0.7
-"""Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-]."""
+"""
+Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-].
+
+Where a motion sensor is in use, it tells that wind.
+"""
+
+_BESIDE_WIND = 0.25
+"""
+Variance of the unknown forces where a wind is measured, over that without [-].
+
+With all of it, the trees of drawn films followed the noise of their points.
+"""
 
 _LASTS = 1.5
 """Time in [s] after which an unknown force has decayed to 1/e: the lean lasts, gusts do not."""
@@ -117,11 +128,20 @@ class FilmedTree(ObservedTree):
         """Return the law of what the model lacks, in the present mean wind."""
         n = self._n
         found = disturbance(self, self._speed, n)
-        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
-        covariance = found.covariance + whole.T @ whole
+        covariance = found.covariance
+        has_wind, is_sensed = self._known = self._known_now()
+        if not is_sensed:
+            whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
+            covariance = covariance + whole.T @ whole
+        if has_wind:
+            covariance = _BESIDE_WIND * covariance
         unknown = self.observer.unknown
         damping = unknown.all_damping[:n] + found.air_damping
         return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
+
+    def _known_now(self) -> tuple[bool, bool]:
+        """Whether a wind is measured, and whether a motion sensor is in use."""
+        return self.observer.mean_wind > 0.0, self.observer.is_active
 
     def film(self, time: float, reference: int, image: ArrayLike) -> None:
         """
@@ -186,6 +206,7 @@ class FilmedTree(ObservedTree):
         """Take the law of the present mean wind and of the present tree."""
         measured = self.observer.mean_wind
         speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
+        self._is_outdated |= self._known != self._known_now()
         if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
             self._speed, self._is_outdated = speed, False
             self.filter.set_law(self._law())
