@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.run import Run
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import species_named
-from tree_sway.fidelity.demand import set_cost_scale, set_demand
+from tree_sway.fidelity.demand import measure_costs, set_demand
+from tree_sway.growth.builtin import builtin_tree
 
 OAK = species_named('oak')
 
@@ -36,15 +37,7 @@ def test_a_camera_turns_angles_into_metres(pair):
     assert pair[0].budget == 0.0
 
 
-def test_the_cost_scale_is_that_of_the_trees_that_choose_alone(pair):
-    pinned = make_simulator(pair[0].tree, OAK)
-    for _ in range(2):
-        set_cost_scale([*pair, pinned], 1234.0)
-    assert sum(each.frame_cost for each in pair) == pytest.approx(1234.0)
-    assert pair[0].cost_scale == pair[1].cost_scale
-
-
-def test_warming_up_times_the_trees_that_choose_alone(pair):
+def test_the_measured_cost_is_that_of_the_trees_that_choose_alone(pair):
     reads, pinned = [], make_simulator(pair[0].tree, OAK)
 
     class Both:
@@ -57,11 +50,23 @@ def test_warming_up_times_the_trees_that_choose_alone(pair):
             return None
 
         def reset(self):
-            return None
+            reads.append('reset')
 
     def timer():
         reads.append('timer')
-        return 1e-3 * len(reads)
+        return 1.234e-3 * reads.count('timer')
 
-    assert Run(Both(), timer=timer).warm_up() == pytest.approx(1e3)
+    for _ in range(2):
+        measure_costs(Both(), 1 / 60, timer)
+        assert sum(each.frame_cost for each in pair) == pytest.approx(1234.0)
+        assert pair[0].cost_scale == pair[1].cost_scale
     assert reads[:4] == ['all', 'timer', 'timer', 'all']
+    assert reads[-1] == 'reset'
+    assert not hasattr(pinned, 'cost_scale')
+
+
+def test_trees_are_at_rest_once_their_cost_is_measured():
+    simulator = make_simulator(builtin_tree('goldcrest'))
+    rest = simulator.place().copy()
+    measure_costs(simulator, 1 / 60, lambda: 0.0)
+    np.testing.assert_array_equal(simulator.place(), rest)

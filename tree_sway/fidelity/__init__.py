@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tree_sway.fidelity.adaptive import REVIEW as REVIEW
     from tree_sway.fidelity.climate import WindClimate as WindClimate
     from tree_sway.fidelity.demand import adaptive_among as adaptive_among
-    from tree_sway.fidelity.demand import set_cost_scale as set_cost_scale
+    from tree_sway.fidelity.demand import measure_costs as measure_costs
     from tree_sway.fidelity.demand import set_demand as set_demand
     from tree_sway.fidelity.estimate import DIAL as DIAL
     from tree_sway.fidelity.estimate import dialled as dialled

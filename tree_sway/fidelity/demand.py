@@ -4,13 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.run import SwaySimulator
+from tree_sway.core.scene import Simulator
 from tree_sway.fidelity.adaptive import AdaptiveSimulator
+
+_FRAMES = 20
+"""Number of frames that are timed."""
 
 
 def set_demand(
@@ -51,12 +55,27 @@ def set_demand(
             each.tolerance = tolerance_angle * max(float(away.min()), 0.01)
 
 
-def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
-    """Give trees that choose their model the measured cost of a frame of them, in [us]."""
-    adaptive = adaptive_among(simulators)
+def measure_costs(simulator: Simulator, dt: float, timer: Callable[[], float]) -> None:
+    """
+    Step some frames of dt [s], and give trees that choose their model the cost of theirs.
+
+    ``timer`` is a clock in [s]. The trees are at rest afterwards.
+    """
+    adaptive = adaptive_among(simulator.simulators)
+    wind = np.array([1.0, 0.0, 0.0])
+    spent = []
+    for _ in range(_FRAMES):
+        simulator.step(wind, dt)
+        simulator.place()
+        begin = timer()
+        for each in adaptive:
+            each.step(wind, dt)
+            each.place()
+        spent.append(timer() - begin)
+    simulator.reset()
     expected = sum(each.choice.cost for each in adaptive)
     for each in adaptive:
-        each.cost_scale = spent / expected
+        each.cost_scale = 1e6 * min(spent) / expected
 
 
 def adaptive_among(simulators: Iterable[object]) -> list[AdaptiveSimulator]:

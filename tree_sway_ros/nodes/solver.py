@@ -14,7 +14,7 @@ from tree_sway.core.scene import Run, Scene, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.wind import WindAverage, WindIntake
 from tree_sway.errors import LONGEST_NOTE, ParameterError, shown
-from tree_sway.fidelity import adaptive_among, set_cost_scale
+from tree_sway.fidelity import measure_costs
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
@@ -107,8 +107,7 @@ class SolverNode(TreeSwayNode):
         self._samples = SampleWait(self, self._lacking)
         self._tuned: dict[str, float] = {}
         self._demand = Demand(self, self._run, self.refusals)
-        choosing = adaptive_among(self.simulator.simulators)
-        set_cost_scale(choosing, self._run.warm_up(choosing))
+        measure_costs(self.simulator, 1.0 / self.values['rate'], time.perf_counter)
         self._demand.set()
         self.simulator.reset()  # on the requested model
 

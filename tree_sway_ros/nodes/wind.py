@@ -11,7 +11,6 @@ import time
 from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
-import numpy as np
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 
@@ -20,6 +19,7 @@ from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND, WIND_FILTERED, WIND_FORCE_PLANE
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.wind_report import WindReport
+from tree_sway_ros.wire.force_plane import ForcePlane
 from tree_sway_ros.wire.wind_messages import (
     plane_message,
     WIND_CLASSES,
@@ -49,8 +49,7 @@ class WindNode(TreeSwayNode):
         self._report = WindReport()
         self._convention = WindConvention(**self.values.subset(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values.subset(*_GATE)))
-        self._convention.force_plane_quaternion(np.array([1.0, 0.0, 0.0]))  # loads what it needs
-        self._attitude: Any = None
+        self._force_plane = ForcePlane(self._convention)
         self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED)
         self._held: list[Any] = []
@@ -75,6 +74,7 @@ class WindNode(TreeSwayNode):
         """Apply a new convention from the next sample on."""
         self._convention = WindConvention(**self.values.subset(*_CONVENTION))
         self._intake.convention = self._convention
+        self._force_plane = ForcePlane(self._convention)
 
     def _receive(self, message: Any, info: Mapping[str, Any]) -> None:
         if not self.is_active:
@@ -104,8 +104,7 @@ class WindNode(TreeSwayNode):
         self._report.add(self._intake.left_out)
         at, vector = good
         self._send(wind_to_message(Vector3Stamped, WindSample(at, frame_id, *vector)))
-        self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
-        self._plane.publish(plane_message(at, frame_id, self._attitude))
+        self._plane.publish(plane_message(at, frame_id, self._force_plane.turn(vector)))
 
     def _send(self, message: Any) -> None:
         """Publish a sample; the first of a replay with a subscriber, which may be on its way."""

@@ -11,11 +11,16 @@ from __future__ import annotations
 
 import json
 
-from tree_sway.core.leaves import leaf_list, LeafClusters
+import numpy as np
+
+from tree_sway.core.leaves import FLUTTER, LeafClusters
 from tree_sway.core.tree import Tree
 from tree_sway.core.tree_state import digest_of
 
 VERSION = 1
+
+_LAW = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
+"""Law of the angle at which leaves flutter, for who reads it."""
 
 
 def describe(
@@ -30,7 +35,7 @@ def describe(
     """
     return json.dumps(
         {
-            **({} if leaves is None else {'leaves': leaf_list(leaves)}),
+            **({} if leaves is None else {'leaves': _leaf_list(leaves)}),
             'version': VERSION,
             'name': tree.name,
             'hash': digest_of(tree),
@@ -53,3 +58,14 @@ def describe(
         },
         separators=(',', ':'),
     )
+
+
+def _leaf_list(clusters: LeafClusters) -> dict[str, object]:
+    """
+    Describe the leaves as plain numbers and lists, all that a viewer needs to draw them.
+
+    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
+    and its two constants.
+    """
+    listed = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
+    return {**listed, 'flutter': {'law': _LAW, **FLUTTER}}

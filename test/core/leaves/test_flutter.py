@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The law of flutter, and leaves that ride on their segments."""
 
-import json
-
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -15,7 +13,6 @@ from tree_sway.core.leaves.flutter import (
     flutter_amplitude,
     flutter_angle,
     LARGEST_ANGLE,
-    leaf_list,
     leaf_poses,
 )
 from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
@@ -98,18 +95,3 @@ def test_flutter_turns_a_leaf_about_its_stalk_alone() -> None:
     before, after = (Rotation.from_quat(block[:, 3:]) for block in (still, turned))
     np.testing.assert_allclose(before.apply([1, 0, 0]), after.apply([1, 0, 0]), atol=1e-12)
     np.testing.assert_allclose((before.inv() * after).magnitude(), 0.4, rtol=1e-9)
-
-
-def test_the_list_alone_is_enough_to_draw_them() -> None:
-    """As a viewer would that has only the text and the poses."""
-    tree = twig()
-    leaves = leaves_of(tree)
-    listed = json.loads(json.dumps(leaf_list(leaves)))
-    gain, largest = listed['flutter']['gain'], listed['flutter']['largest_angle']
-    frequency, phase = np.array(listed['frequency']), np.array(listed['phase'])
-    angle = largest * np.tanh(gain * 3.0**2 / (frequency * largest))
-    angle *= np.sin(2.0 * np.pi * frequency * 0.7 + phase)
-    np.testing.assert_allclose(angle, flutter_angle(leaves, 3.0, 0.7), atol=1e-3)
-    carrier = Rotation.from_quat(poses_at_rest(tree)[listed['segment'], 3:])
-    centre = tree.start[listed['segment']] + carrier.apply(listed['offset'])
-    np.testing.assert_allclose(centre, leaf_poses(leaves, poses_at_rest(tree))[:, :3], atol=2e-4)

@@ -77,7 +77,6 @@ def test_late_ticks_leave_no_trace_in_the_motion():
     for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
         simulator = make_simulator(TREE, model='branch')
         made = running(simulator, timer=lambda: 0.0)  # expensive steps would be joined
-        made.warm_up()
         play(made, lateness)
         poses.append(simulator.place().copy())
     np.testing.assert_array_equal(poses[0], poses[1])
@@ -166,13 +165,6 @@ def test_a_request_that_fails_is_counted_and_reported_and_the_steps_continue():
     assert made.refused_requests == 3
     assert 'a tree that buckles' in reasons[0]
     assert reasons[1:] == ['it failed (ZeroDivisionError: division by zero)']
-
-
-def test_warming_up_leaves_a_tree_at_rest():
-    simulator = make_simulator(TREE)
-    rest = simulator.place().copy()
-    Run(simulator).warm_up()
-    np.testing.assert_array_equal(simulator.place(), rest)
 
 
 def test_a_jump_of_the_clock_is_no_long_wind():

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.species.species import species_keys, species_named
-from tree_sway.core.tree.plausibility import oddities, refuse_implausible, sway_oddity
+from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
@@ -117,18 +117,6 @@ def test_odd_sizes_are_reported() -> None:
     assert oddities(in_units(oak(), 12.0, 12.0), OAK)[0].startswith('a height of 144 m')
     small = oddities(in_units(oak(), 0.001, 0.001), OAK)
     assert small[0].startswith('a height of 0.012 m')
-
-
-def test_a_sway_of_no_tree_of_its_size_is_reported() -> None:
-    tree = oak()
-    usual = 0.0766 + 3.1219 * 100.0 * tree.base_diameter[0] / tree.height**2
-    spruce = species_named('spruce')
-    for frequency in (3.0 * usual, usual / 3.0):
-        assert sway_oddity(tree, spruce, frequency) == ''
-    for frequency in (10.0 * usual, 0.1 * usual):
-        said = sway_oddity(tree, spruce, frequency)
-        assert f'{frequency:.3g} Hz, while conifers of its size' in said
-        assert sway_oddity(tree, OAK, frequency) == ''
 
 
 @given(length=st.floats(1e-4, 1e4), diameter=st.floats(1e-4, 1e4), modulus=st.floats(1e-2, 1e14))

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
-from tree_sway.core.wind.convention import CALM_SPEED, velocity_of_bearing, WindConvention
+from tree_sway.core.wind.convention import velocity_of_bearing, WindConvention
 from tree_sway.errors import ParameterError
 
 speeds = st.floats(-40.0, 40.0)
@@ -19,10 +18,6 @@ normals = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda n: np.linalg.norm
 
 def vector(convention, *components):
     return convention.project(convention.velocity(components))
-
-
-def axes_of(quaternion):
-    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix().T
 
 
 def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
@@ -89,37 +84,6 @@ def test_linear_and_mirrored_by_the_other_convention(u, v, w, yaw, normal, k):
 def test_velocity_keeps_its_magnitude(u, v, w, yaw):
     velocity = WindConvention(yaw_offset=yaw).velocity((u, v, w))
     assert np.linalg.norm(velocity) == pytest.approx(math.hypot(u, v, w), abs=1e-12)
-
-
-@given(u=speeds, v=speeds, w=speeds, normal=normals)
-def test_force_plane_is_a_right_handed_frame_with_x_along_the_wind(u, v, w, normal):
-    convention = WindConvention(plane_normal=normal)
-    wind = vector(convention, u, v, w)
-    x, y, z = axes_of(convention.force_plane_quaternion(wind))
-    np.testing.assert_allclose(z, convention.normal, atol=1e-12)
-    np.testing.assert_allclose(np.cross(x, y), z, atol=1e-12)
-    if np.linalg.norm(wind) >= CALM_SPEED:
-        np.testing.assert_allclose(x, wind / np.linalg.norm(wind), atol=1e-11)
-
-
-def test_quaternion_is_w_first():
-    quaternion = WindConvention().force_plane_quaternion(np.array([0.0, 2.0, 0.0]))
-    half = math.sqrt(0.5)
-    np.testing.assert_allclose(np.abs(quaternion), (half, 0.0, 0.0, half), atol=1e-15)
-
-
-def test_calm_keeps_the_last_direction_or_takes_east():
-    convention = WindConvention()
-    north = convention.force_plane_quaternion(np.array([0.0, 2.0, 0.0]))
-    calm = np.array([0.03, 0.0, 0.0])
-    np.testing.assert_array_equal(convention.force_plane_quaternion(calm, north), north)
-    np.testing.assert_allclose(axes_of(convention.force_plane_quaternion(calm))[0], (1, 0, 0))
-
-
-def test_calm_on_a_plane_across_east_takes_north():
-    convention = WindConvention(plane_normal=(2.0, 0.0, 0.0))
-    quaternion = convention.force_plane_quaternion(np.zeros(3))
-    np.testing.assert_allclose(axes_of(quaternion)[0], (0, 1, 0), atol=1e-15)
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])

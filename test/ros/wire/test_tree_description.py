@@ -6,7 +6,9 @@ from pathlib import Path
 
 from jsonschema import Draft202012Validator
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from tree_sway.core.leaves import flutter_angle, leaf_poses
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
 from tree_sway.core.tree.building import tree_from_segments
@@ -33,6 +35,21 @@ def test_leaves_are_part_of_it():
     )
     SCHEMA.validate(json.loads(description))
     assert len(json.loads(description)['leaves']['segment']) == 12
+
+
+def test_leaves_can_be_drawn_by_it_and_the_poses_alone():
+    tree = tree_from_segments([[0, 0, 1.0]], [[0.3, 0.4, 1.2]], [0.004])
+    leaves = leaf_clusters(tree, np.random.default_rng(3), count=20)
+    listed = json.loads(describe(tree, 'map', leaves=leaves))['leaves']
+    gain, largest = listed['flutter']['gain'], listed['flutter']['largest_angle']
+    frequency, phase = np.array(listed['frequency']), np.array(listed['phase'])
+    angle = largest * np.tanh(gain * 3.0**2 / (frequency * largest))
+    angle *= np.sin(2.0 * np.pi * frequency * 0.7 + phase)
+    np.testing.assert_allclose(angle, flutter_angle(leaves, 3.0, 0.7), atol=1e-3)
+    rest = np.hstack([tree.start, tree.rest_frame[:, [1, 2, 3, 0]]])
+    carrier = Rotation.from_quat(rest[listed['segment'], 3:])
+    centre = tree.start[listed['segment']] + carrier.apply(listed['offset'])
+    np.testing.assert_allclose(centre, leaf_poses(leaves, rest)[:, :3], atol=2e-4)
 
 
 def test_every_tree_of_several_begins_with_a_segment_without_a_parent():

@@ -17,7 +17,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.leaves.flutter import FLUTTER as FLUTTER
     from tree_sway.core.leaves.flutter import flutter_angle as flutter_angle
-    from tree_sway.core.leaves.flutter import leaf_list as leaf_list
     from tree_sway.core.leaves.flutter import leaf_poses as leaf_poses
     from tree_sway.core.leaves.foliage import clad_wood as clad_wood
     from tree_sway.core.leaves.foliage import foliage_of as foliage_of

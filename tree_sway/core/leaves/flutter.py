@@ -34,8 +34,6 @@ LARGEST_ANGLE = 0.7
 FLUTTER = {'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
 """The two constants of the law, for whoever draws leaves."""
 
-_LAW = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
-
 
 def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
     """Amplitude of the flutter [rad] in air at a speed [m/s], for a stalk's frequency [Hz]."""
@@ -66,20 +64,3 @@ def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) ->
     rotation = rotation_of_segment * rotation_at_rest * Rotation.from_rotvec(about_stalk)
     position = start + rotation_of_segment.apply(clusters.offset)
     return np.hstack([position, rotation.as_quat()])
-
-
-def leaf_list(clusters: LeafClusters) -> dict[str, object]:
-    """
-    Describe the leaves as plain numbers and lists, all that a viewer needs to draw them.
-
-    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
-    and its two constants.
-    """
-    described: dict[str, object] = {
-        name: np.round(values, 4).tolist() for name, values in vars(clusters).items()
-    }
-    described['flutter'] = {
-        'law': _LAW,
-        **FLUTTER,
-    }
-    return described

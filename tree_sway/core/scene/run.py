@@ -17,11 +17,10 @@ times are whole nanoseconds of one clock.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
@@ -29,9 +28,6 @@ from tree_sway.core.checks import LONGEST_STEP
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind import GateCounts, GoodWind, WindAverage, WindIntake
 from tree_sway.errors import TreeSwayError
-
-if TYPE_CHECKING:
-    from tree_sway.core.run import SwaySimulator
 
 LONGEST_JUMP = round(1e9 * LONGEST_STEP)
 """Longest time that one `Run.advance` solves [ns]; time before it is skipped."""
@@ -45,7 +41,6 @@ _BLOCK = 10_000_000_000_000
 _QUEUE = 4096
 _EARLIEST = 0.9  # of the period of a sensor, after which its next sample is expected
 _PULL_LASTS = 0.5
-_WARM_FRAMES = 20
 _LONGEST_REASON = 400
 _NEWEST = 0.02  # weight of the newest step in the running mean of its cost
 
@@ -124,23 +119,6 @@ class Run:
     def time(self) -> int | None:
         """End of the last step in [ns]; None before the first."""
         return None if self._index is None else self._index * self.period
-
-    def warm_up(self, timed: Sequence[SwaySimulator] = ()) -> float:
-        """Step some frames; return the cost of a frame of some of the trees in [us]."""
-        spent = []
-        wind = np.array([1.0, 0.0, 0.0])
-        dt = self.period * 1e-9
-        for _ in range(_WARM_FRAMES):
-            self.simulator.step(wind, dt)
-            self.simulator.place()
-            if self._timer is not None:
-                begin = self._timer()
-                for each in timed:
-                    each.step(wind, dt)
-                    each.place()
-                spent.append(self._timer() - begin)
-        self.simulator.reset()
-        return 1e6 * min(spent, default=0.0)
 
     def offer(
         self,

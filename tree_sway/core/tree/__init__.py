@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tree_sway.core.tree.parents_first import first_of_each as first_of_each
     from tree_sway.core.tree.plausibility import oddities as oddities
     from tree_sway.core.tree.plausibility import refuse_implausible as refuse_implausible
-    from tree_sway.core.tree.plausibility import sway_oddity as sway_oddity
     from tree_sway.core.tree.segment_frame import ends_of_poses as ends_of_poses
     from tree_sway.core.tree.tree import tips_of_poses as tips_of_poses
     from tree_sway.core.tree.tree import Tree as Tree

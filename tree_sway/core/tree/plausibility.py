@@ -6,9 +6,7 @@ Plausible values of trees: impossible ones are refused, unusual ones are reporte
 The cause is nearly always a unit, so messages name the likely one and the option for it. Trees are
 at most 116 m high (Sequoia sempervirens) and 14 m thick (Taxodium mucronatum), green wood of
 living stems has 3 to 20 GPa and 400 to 1300 kg/m^3, and stems have 10 to 150 times the height of
-their diameter. Values beyond ten times that are refused. The slowest sway of a tree of its size is
-that of 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in [cm], H in [m] (Moore
-& Maguire 2004).
+their diameter. Values beyond ten times that are refused.
 """
 
 from __future__ import annotations
@@ -29,7 +27,6 @@ _SLENDERNESS_LIMIT = (2.0, 2000.0)
 _LEAN = 60.0
 _FARTHEST = 1e4
 """Distance [m] at which single precision has steps of a millimetre."""
-_SWAY_FACTOR = 5.0
 
 
 def refuse_implausible(tree: Tree, species: Species) -> None:
@@ -79,20 +76,6 @@ def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
         f'a {what} of {value:.3g}{unit}, where {whose} {low:g} to {high:g}{unit}: {cure}'
         for what, value, unit, whose, (low, high), cure in rows
         if not low <= value <= high
-    )
-
-
-def sway_oddity(tree: Tree, species: Species, frequency: float) -> str:
-    """Report a conifer whose sway [Hz] is far from that of others of its size; else empty."""
-    if species.habit != 'conifer':
-        return ''
-    height, diameter, _ = _size(tree)
-    usual = 0.0766 + 3.1219 * 100.0 * diameter / height**2
-    if usual / _SWAY_FACTOR <= frequency <= usual * _SWAY_FACTOR:
-        return ''
-    return (
-        f'its slowest sway has {frequency:.3g} Hz, while conifers of its size have some '
-        f'{usual:.2g} Hz: check --modulus, --density and the diameters (--option twig_diameter)'
     )
 
 

@@ -19,13 +19,8 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.rotation import about_up, quaternions_of_axes
+from tree_sway.core.rotation import about_up
 from tree_sway.errors import ParameterError
-
-CALM_SPEED = 0.05
-"""
-Speed in [m/s] below which no direction is computed: sonics repeat their last direction there.
-"""
 
 
 def velocity_of_bearing(
@@ -138,37 +133,3 @@ class WindConvention:
     def project(self, velocity: Floats) -> Floats:
         """Return a velocity in [m/s] projected on the force plane, (3,)."""
         return velocity - (velocity @ self.normal) * self.normal
-
-    def force_plane_quaternion(self, vector: Floats, previous: Floats | None = None) -> Floats:
-        """
-        Return the orientation of the force plane: x along the wind, z along the normal.
-
-        Parameters
-        ----------
-        vector
-            Wind, blowing to, ENU in [m/s], (3,).
-        previous
-            Quaternion to use while the wind is below `CALM_SPEED` in the plane, (4,); without one,
-            x is then as near to east as the plane allows, or to north if the plane is across east.
-
-        Returns
-        -------
-        Floats
-            Unit quaternion w, x, y, z of the rotation from the plane's axes to ENU, (4,).
-
-        """
-        axes, at_zero, half_turned = self._plane
-        x, y = axes @ np.asarray(vector, dtype=np.float64)
-        if math.hypot(x, y) >= CALM_SPEED:
-            half = 0.5 * math.atan2(y, x)
-            return np.asarray(math.cos(half) * at_zero + math.sin(half) * half_turned)
-        return at_zero if previous is None else previous
-
-    @cached_property
-    def _plane(self) -> tuple[Floats, Floats, Floats]:
-        """Axes in the plane as rows, the quaternion along the first, and that of half a turn."""
-        east, north = (self.project(axis) for axis in np.eye(3)[:2])
-        along = east if np.linalg.norm(east) > 0.1 else north
-        axes = np.stack([along, np.cross(self.normal, along)]) / np.linalg.norm(along)
-        at_zero = quaternions_of_axes(axes[0], self.normal)
-        return axes, at_zero, at_zero[::-1] * [-1.0, 1.0, -1.0, 1.0]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.files.trees.conifer_sway import sway_oddity as sway_oddity
     from tree_sway.files.trees.imported_tree import TreeFile as TreeFile
     from tree_sway.files.trees.learned_file import LearnedFile as LearnedFile
     from tree_sway.files.trees.learned_file import refuse_no_learned_file as refuse_no_learned_file

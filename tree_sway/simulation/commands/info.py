@@ -18,7 +18,7 @@ from tree_sway.core.scene import Kind, make_simulator, PlacedTree, Scene
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import in_season, TreeReductions
 from tree_sway.core.species import Species
-from tree_sway.core.tree import oddities, sway_oddity, Tree
+from tree_sway.core.tree import oddities, Tree
 from tree_sway.errors import LONGEST_NOTE, shown, TreeError
 from tree_sway.files.commands import (
     add_exact_argument,
@@ -27,6 +27,7 @@ from tree_sway.files.commands import (
     chosen_leaves,
     opened_scene,
 )
+from tree_sway.files.trees import sway_oddity
 from tree_sway.growth import BREAST_HEIGHT, breast_height_diameter
 from tree_sway.parameters import SWAY
 from tree_sway.simulation import StrengthUse

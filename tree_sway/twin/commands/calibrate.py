@@ -16,7 +16,6 @@ from tree_sway.core.checks import within
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import is_in_leaf
 from tree_sway.core.species import Species, species_named
-from tree_sway.core.tree import sway_oddity
 from tree_sway.errors import inside, ParameterError, TransportError
 from tree_sway.files import path_of
 from tree_sway.files.commands import (
@@ -29,6 +28,7 @@ from tree_sway.files.commands import (
     say_warnings,
     write_tree_file,
 )
+from tree_sway.files.trees import sway_oddity
 from tree_sway.files.wind import read_csv_sway, read_phone_sway, SwayRecord
 from tree_sway.twin import calibrate, estimate_sway
 from tree_sway.twin.identification.calibration import Calibration
