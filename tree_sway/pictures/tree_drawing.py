@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves import leaf_poses, LeafClusters
+from tree_sway.core.leaves import LeafClusters
 from tree_sway.core.species import leaf_traits, look_of
 from tree_sway.core.tree import ends_of_poses, Tree
+from tree_sway.pictures.leaves_in_place import leaf_poses
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

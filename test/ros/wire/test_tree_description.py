@@ -8,11 +8,12 @@ from jsonschema import Draft202012Validator
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.leaves import flutter_angle, leaf_poses
+from tree_sway.core.leaves import flutter_angle
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree_state import digest_of
+from tree_sway.pictures.leaves_in_place import leaf_poses
 from tree_sway_ros.wire.tree_description import describe, VERSION
 
 TREE = tree_from_segments(

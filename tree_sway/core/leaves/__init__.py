@@ -4,8 +4,8 @@
 Leaves: mass and area per branch for the solver, clusters and flutter for viewers.
 
 `foliage_of` spreads the leaf area of a species over the twigs of a tree; `clad_wood` adds their
-mass. `leaf_clusters` places what a viewer draws, `leaf_poses` and `flutter_angle` move it with the
-air that passes.
+mass. `leaf_clusters` places what a viewer draws, `flutter_angle` moves it with the air that
+passes.
 
 The solver takes mass and area alone; nothing here steps.
 """
@@ -17,7 +17,6 @@ from tree_sway.faces import face
 if TYPE_CHECKING:
     from tree_sway.core.leaves.flutter import FLUTTER as FLUTTER
     from tree_sway.core.leaves.flutter import flutter_angle as flutter_angle
-    from tree_sway.core.leaves.flutter import leaf_poses as leaf_poses
     from tree_sway.core.leaves.foliage import clad_wood as clad_wood
     from tree_sway.core.leaves.foliage import foliage_of as foliage_of
     from tree_sway.core.leaves.foliage import joined_clusters as joined_clusters

@@ -48,19 +48,3 @@ def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floa
     amplitude = flutter_amplitude(speed, clusters.frequency)
     phase = 2.0 * np.pi * clusters.frequency * time + clusters.phase
     return np.asarray(amplitude * np.sin(phase))
-
-
-def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
-    """Pose block (m, 7) of the clusters, from the segments' (n, 7) and angles [rad], (m,)."""
-    # It takes long to load, and only drawing needs it.
-    from scipy.spatial.transform import Rotation
-
-    start = poses[clusters.segment, :3]
-    rotation_of_segment = Rotation.from_quat(poses[clusters.segment, 3:])
-    orientation_xyzw = clusters.orientation[:, [1, 2, 3, 0]]
-    rotation_at_rest = Rotation.from_quat(orientation_xyzw)
-    about_stalk = np.zeros_like(start)
-    about_stalk[:, 0] = angle
-    rotation = rotation_of_segment * rotation_at_rest * Rotation.from_rotvec(about_stalk)
-    position = start + rotation_of_segment.apply(clusters.offset)
-    return np.hstack([position, rotation.as_quat()])
