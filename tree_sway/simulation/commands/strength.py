@@ -31,13 +31,13 @@ def used_strength(
     The wind blows along the axis x of the tree itself: trees of an inventory have random yaws, and
     a crown bends its stem by some hundredths more or less from different sides.
     """
-    placed = tree.placed()
+    placed = replace(tree, yaw=0.0).placed()
     exposure = chosen_exposure(arguments, placed, tree.species)
     settings = replace(
         settings, in_leaf=settings.in_leaf if tree.leaf_on is None else tree.leaf_on,
         profile=exposure.profile(float(placed.start[0, 2])),
     )  # fmt: skip
     species = touched_species(exposure, tree.species, tree.learned)
-    rig = Rig(PlacedTree(tree.name, replace(tree, yaw=0.0).placed(), species=species), settings)
+    rig = Rig(PlacedTree(tree.name, placed, species=species), settings)
     rng = np.random.default_rng(0)
     return exposure, rig.strength_curve(speeds, rng=rng, **exposure.turbulence)
