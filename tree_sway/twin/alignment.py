@@ -117,6 +117,10 @@ class Alignment:
         out[..., 6:9] = values[..., 6:9] @ self.turn.T
         return out
 
+    def turned(self, angle: float, error: float) -> Alignment:
+        """Return it turned from east to north by an angle of an error, both in [rad]."""
+        return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)
+
 
 def align(
     sensed: Floats,
@@ -202,9 +206,8 @@ def align(
     error = _TOLD_ERROR
     if facing is None or not has_gravity:
         error = _azimuth_error(likeness, count)
-    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
-    if not problem and (size < LEAST_NOISE / math.sqrt(window))[measures].all():
-        problem = TELLS_LITTLE  # any sensor would differ from it
+    if not problem and _is_below_noise(model, measures, window):
+        problem = TELLS_LITTLE
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
         problem = (
             f'it moves {ratio:.2g} times as much as the tree does there in this wind: check that '
@@ -337,8 +340,7 @@ def _pairs(
 ) -> Iterator[tuple[Floats, Floats, float]]:
     """Yield each quantity (n, 3) about its mean, that of the model, and the size of this one."""
     for first in (3 * np.flatnonzero(measures)).tolist():
-        both = np.stack([each[:, first : first + 3] for each in (moved, model)])
-        own, wanted = both - both.mean(axis=1, keepdims=True)
+        own, wanted = (_centred(each[:, first : first + 3]) for each in (moved, model))
         yield own, wanted, max(float(np.square(wanted).sum()), 1e-300)
 
 
@@ -369,6 +371,16 @@ def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tupl
         square += float(np.square(own).sum()) / size
     count = float(measures.sum())
     return product / max(math.sqrt(square * count), 1e-300), math.sqrt(square / max(count, 1.0))
+
+
+def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> bool:
+    """Whether the model moves a sensor less than its noise: any sensor would differ from it."""
+    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
+    return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
+
+
+def _centred(rows: Floats) -> Floats:
+    return np.asarray(rows - rows.mean(axis=0))
 
 
 def noise_of(moved: Floats) -> Floats:

@@ -193,6 +193,9 @@ def _mounting(
         later, earlier = lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
         found = align(sensed, upright, free, *known, sign)
+    is_free = found.has_gravity and sensor.place.facing is None and not found.problem
+    if is_free and left.turn_error < found.azimuth_error:
+        found = found.turned(-left.turn, left.turn_error)
     if found.problem:
         lag = 0
     bias = np.zeros(9)

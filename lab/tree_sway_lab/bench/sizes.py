@@ -145,4 +145,5 @@ def gusts_and_turns(speed: float, seconds: float = _SECONDS, seed: int = 5) -> F
 def _run(simulator: SwaySimulator, winds: Floats) -> None:
     stand = simulator.banks[0].stand
     for wind in winds.tolist():
-        stand.step_first(*wind)
+        stand.wind[0], stand.wind[1], stand.wind[2] = wind
+        stand.step_first()
