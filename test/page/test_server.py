@@ -392,9 +392,7 @@ def test_what_a_camera_sees_is_for_who_may_control(server: PageServer) -> None:
     own = {'X-Requested-With': 'test'}
     assert asyncio.run(answer(server.url, '', **own))[::2] == (404, False)
     token = 'a token of some length'
-    with PageServer(
-        PageSettings(port=0, token=token), picture=lambda: pictures.pop(0)
-    ) as seeing:
+    with PageServer(PageSettings(port=0, token=token), picture=lambda: pictures.pop(0)) as seeing:
         assert asyncio.run(answer(seeing.url, seeing.viewers_token, **own))[::2] == (403, False)
         assert asyncio.run(answer(seeing.url, token))[0] == 403  # as by an image of another page
         assert asyncio.run(answer(seeing.url, token, **own)) == (204, b'', True)
