@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 0.47 * c + 0.7 * sqrt(c); }
+vec3 toned(vec3 c) { return 1.75 * c / (c + 0.75); }
 
 #part seen tones
 uniform mat4 camera;
@@ -86,6 +86,7 @@ out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
 out float sunny;
+out vec3 inMap; // place in the shadow map
 out float high; // height over the ground, 1 at the top of the scene
 void main() {
   uint row = rowOf();
@@ -113,7 +114,10 @@ void main() {
   tone = vec3(thickness, skin.z, clearness(p));
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
+#ifdef PLAIN
   sunny = shadowArea.w < 0.5 ? sunlight(p) : 1.0;
+#endif
+  inMap = inSunMap(p);
   high = (p.z - ground) * shadowTop;
   gl_Position = seen(p);
 }
@@ -124,7 +128,9 @@ in vec2 at;
 in vec3 tone;
 in float mark;
 in float sunny;
+in vec3 inMap;
 in float high;
+uniform mediump sampler2DShadow sunMap;
 uniform vec3 light;
 uniform vec3 sun;
 uniform vec3 sky;
@@ -135,7 +141,7 @@ uniform vec3 twigColor;
 uniform vec4 paint; // colour of the whole tree, and its opacity
 uniform sampler2D relief; // factor of the colour of the bark, twice as high as wide
 void main() {
-  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  if (isShadow > 0.5) { color = vec4(1.0 - 0.7 * min(high, 1.0)); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
   if (tone.x > 0.4) {
@@ -152,12 +158,29 @@ void main() {
   }
   // Weather and moss: stains as long as the stem is wide, the greener the nearer to the ground.
   float stain = noise(vec2(3.0 * normal.x, 0.5 * at.y + 2.0 * normal.y));
-  own *= mix(vec3(1.12), vec3(0.62, 0.68, 0.56) + 0.3 * min(1.0, 4.0 * high), stain);
+  own *= mix(vec3(1.08, 1.05, 0.98), vec3(0.62, 0.68, 0.5) + 0.3 * min(1.0, 4.0 * high), stain);
+#ifndef PLAIN
+  if (tone.x > 0.1) {
+    // Lumps, scars and lichens, each of its own size; noise about the stem has no seam.
+    vec2 about = 6.0 * normal.xy;
+    float lumps = noise(about + vec2(0.0, 1.1 * at.y)) + noise(about.yx * 2.3 + vec2(1.7 * at.y, 5.0));
+    float fine = noise(about * 7.0 + vec2(0.0, 9.0 * at.y)) + noise(about.yx * 15.0 + vec2(31.0 * at.y, 3.0));
+    own *= 0.66 + 0.2 * lumps + 0.16 * fine;
+    own = mix(own, vec3(0.5, 0.53, 0.43), 0.45 * smoothstep(1.2, 1.5, lumps + 0.35 * (fine - 1.0)));
+    n = normalize(n + 0.35 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
+  }
+#endif
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
   float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
-  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
+#ifdef PLAIN
+  float shone = sunny;
+#else
+  // Spots of sun between the leaves above.
+  float shone = 0.5 * (texture(sunMap, inMap) + texture(sunMap, inMap + vec3(0.002, 0.001, 0.0)));
+#endif
+  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * shone * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
   base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
@@ -173,6 +196,7 @@ uniform float time;
 uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
+uniform vec3 dulled; // colour of a crown in the open over that of a leaf alone
 uniform vec3 unturned; // colour of a leaf before autumn over that of the picture
 uniform float gloss; // specular reflection, 0 for a dull leaf
 uniform vec3 horizon;
@@ -187,18 +211,19 @@ void main() {
   vec4 q = texel(row + 1u);
   edge = 1.0;
   lit = vec3(0.0);
-  veil = vec3(1.0);
   // A cheap approximation of the hyperbolic tangent in the law.
   float wild = law.x * speed * speed / (flutter.x * law.y);
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
   vec3 p = root.xyz + root.w * turned(q, place + a * swing);
   at = corner;
   gl_Position = seen(p);
+  // In the shadow: the lower, the brighter.
+  veil = vec3(1.0 - 0.7 * min(1.0, (p.z - ground) * shadowTop));
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.3 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
+  vec3 n = normalize(0.45 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
@@ -208,13 +233,13 @@ void main() {
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
-  vec3 up = sky * (0.17 + 0.9 * near) * (0.75 + 0.25 * n.z);
+  vec3 up = sky * (0.1 + 0.95 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.05, 1.1, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
+  vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(0.97, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
+  vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
   hue += (0.6 * (flutter.w - 1.0) + 0.2 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
@@ -226,7 +251,11 @@ void main() {
 }
 
 #part leaf.fragment
+#ifdef PLAIN
+precision mediump float;
+#else
 precision highp float;
+#endif
 in vec2 at;
 in vec3 lit;
 flat in vec3 veil;
@@ -235,6 +264,11 @@ uniform sampler2D leaves;
 out vec4 color;
 void main() {
   vec4 leaf = texture(leaves, at);
+#ifdef PLAIN
+  // Without a graphics unit every operation counts; `chosenTexture` has made the random choice.
+  if (edge * leaf.a < 0.25) discard;
+  color = vec4(leaf.rgb * lit + veil, 1.0);
+#else
   // From afar a point of the picture covers leaves and gaps: it is drawn at random, so that no card looks like one
   // large leaf.
   float small = length(fwidth(at));
@@ -248,23 +282,7 @@ void main() {
   if (cover < 0.05) discard;
   float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * mixed;
   color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);
-}
-
-#part plainleaf.vertex leaf.vertex
-
-#part plainleaf.fragment
-// The same without a graphics unit, where every operation counts; `chosenTexture` has made the random choice.
-precision mediump float;
-in vec2 at;
-in vec3 lit;
-flat in vec3 veil;
-flat in float edge;
-uniform sampler2D leaves;
-out vec4 color;
-void main() {
-  vec4 leaf = texture(leaves, at);
-  if (edge * leaf.a < 0.25) discard;
-  color = vec4(leaf.rgb * lit + veil, 1.0);
+#endif
 }
 
 #part impostor.vertex seen
@@ -395,22 +413,34 @@ void main() {
 }
 
 #part shadow.fragment
-precision mediump float;
+precision highp float;
 in vec2 at;
-uniform sampler2D shadow;
-uniform float softness; // 0 where every pixel counts
+uniform sampler2D shadow; // 0 in the sun, else the brighter, the lower what casts it
+uniform float softness; // widest border of a shadow; 0 where every pixel counts
 uniform float depth;
 out vec4 color;
 void main() {
   float dark = texture(shadow, at).r;
-  if (softness > 0.0) {
-    dark = 0.4 * dark + 0.15 * (texture(shadow, at + vec2(softness, 0.0)).r
-      + texture(shadow, at - vec2(softness, 0.0)).r
-      + texture(shadow, at + vec2(0.0, softness)).r
-      + texture(shadow, at - vec2(0.0, softness)).r);
+#ifdef PLAIN
+  dark = min(1.0, 2.0 * dark);
+#else
+  // The higher a leaf, the wider the border of its shadow.
+  float turn = 6.2831853 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584))));
+  vec2 seen = vec2(0.001, 0.0);
+  for (int i = 0; i < 6; i++) {
+    float found = texture(shadow, at + softness * vec2(cos(turn + float(i)), sin(turn + float(i)))).r;
+    if (found > 0.1) seen += vec2(1.0, 1.0 - found);
   }
+  float wide = softness * (0.15 + 1.2 * seen.y / seen.x);
+  dark = 0.0;
+  for (int i = 0; i < 16; i++) {
+    float way = turn + 2.4 * float(i);
+    dark += min(1.0, 4.0 * texture(shadow, at + wide * sqrt((float(i) + 0.5) / 16.0) * vec2(cos(way), sin(way))).r);
+  }
+  dark /= 16.0;
+#endif
   if (dark < 0.01) discard;
-  color = vec4(0.03, 0.04, 0.06, depth * dark);
+  color = vec4(0.05, 0.08, 0.13, depth * dark);
 }
 
 #part backdrop.vertex
