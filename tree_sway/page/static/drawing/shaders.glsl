@@ -388,10 +388,10 @@ void main() {
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
   vec3 p = vec3(foot, ground);
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * 0.045 * field.w;
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.33, 0.45, 0.18), vec3(0.46, 0.53, 0.26), blade.w);
+  vec3 tint = mix(vec3(0.24, 0.33, 0.13), vec3(0.45, 0.48, 0.24), blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
@@ -467,29 +467,62 @@ uniform vec3 zenith;
 uniform vec3 horizon;
 uniform float dimmed;
 out vec4 color;
+// Sum of noises, each half as large and half as strong as the one before, 0 to 1.
+float cloudy(vec2 p) {
+  float sum = 0.0;
+  for (float part = 0.5; part > 0.012; part *= 0.5) {
+    sum += part * noise(p);
+    p = mat2(1.6, 1.2, -1.2, 1.6) * p + 3.7;
+  }
+  return sum;
+}
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
-  vec3 c = mix(horizon, zenith, 1.0 - exp(-3.2 * high));
-  vec2 at = way.xy / (high + 0.16);
-  float cloud = noise(1.7 * at) + 0.5 * noise(3.6 * at + 7.0) + 0.25 * noise(7.5 * at);
-  c = mix(c, horizon * 1.05, 0.42 * smoothstep(0.85, 1.45, cloud) * smoothstep(0.0, 0.25, high));
+  vec3 c = mix(horizon, zenith, 1.0 - exp(-3.6 * high));
+  // Clouds, whose sides towards the sun are brighter.
+  vec2 at = 0.9 * way.xy / (high + 0.2);
+  float cloud = cloudy(at);
+  float thick = smoothstep(0.5, 0.74, cloud) * smoothstep(0.02, 0.22, high);
+  float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.35 * thick, 0.0, 1.0);
+  c = mix(c, mix(horizon * 1.1, mix(horizon, zenith, 0.45), shaded), 0.85 * thick);
   float glow = max(dot(way, light), 0.0);
   c += sun * (0.1 * pow(glow, 6.0) + 0.16 * pow(glow, 60.0)) * dimmed;
   if (kind > 0.5) {
     // Hills, the nearer ones darker.
     float turn = 3.0 * atan(way.y, way.x);
-    float far = 0.028 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
-    float near = 0.008 + 0.024 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.008 * noise(vec2(turn * 22.0, 5.0));
-    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.36) * dimmed, 0.5);
-    if (way.z < far) c = mix(horizon, blue, 0.28);
-    if (way.z < near) c = mix(horizon, blue, 0.5);
-    // The edge of a wood: crowns of several sizes, darker at their feet.
-    float wood = 0.007 + 0.007 * noise(vec2(turn * 5.0, 2.0)) + 0.004 * noise(vec2(turn * 60.0, 4.0))
-      + 0.0016 * noise(vec2(turn * 190.0, 6.0));
-    vec3 leafy = dimmed * mix(vec3(0.3, 0.38, 0.3), vec3(0.42, 0.5, 0.36), noise(vec2(turn * 60.0, 90.0 * way.z)));
-    if (way.z < wood) c = mix(horizon, leafy, 0.62 + 0.2 * smoothstep(wood, 0.0, way.z));
+    float far = 0.03 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
+    float near = 0.012 + 0.03 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.003 * noise(vec2(turn * 40.0, 5.0));
+    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.34) * dimmed, 0.6);
+    if (way.z < far) c = mix(horizon, blue, 0.3);
+    if (way.z < near) c = mix(horizon, blue, 0.55);
+    // Edges of woods, the nearer ones higher: crowns lit from above, with shade between them.
+    for (float row = 0.0; row < 2.0; row++) {
+      vec2 along = vec2(turn * (46.0 - 14.0 * row) + 31.0 * row, row);
+      float wood = (1.0 + 0.9 * row) * (0.002 + 0.012 * noise(along * vec2(0.09, 1.0))
+        + 0.006 * noise(along) * noise(along * 0.5) + 0.0035 * noise(along * vec2(3.1, 1.0)) + 0.0016 * noise(along * vec2(9.0, 1.0)));
+      wood -= 0.016 * row * smoothstep(0.3, 0.7, noise(along * vec2(0.13, 1.0) + 5.0));
+      if (way.z > wood) continue;
+      vec2 leaf = vec2(along.x, 900.0 * way.z);
+      float lit = 0.45 * noise(leaf * vec2(1.6, 0.2)) + 0.35 * noise(leaf * vec2(5.0, 0.6)) + 0.25 * noise(leaf * vec2(14.0, 1.6));
+      lit *= 0.35 + 0.65 * smoothstep(0.0, 1.0, way.z / wood);
+      vec3 leafy = dimmed * mix(vec3(0.15, 0.21, 0.14), mix(vec3(0.46, 0.52, 0.26), vec3(0.3, 0.42, 0.25), noise(along)), lit);
+      c = mix(leafy, horizon, 0.4 - 0.2 * row);
+    }
   }
   return c;
+}
+// Blades of grass as they stand before each other, towards the eye: across and along the way of sight.
+float blades(vec2 p, float far, float size) {
+  float up = log(far) * (eye.z - ground) / (4.0 * size);
+  float level = log2(far / size);
+  float turn = atan(p.y, p.x);
+  float sum = 0.0;
+  for (float part = 0.0; part < 2.0; part++) {
+    float wide = exp2(floor(level) + part);
+    float share = part > 0.5 ? fract(level) : 1.0 - fract(level);
+    sum += share * noise(vec2(turn * wide, up + 7.0 * part));
+  }
+  return sum - 0.5;
 }
 void main() {
   vec3 way = normalize(ray);
@@ -508,16 +541,19 @@ void main() {
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      vec3 lush = vec3(0.36, 0.46, 0.22);
-      vec3 dry = vec3(0.47, 0.51, 0.28);
-      float patch_ = 0.5 + 0.5 * grain(p, 14.0, pixel) + 0.45 * grain(p, 3.1, pixel) + 0.3 * grain(p, 0.7, pixel);
-      soil = mix(lush, dry, clamp(patch_, 0.0, 1.0));
-      soil *= 1.0 + 0.42 * grain(p, 0.22, pixel) + 0.5 * grain(p * vec2(1.0, 0.6), 0.06, pixel)
-        + 0.24 * grain(p, 60.0, pixel);
+      // Patches of lush and of dry grass, clover and moss, tufts, and blades.
+      float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
+      float clumps = cloudy(p / 1.3) - 0.5;
+      soil = mix(vec3(0.25, 0.33, 0.14), vec3(0.46, 0.47, 0.25), smoothstep(0.3, 0.75, broad + 0.5 * clumps));
+      soil = mix(soil, vec3(0.29, 0.41, 0.2), 0.7 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
+      vec2 seen = p - eye.xy;
+      float size = max(0.012, 1.3 * far * length(fwidth(ray)));
+      soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);
+      soil *= 1.0 + 0.3 * (cloudy(vec2(0.2, 1.0) * p / 90.0) - 0.5);
     }
     soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
-    c = mix(horizon, soil, max(0.55 * kind, exp(-haze * far)));
+    c = mix(horizon, soil, max(0.6 * kind, exp(-haze * far)));
   }
   color = vec4(c, 1.0);
 }

@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
  * the picture. */
-export const [CLUMP, CLUMP_FILLED] = [12, 1.1];
+export const [CLUMP, CLUMP_FILLED] = [12, 0.85];
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -267,7 +267,7 @@ class Brush {
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
       const turn = 7 * random();
-      const far = random() ** 0.7;
+      const far = random() ** 0.55;
       const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
       const light = 0.55 + (0.5 * Math.floor(LAYERS * i / count)) / (LAYERS - 1);
       this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
