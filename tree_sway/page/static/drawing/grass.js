@@ -9,9 +9,9 @@ import { seeded } from "./looks.js";
 /** Number of blades with and without a graphics unit. */
 const [BLADES, FEW_BLADES] = [140000, 2500];
 /** Radius over the size of the scene, and height over that of the trees. */
-const [REACH, TALL] = [2, 0.03];
+const [REACH, TALL] = [3, 0.02];
 /** Lowest and highest grass [m]. */
-const [LOWEST, HIGHEST] = [0.12, 0.6];
+const [LOWEST, HIGHEST] = [0.12, 0.35];
 
 export class Grass {
   /** @param {GL} gl @param {Program} used @param {boolean} isFew */

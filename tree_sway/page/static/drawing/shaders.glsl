@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 1.75 * c / (c + 0.75); }
+vec3 toned(vec3 c) { return 1.85 * c / (c + 0.78); }
 
 #part seen tones
 uniform mat4 camera;
@@ -482,7 +482,7 @@ vec3 heaven(vec3 way) {
   // Clouds, whose sides towards the sun are brighter.
   vec2 at = 0.9 * way.xy / (high + 0.2);
   float cloud = cloudy(at);
-  float thick = smoothstep(0.5, 0.74, cloud) * smoothstep(0.02, 0.22, high);
+  float thick = smoothstep(0.45, 0.62, cloud) * smoothstep(0.02, 0.22, high);
   float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.35 * thick, 0.0, 1.0);
   c = mix(c, mix(horizon * 1.1, mix(horizon, zenith, 0.45), shaded), 0.85 * thick);
   float glow = max(dot(way, light), 0.0);

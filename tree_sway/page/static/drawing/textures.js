@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
  * the picture. */
-export const [CLUMP, CLUMP_FILLED] = [12, 0.85];
+export const [CLUMP, CLUMP_FILLED] = [12, 0.7];
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
