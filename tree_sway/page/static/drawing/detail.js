@@ -83,7 +83,7 @@ export class Detail {
     for (const t of this.order) {
       const levels = this.levels[this.trees[t].kind];
       const cost = (/** @type {number} */ level) => (level ? levels[level].segments + this._card * levels[level].cards : 0);
-      const least = t === this.watched ? 1 : pixels[t] ? 0 : -1;
+      const least = t === this.watched || pixels[t] > 2 * levels[1].from ? 1 : pixels[t] ? 0 : -1;
       let level = pixels[t] ? levels.length - 1 : least;
       while (level > least && levels[level].from > (level > 1 ? size : 1) * pixels[t]) level--;
       for (; level > least && spent + cost(level) > budget; level--) isSpent = true;

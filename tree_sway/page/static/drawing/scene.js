@@ -21,8 +21,8 @@ import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
 import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 
-/** Without a graphics unit: frames from one shadow to the next, and the share of the leaves that cast it. */
-const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
+/** Frames from one shadow to the next without a graphics unit; and the share of the leaves that cast it, with one and without. */
+const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
 /** Cost of a card over that of a segment, which the processor places for each frame. */
@@ -471,7 +471,7 @@ export class Scene {
     this._drawMeshes(this._levels, isShadow, {
       picked: rows, isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
       law: [this.flutters ? gain : 0, most],
-    }, this.quality.density * (isShadow ? SHADOW_LEAVES : 1));
+    }, this.quality.density * (isShadow ? SHADOW_LEAVES[+this.isSlow] : 1));
     this._begin(impostor, isShadow);
     for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.5 : 0.9);
   }
@@ -542,7 +542,7 @@ export class Scene {
     const { gl, _shadow: { texture } } = this;
     use(gl, this._programs.shadow, {
       camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
-      softness: 0.5 / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
+      softness: 0.3 / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
     });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

@@ -170,7 +170,7 @@ void main() {
     n = normalize(n + 0.35 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
   }
 #endif
-  vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
+  vec3 base = mix(twigColor, own * (0.15 + 0.77 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
   float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
@@ -391,7 +391,7 @@ void main() {
   vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.24, 0.33, 0.13), vec3(0.45, 0.48, 0.24), blade.w * blade.w);
+  vec3 tint = mix(vec3(0.26, 0.34, 0.14), vec3(0.47, 0.5, 0.26), blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
@@ -544,8 +544,8 @@ void main() {
       // Patches of lush and of dry grass, clover and moss, tufts, and blades.
       float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
       float clumps = cloudy(p / 1.3) - 0.5;
-      soil = mix(vec3(0.25, 0.33, 0.14), vec3(0.46, 0.47, 0.25), smoothstep(0.3, 0.75, broad + 0.5 * clumps));
-      soil = mix(soil, vec3(0.29, 0.41, 0.2), 0.7 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
+      soil = mix(vec3(0.27, 0.35, 0.15), vec3(0.41, 0.44, 0.23), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
+      soil = mix(soil, vec3(0.29, 0.39, 0.2), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
       vec2 seen = p - eye.xy;
       float size = max(0.012, 1.3 * far * length(fwidth(ray)));
       soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);

@@ -390,12 +390,13 @@ class Brush {
       return;
     }
     const pairs = slenderness < 0.35 ? 5 : slenderness < 0.4 ? 4 : 3;
-    this.line(0.75, 0.02, color);
+    const long = 1.1 / pairs;
+    this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
       const pair = Math.floor(i / 2);
-      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (0.95 - 0.06 * pair) + 0.15 * (random() - 0.5);
-      const along = 0.14 + 0.58 * Math.min(1, pair / (pairs - 1));
-      this.at(along, 0, lean, pair === pairs ? Math.min(0.25, size) : size * (0.7 + (0.3 * pair) / pairs), blade);
+      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (1 - 0.06 * pair) + 0.15 * (random() - 0.5);
+      const along = 0.16 + (0.8 - long) * Math.min(1, pair / (pairs - 1));
+      this.at(along, 0, lean, long * (0.75 + (0.25 * pair) / pairs), blade);
     }
   }
 }
