@@ -122,7 +122,7 @@ VIEWS = (
     ),
     View('stand', str(STAND), script='treeSway.scene.camera.set([-0.9, 0.13, 120, 190, 40, 10])'),
     View('stand_software', str(STAND), is_full=False),
-    View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.7)'),
+    View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.86)'),
 )
 
 

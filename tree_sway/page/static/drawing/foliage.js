@@ -38,7 +38,7 @@ const [INNER, INNER_APART] = [0.75, 0.4];
  * clothed all along. */
 const [STUB, LONG] = [4, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging shoots hide the boughs. */
-const [WEEPS, CURTAIN] = [0.8, 7];
+const [WEEPS, CURTAIN] = [0.8, 14];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
@@ -227,7 +227,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
     const frame = weeps ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] + (weeps && c === 2 ? 0.3 * size : 0));
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {
