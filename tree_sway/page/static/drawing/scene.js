@@ -543,7 +543,7 @@ export class Scene {
     const { gl, _shadow: { texture } } = this;
     use(gl, this._programs.shadow, {
       camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
-      softness: 0.3 / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
+      softness: (0.015 * this.height) / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
     });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

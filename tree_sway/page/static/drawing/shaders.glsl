@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 1.85 * c / (c + 0.78); }
+vec3 toned(vec3 c) { return 1.95 * c / (c + 0.8); }
 
 #part seen tones
 uniform mat4 camera;
@@ -165,7 +165,7 @@ void main() {
     vec2 about = 6.0 * normal.xy;
     float lumps = noise(about + vec2(0.0, 1.1 * at.y)) + noise(about.yx * 2.3 + vec2(1.7 * at.y, 5.0));
     float fine = noise(about * 7.0 + vec2(0.0, 9.0 * at.y)) + noise(about.yx * 15.0 + vec2(31.0 * at.y, 3.0));
-    own *= 0.66 + 0.2 * lumps + 0.16 * fine;
+    own *= 0.5 + 0.3 * lumps + 0.2 * fine;
     own = mix(own, vec3(0.5, 0.53, 0.43), 0.45 * smoothstep(1.2, 1.5, lumps + 0.35 * (fine - 1.0)));
     n = normalize(n + 0.35 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
   }
@@ -225,14 +225,18 @@ void main() {
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
   vec3 n = normalize(0.45 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
+#ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
+#else
+  edge = min(1.0, 2.2 * abs(dot(flat_, back)));
+#endif
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
   float across = dot(n, light);
   float open = flutter.z;
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.12 + 0.88 * near * near);
+  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.16 + 0.84 * near * near);
   vec3 up = sky * (0.07 + 0.98 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
@@ -391,11 +395,11 @@ void main() {
   vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.26, 0.34, 0.14), vec3(0.47, 0.5, 0.26), blade.w * blade.w);
+  vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-  base = vec4(tint * (0.5 + 0.5 * sunlight(vec3(foot, ground))), clearness(p));
+  base = vec4(tint * mix(vec3(0.43, 0.46, 0.55), vec3(1.0), sunlight(vec3(foot, ground))), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -433,11 +437,11 @@ void main() {
   }
   float wide = softness * (0.15 + 1.2 * seen.y / seen.x);
   dark = 0.0;
-  for (int i = 0; i < 16; i++) {
+  for (int i = 0; i < 28; i++) {
     float way = turn + 2.4 * float(i);
-    dark += min(1.0, 4.0 * texture(shadow, at + wide * sqrt((float(i) + 0.5) / 16.0) * vec2(cos(way), sin(way))).r);
+    dark += min(1.0, 4.0 * texture(shadow, at + wide * sqrt((float(i) + 0.5) / 28.0) * vec2(cos(way), sin(way))).r);
   }
-  dark /= 16.0;
+  dark /= 28.0;
 #endif
   if (dark < 0.01) discard;
   color = vec4(0.05, 0.08, 0.13, depth * dark);
@@ -482,7 +486,7 @@ vec3 heaven(vec3 way) {
   // Clouds, whose sides towards the sun are brighter.
   vec2 at = 0.9 * way.xy / (high + 0.2);
   float cloud = cloudy(at);
-  float thick = smoothstep(0.45, 0.62, cloud) * smoothstep(0.02, 0.22, high);
+  float thick = smoothstep(0.42, 0.58, cloud) * smoothstep(0.02, 0.22, high);
   float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.35 * thick, 0.0, 1.0);
   c = mix(c, mix(horizon * 1.1, mix(horizon, zenith, 0.45), shaded), 0.85 * thick);
   float glow = max(dot(way, light), 0.0);
@@ -544,8 +548,8 @@ void main() {
       // Patches of lush and of dry grass, clover and moss, tufts, and blades.
       float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
       float clumps = cloudy(p / 1.3) - 0.5;
-      soil = mix(vec3(0.27, 0.35, 0.15), vec3(0.41, 0.44, 0.23), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
-      soil = mix(soil, vec3(0.29, 0.39, 0.2), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
+      soil = mix(vec3(0.3, 0.39, 0.17), vec3(0.46, 0.49, 0.26), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
+      soil = mix(soil, vec3(0.32, 0.43, 0.22), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
       vec2 seen = p - eye.xy;
       float size = max(0.012, 1.3 * far * length(fwidth(ray)));
       soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);
