@@ -120,7 +120,7 @@ struct Frame {
   void (*find_place)(const sway_model &model, Room &room, const double *keys, double *out,
                      double *tangent);
   // Write the changes of loads along shapes (`sway_load_slopes`).
-  void (*load_slopes)(const sway_branches &tree, const sway_branch_load *loads,
+  void (*load_slopes)(const sway_branches &tree, const double *x, const double *wind,
                       const double *shapes, size_t columns, double *scratch, double *turning,
                       double *damping);
   // Step the model `branch` (`sway_step_branches`).

@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rotation vectors in the law of loads: V is Vec or double.
+// Rotation vectors in the law of loads: V is Vec, double, or a double with its changes.
 #pragma once
 
 #include "vec.h"
@@ -16,15 +16,9 @@ INLINE Vector<double> read(const double *from) { return {from[0], from[1], from[
 
 INLINE void write(double *to, const Vector<double> &v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-INLINE Quaternion<double> read_quaternion(const double *q) { return {q[0], q[1], q[2], q[3]}; }
-
-INLINE Quaternion<double> inverse(const Quaternion<double> &q) { return {q.w, -q.x, -q.y, -q.z}; }
-
-// A vector of numbers and one of lanes.
-INLINE Vector<Vec> lanes_of(const Vector<double> &v) { return {all(v.x), all(v.y), all(v.z)}; }
-
-template <class V> INLINE Vector<V> cross(const Vector<V> &a, const Vector<V> &b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+template <class A, class B> INLINE auto cross(const Vector<A> &a, const Vector<B> &b) {
+  return Vector<decltype(a.x * b.x)>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                                     a.x * b.y - a.y * b.x};
 }
 
 // Rotate a vector by a rotation vector through Cayley's map, without root, sine or cosine. That map
@@ -49,8 +43,8 @@ template <class V> INLINE Vector<V> spin_by(const Vector<V> &rotation, const Vec
 }
 
 // The unit quaternion of a rotation vector [rad].
-INLINE Quaternion<double> quaternion_of(const Vector<double> &rotation) {
-  const Vector<double> half = 0.5 * rotation;
+template <class V> INLINE Quaternion<V> quaternion_of(const Vector<V> &rotation) {
+  const Vector<V> half = 0.5 * rotation;
   return quaternion_of(half_angle(dot(half, half)), half);
 }
 
@@ -73,7 +67,7 @@ template <class V> INLINE Vector<V> transposed_times(const Matrix &m, const Vect
 }
 
 // A symmetric matrix xx yy zz xy xz yz times a vector.
-template <class V> INLINE Vector<V> times_symmetric(const V *p, const Vector<V> &u) {
+template <class P, class V> INLINE Vector<V> times_symmetric(const P *p, const Vector<V> &u) {
   return {p[0] * u.x + p[3] * u.y + p[4] * u.z, p[3] * u.x + p[1] * u.y + p[5] * u.z,
           p[4] * u.x + p[5] * u.y + p[2] * u.z};
 }

@@ -175,11 +175,11 @@ template <class V> INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V
 
 template <class V> INLINE void operator+=(Vector<V> &a, const Vector<V> &b) { a = a + b; }
 
-template <class V, class S> INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
-  return {scale * a.x, scale * a.y, scale * a.z};
+template <class V, class S> INLINE auto operator*(const S &scale, const Vector<V> &a) {
+  return Vector<decltype(scale * a.x)>{scale * a.x, scale * a.y, scale * a.z};
 }
 
-template <class V> INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
+template <class A, class B> INLINE auto dot(const Vector<A> &a, const Vector<B> &b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
