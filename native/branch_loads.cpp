@@ -14,8 +14,10 @@ void sway_wind_moments(const sway_branches *tree, const double *x, const double 
   const int64_t n = keys_of(*tree);
   memset(moments, 0, n * count * sizeof(double));
   for (size_t pose = 0; pose < count; pose++, x += n, moments += n, winds += 3) {
-    add_moments(*tree, x, v ? &v : nullptr, tree->damping_mode, read(winds),
-                reinterpret_cast<Load<double> *>(loads), moments);
+    Load<double, double> *own = reinterpret_cast<Load<double, double> *>(loads);
+    add_moments(*tree, x, v ? &v : nullptr, tree->damping_mode, read(winds), own, moments);
+    for (int64_t b = 0; b < tree->branches; b++)
+      own[b].force = rotated(own[b].orientation, turned_by(own[b].turn, own[b].own_force));
     if (v) v += n;
   }
 }

@@ -10,8 +10,8 @@
 // The passes are each other's transpose. The drag does work at the very velocities that it is
 // computed from, however far the tree is bent.
 //
-// V is double, or a number with its changes. Amounts of key rotations, or of their rates, are
-// numbered; without rates the tree is still.
+// X, of the pose, and V, of motion and loads, are double, or a number with its changes. Amounts of key
+// rotations, or of their rates, are numbered; without rates the tree is still.
 #pragma once
 
 #include "library.h"
@@ -19,22 +19,23 @@
 
 namespace {
 
-// `sway_branch_load`, of numbers V.
-template <class V> struct Load {
+// `sway_branch_load`, of such numbers.
+template <class X, class V> struct Load {
   Vector<V> velocity, spin;
-  Quaternion<V> orientation;
-  Vector<V> rotation, displacement, arm, turn, flow, own_force, force, wrench_force, wrench_moment;
+  Quaternion<X> orientation;
+  Vector<X> rotation, displacement, arm, turn;
+  Vector<V> flow, own_force, force, wrench_force, wrench_moment;
 };
 
-static_assert(sizeof(Load<double>) == sizeof(sway_branch_load), "sway_branch_load");
+static_assert(sizeof(Load<double, double>) == sizeof(sway_branch_load), "sway_branch_load");
 
 INLINE double root(double value) { return __builtin_sqrt(most(value, 0.0)); }
 
 INLINE void add(double *out, int64_t key, double moment) { out[key] += moment; }
 
 // Sum a mode (b, k, 3) of a branch by the amounts of its key rotations.
-template <class V, class X>
-INLINE Vector<V> moved(const sway_branches &tree, int64_t b, const X &amounts, const double *mode) {
+template <class V, class A>
+INLINE Vector<V> moved(const sway_branches &tree, int64_t b, const A &amounts, const double *mode) {
   Vector<V> sum = {};
   const double *row = mode + 3 * tree.keys * b;
   for (int64_t c = 0; c < tree.n_coordinates[b]; c++)
@@ -47,8 +48,8 @@ template <class V> struct Joint {
   Vector<V> shift, rotation;
 };
 
-template <class V, class X>
-INLINE Joint<V> joint_of(const sway_branches &tree, int64_t b, const X &amounts) {
+template <class V, class A>
+INLINE Joint<V> joint_of(const sway_branches &tree, int64_t b, const A &amounts) {
   Joint<V> joint = {};
   const int64_t parent = tree.parent[b];
   const double *twist = tree.twist + 6 * tree.keys * b;
@@ -63,12 +64,12 @@ INLINE Joint<V> joint_of(const sway_branches &tree, int64_t b, const X &amounts)
 
 // The motion of a base. It keeps its distance from the parent's base, as the end of a rod: where it is
 // displaced by s across an arm a, it comes closer by |s|^2 / (2 |a|).
-template <class V, class X>
-INLINE void go_outward(const sway_branches &tree, int64_t b, const X &x, const X *v,
-                       const Load<V> &on, Load<V> &own) {
+template <class X, class V, class A, class B>
+INLINE void go_outward(const sway_branches &tree, int64_t b, const A &x, const B *v,
+                       const Load<X, V> &on, Load<X, V> &own) {
   const Vector<double> rest_arm = read(tree.arm + 3 * b);
   const double per_arm = tree.per_arm[b];
-  const Joint<V> joint = joint_of<V>(tree, b, x);
+  const Joint<X> joint = joint_of<X>(tree, b, x);
   own.displacement = joint.shift;
   own.rotation = joint.rotation;
   own.arm = joint.shift + (1.0 - per_arm * dot(joint.shift, joint.shift)) * rest_arm;
@@ -78,7 +79,7 @@ INLINE void go_outward(const sway_branches &tree, int64_t b, const X &x, const X
   // In the frame of the parent's base, then in that of the base itself.
   const Joint<V> rate = joint_of<V>(tree, b, *v);
   const V shortening = 2.0 * per_arm * dot(joint.shift, rate.shift);
-  const Vector<V> back = -1.0 * joint.rotation;
+  const Vector<X> back = -1.0 * joint.rotation;
   own.velocity = turned_by(back, on.velocity + cross(on.spin, own.arm) + rate.shift -
                                      shortening * rest_arm);
   own.spin = turned_by(back, on.spin + spin_by(joint.rotation, rate.rotation));
@@ -95,13 +96,13 @@ INLINE Vector<V> drag_of(const sway_branches &tree, int64_t b, const Vector<V> &
 
 // The force of the wind on a branch: the velocity of the air less that of the base, of the branch
 // itself by a mode, and of its spin.
-template <class V, class X>
-INLINE void find_force(const sway_branches &tree, int64_t b, const X &x, const X *v,
-                       const double *mode, const Vector<V> &wind, Load<V> &own) {
-  const Quaternion<V> &q = own.orientation;
-  const Vector<V> air = tree.speed[b] * rotated({q.w, -q.x, -q.y, -q.z}, wind);
-  own.turn = moved<V>(tree, b, x, tree.load_rotation);
-  const Vector<V> back = -1.0 * own.turn;
+template <class X, class V, class A, class B>
+INLINE void find_force(const sway_branches &tree, int64_t b, const A &x, const B *v,
+                       const double *mode, const Vector<X> &wind, Load<X, V> &own) {
+  const Quaternion<X> &q = own.orientation;
+  const Vector<X> air = tree.speed[b] * rotated({q.w, -q.x, -q.y, -q.z}, wind);
+  own.turn = moved<X>(tree, b, x, tree.load_rotation);
+  const Vector<X> back = -1.0 * own.turn;
   own.flow = turned_by(back, air - own.velocity);
   V variance = {};
   if (v) {
@@ -117,21 +118,20 @@ INLINE void find_force(const sway_branches &tree, int64_t b, const X &x, const X
 }
 
 // Begin wrench and force of a branch with the wind's own, and add its moments.
-template <class V, class Out>
-INLINE void begin(const sway_branches &tree, int64_t b, Load<V> &own, const Out &moments) {
+template <class X, class V, class Out>
+INLINE void begin(const sway_branches &tree, int64_t b, Load<X, V> &own, const Out &moments) {
   const double *mode = tree.load_mode + 3 * tree.keys * b;
   for (int64_t c = 0; c < tree.n_coordinates[b]; c++)
     add(moments, tree.coordinate[b] + c, dot(read(mode + 3 * c), own.own_force));
   own.wrench_force = turned_by(own.turn, own.own_force);
   own.wrench_moment = turned_by(own.turn, read_matrix(tree.coupling + 9 * b) * own.own_force);
-  own.force = rotated(own.orientation, own.wrench_force);
 }
 
 // Hand the wrench of a branch to its parent, as moments on the key rotations as they are bent and
 // turned. The load of a branch rotates with it, and its force and moment act on the parent at the bent
 // position of its base: `go_outward` transposed.
-template <class V, class Out>
-INLINE void go_inward(const sway_branches &tree, int64_t b, const Load<V> &own, Load<V> &on,
+template <class X, class V, class Out>
+INLINE void go_inward(const sway_branches &tree, int64_t b, const Load<X, V> &own, Load<X, V> &on,
                       const Out &moments) {
   const Vector<V> force = turned_by(own.rotation, own.wrench_force);
   const Vector<V> couple = turned_by(own.rotation, own.wrench_moment);
@@ -150,11 +150,11 @@ INLINE void go_inward(const sway_branches &tree, int64_t b, const Load<V> &own, 
 }
 
 // Add the moments of a wind on the key rotations of a tree at x that moves at v, or is still.
-template <class V, class X, class Out>
-static void add_moments(const sway_branches &tree, const X &x, const X *v, const double *mode,
-                        const Vector<V> &wind, Load<V> *loads, const Out &moments) {
-  loads[0] = Load<V>{};
-  loads[0].orientation.w = 1.0 + V{};
+template <class X, class V, class A, class B, class Out>
+static void add_moments(const sway_branches &tree, const A &x, const B *v, const double *mode,
+                        const Vector<X> &wind, Load<X, V> *loads, const Out &moments) {
+  loads[0] = Load<X, V>{};
+  loads[0].orientation.w = 1.0 + X{};
   for (int64_t b = 0; b < tree.branches; b++) {
     if (b > 0) go_outward(tree, b, x, v, loads[tree.parent[b]], loads[b]);
     find_force(tree, b, x, v, mode, wind, loads[b]);

@@ -52,13 +52,13 @@ INLINE HalfAngle<Changing> half_angle(const Changing &square) {
           {sinc, 0.5 * (cosine - sinc) / square.value * square.change}};
 }
 
-// Amounts that change along shapes (N, columns); of either none where null.
+// Amounts that change along shapes (N, columns), from 0 where null.
 struct Along {
   const double *at, *shapes;
   size_t columns;
 
   Changing operator[](int64_t key) const {
-    return {at ? at[key] : 0.0, shapes ? load(shapes + key * columns) : Vec{}};
+    return {at ? at[key] : 0.0, load(shapes + key * columns)};
   }
 };
 
@@ -76,18 +76,18 @@ INLINE void add(const Slopes &to, int64_t key, const Changing &moment) {
 static void load_slopes(const sway_branches &tree, const double *x, const double *wind,
                         const double *shapes, size_t columns, double *scratch, double *turning,
                         double *damping) {
-  Load<Changing> *loads = reinterpret_cast<Load<Changing> *>(scratch);
-  static_assert(sizeof(*loads) <= 333 * sizeof(double), "sway_load_slopes");
+  auto *turned = reinterpret_cast<Load<Changing, Changing> *>(scratch);
+  auto *loads = reinterpret_cast<Load<double, Changing> *>(scratch);
+  static_assert(sizeof(*turned) <= 333 * sizeof(double), "sway_load_slopes");
   const size_t bytes = keys_of(tree) * columns * sizeof(double);
   memset(turning, 0, bytes);
   memset(damping, 0, bytes);
   const Vector<Changing> air = {{wind[0], {}}, {wind[1], {}}, {wind[2], {}}};
   for (size_t i = 0; i < columns; i += LANES) {
-    const Along moving = {x, shapes + i, columns}, still = {x, nullptr, 0};
-    const Along rates = {nullptr, shapes + i, columns};
-    const Along *none = nullptr;
-    add_moments(tree, moving, none, tree.load_mode, air, loads, Slopes{turning + i, columns});
-    add_moments(tree, still, &rates, tree.load_mode, air, loads, Slopes{damping + i, columns});
+    const Along moving = {x, shapes + i, columns}, rates = {nullptr, shapes + i, columns};
+    const Along *still = nullptr;
+    add_moments(tree, moving, still, tree.load_mode, air, turned, Slopes{turning + i, columns});
+    add_moments(tree, x, &rates, tree.load_mode, read(wind), loads, Slopes{damping + i, columns});
     for (int64_t b = 0; b < tree.branches; b++)
       for (int64_t c = 0; c < 2 && c < tree.n_coordinates[b]; c++) {
         const int64_t row = 3 * (tree.keys * b + c), key = tree.coordinate[b] + c;

@@ -8,8 +8,8 @@
 
 namespace {
 
-template <class V> INLINE Vector<V> operator-(const Vector<V> &a, const Vector<V> &b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
+template <class A, class B> INLINE auto operator-(const Vector<A> &a, const Vector<B> &b) {
+  return Vector<decltype(a.x - b.x)>{a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
 INLINE Vector<double> read(const double *from) { return {from[0], from[1], from[2]}; }
@@ -25,11 +25,12 @@ template <class A, class B> INLINE auto cross(const Vector<A> &a, const Vector<B
 // is always a rotation, by the angle 2 atan(|r| / 2). So the vector is stretched first, by the
 // series of the tangent: the error of the angle is 1e-4 at 1 rad and 2 % at 2 rad. The opposite
 // rotation vector inverts it to rounding.
-template <class V> INLINE Vector<V> turned_by(const Vector<V> &rotation, const Vector<V> &v) {
-  const V t = dot(rotation, rotation);
-  const V half = 0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)));
-  const Vector<V> h = half * rotation;
-  const V f = 2.0 / (1.0 + dot(h, h));
+template <class R, class V>
+INLINE Vector<V> turned_by(const Vector<R> &rotation, const Vector<V> &v) {
+  const R t = dot(rotation, rotation);
+  const R half = 0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)));
+  const Vector<R> h = half * rotation;
+  const R f = 2.0 / (1.0 + dot(h, h));
   const Vector<V> c = cross(h, v);
   return v + f * (c + cross(h, c));
 }
@@ -37,7 +38,8 @@ template <class V> INLINE Vector<V> turned_by(const Vector<V> &rotation, const V
 // The angular velocity of a rotation vector t that changes by w per second, by series:
 // w + t x w / 2 + t x (t x w) / 6. By the opposite rotation vector it is transposed: what a couple w
 // does per unit of t.
-template <class V> INLINE Vector<V> spin_by(const Vector<V> &rotation, const Vector<V> &rate) {
+template <class R, class V>
+INLINE Vector<V> spin_by(const Vector<R> &rotation, const Vector<V> &rate) {
   const Vector<V> first = cross(rotation, rate);
   return rate + 0.5 * first + (1.0 / 6.0) * cross(rotation, first);
 }
