@@ -46,7 +46,7 @@ struct CoupledStep {
 
 // What a limp tree has beside its `State`: none of it is needed to go on from a state.
 struct LimpTree {
-  double *columns;               // J (m, places)
+  float *columns;                // J (m, places)
   double *change;                // inertia less 1 (q, row)
   double *weight;                // force of the weight beyond the linear (row)
   double *last_eta, *last_rate;  // as the last step left them (padded)
@@ -61,10 +61,12 @@ struct LimpTree {
 struct LimpRoom {
   double *turned, *turning, *keys;            // key rotations, their rates, others (keys)
   double *here, *ahead, *behind, *trial;      // places
-  double *tangent, *force;                    // of the segments (places)
+  float *bend;                                // of the motion (places)
+  double *tangent;                            // of the segments (places)
+  float *force;                               // on them (places)
   double *gust;                               // (places)
   double *products;                           // of rows and columns (m + 2, row)
-  const double **rows;                        // (m + 2)
+  const float **rows;                         // (m + 2)
   double *momentum, *across, *along;          // (row)
   double *matrix, *block, *coupled, *solved;  // (q, row), (q, row), (8, row), (3, row)
   double *eta, *rate, *new_force, *by_wind, *wanted, *sloped;  // (padded)
@@ -118,7 +120,7 @@ struct Frame {
   void (*find_place)(const sway_model &model, Room &room, const double *keys, double *out,
                      double *tangent);
   // Write the changes of loads along shapes (`sway_load_slopes`).
-  void (*load_slopes)(const sway_branches &tree, const sway_branch_load *loads,
+  void (*load_slopes)(const sway_branches &tree, const double *x, const double *wind,
                       const double *shapes, size_t columns, double *scratch, double *turning,
                       double *damping);
   // Step the model `branch` (`sway_step_branches`).

@@ -86,7 +86,8 @@ static void turn(const sway_model &model, const double *eta, const double *rate,
 // Take the inertia of the tree at rest.
 static void return_to_rest(const sway_model &model, LimpTree &tree) {
   const Limp &limp = model.limp;
-  memcpy(tree.columns, limp.columns, model.sizes.coordinates * limp.places * sizeof(double));
+  for (int64_t i = 0; i < model.sizes.coordinates * limp.places; i++)
+    tree.columns[i] = float(limp.columns[i]);
   memset(tree.change, 0, limp.leading * limp.row * sizeof(double));
   memset(tree.weight, 0, limp.row * sizeof(double));
   tree.next = 0;
@@ -122,9 +123,11 @@ static void place_along(const sway_model &model, Room &room, double amount, cons
   find_place(model, room, own.keys, out, nullptr);
 }
 
-// Turn the tree a little from here along each of the next coordinates and take the difference as
-// its column. The rows of the room beyond the first two are these columns.
-static void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t count) {
+// Turn the tree a little from here along each of the next coordinates, and take the difference as
+// its column, and the weight on it, at coordinates `eta`. The rows of the room beyond the first two
+// are these columns.
+static void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t count,
+                         const double *eta) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates;
   LimpRoom &own = room.limp;
@@ -132,18 +135,25 @@ static void find_columns(const sway_model &model, LimpTree &tree, Room &room, in
     const int64_t number = (tree.next + k) % m;
     const double amount = limp.amount[number];
     place_along(model, room, amount, limp.directions + number * limp.keys, own.trial);
-    double *column = tree.columns + number * limp.places;
-    for (int64_t i = 0; i < limp.places; i += LANES)
-      store(column + i, (load(own.trial + i) - load(own.here + i)) / amount);
+    float *column = tree.columns + number * limp.places;
+    const double per_amount = 1.0 / amount;
+    for (int64_t i = 0; i < limp.places; i += LANES) {
+      const Vec moved = per_amount * (load(own.trial + i) - load(own.here + i));
+      store(own.trial + i, moved);
+      store_singles(column + i, moved);
+    }
     own.rows[2 + k] = column;
+    if (number >= limp.leading) continue;
+    const double linear =
+        limp.weight[number] + dot(limp.slopes + number * model.padded, eta, model.padded);
+    tree.weight[number] = dot(own.trial + 2 * limp.each, limp.gravity, limp.each) - linear;
   }
 }
 
-// Take inertia and weight of the new columns at a pose of the coordinates `eta`; the products of the
-// first two rows with all columns are those of the pose too. Rates are scaled to the kinetic energy
-// that they had before.
+// Take the inertia of the new columns; the products of the first two rows with all columns are those
+// of the pose too. Rates are scaled to the kinetic energy that they had before.
 static void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t count,
-                  const double *eta, double *rate) {
+                  double *rate) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates, M = model.padded, q = limp.leading;
   LimpRoom &own = room.limp;
@@ -156,9 +166,6 @@ static void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t c
     const double *inertia = own.products + (2 + k) * limp.row;
     for (int64_t j = 0; j < q; j++)
       tree.change[row * limp.row + j] = tree.change[j * limp.row + row] = inertia[j];
-    const double linear = limp.weight[row] + dot(limp.slopes + row * M, eta, M);
-    const double *height = own.rows[2 + k] + 2 * limp.each;
-    tree.weight[row] = dot(height, limp.gravity, limp.each) - linear;
   }
   for (int64_t k = 0; k < count; k++) {
     const int64_t row = (tree.next + k) % m;

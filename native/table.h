@@ -154,10 +154,11 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
   }
 }
 
-// Add the load by the distances from the corners, and the damping by the rates. The coordinate that
-// moves is the outer loop: the table is read in order.
+// Add the load by the distances from the corners, and the damping by the rates, and write the damping
+// by the own rate of each. The coordinate that moves is the outer loop: the table is read in order.
 static void add_slopes(const sway_model &model, const Corners &corners, double slant,
-                       double level_winds, Room &room, int64_t n_coupled) {
+                       double level_winds, double drag, double *diagonal, Room &room,
+                       int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
   const Arrays &table = model.table;
   const float *turning[4], *damping[4];
@@ -173,8 +174,13 @@ static void add_slopes(const sway_model &model, const Corners &corners, double s
     lean[side] = table.lean + corners.azimuth[side] * m * M;
     slants[side] = float(level_winds * corners.by_azimuth[side] * slant);
   }
-  for (int64_t moving = 0; moving < n_coupled; moving++) {
+  for (int64_t moving = 0; moving < m; moving++) {
     const int64_t row = moving * M;
+    double own = 0.0;
+    for (int corner = 0; corner < 4; corner++)
+      own += corners.weight[corner] * double(damping[corner][row + moving]);
+    diagonal[moving] = drag * own;
+    if (moving >= n_coupled) continue;
     const float moved = float(room.middle[moving]);
     const float rate = room.single_rate[moving];
     float away[4], rates[4];
@@ -239,15 +245,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
     store(state.wanted + i, force);
   }
   find_distances(model, corners, room);
-  add_slopes(model, corners, least(most(wind.direction.z, -STEEP), STEEP), 1.0 - steepness, room,
-             n_coupled);
-  for (int64_t i = 0; i < m; i++) {
-    double slope = 0.0;
-    for (int corner = 0; corner < 4; corner++)
-      slope +=
-          corners.weight[corner] * double(table.damping[(corners.number[corner] * m + i) * M + i]);
-    state.diagonal[i] = drag * slope;
-  }
+  add_slopes(model, corners, least(most(wind.direction.z, -STEEP), STEEP), 1.0 - steepness, drag,
+             state.diagonal, room, n_coupled);
   for (int64_t i = m; i < M; i++) state.diagonal[i] = 0.0;
   if (steepness > 0.0)
     add_steep_slopes(model, wind.direction.z > 0.0, steepness, drag, state, room, n_coupled);

@@ -70,6 +70,10 @@ INLINE Vec load_singles(const float *from) {
 #endif
 }
 
+INLINE void store_singles(float *to, Vec value) {
+  *reinterpret_cast<HalfSinglesAt *>(to) = __builtin_convertvector(value, HalfSingles);
+}
+
 INLINE Vec all(double value) { return value - Vec{}; }
 
 INLINE Vec least(Vec a, Vec b) { return a < b ? a : b; }
@@ -171,11 +175,11 @@ template <class V> INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V
 
 template <class V> INLINE void operator+=(Vector<V> &a, const Vector<V> &b) { a = a + b; }
 
-template <class V, class S> INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
-  return {scale * a.x, scale * a.y, scale * a.z};
+template <class V, class S> INLINE auto operator*(const S &scale, const Vector<V> &a) {
+  return Vector<decltype(scale * a.x)>{scale * a.x, scale * a.y, scale * a.z};
 }
 
-template <class V> INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
+template <class A, class B> INLINE auto dot(const Vector<A> &a, const Vector<B> &b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 

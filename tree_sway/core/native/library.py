@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x15D70E2B
+INTERFACE = 0xE4DA1E42
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -86,7 +86,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     ),
     'sway_load_slopes': (
         None,
-        (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
+        (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
     'sway_step_branches': (
         _whole,
