@@ -32,7 +32,6 @@ from tree_sway.twin import later_work
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 from tree_sway.twin.sensor_report import sensor_reports
-from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.twin.tree_fit import TreeFit
 
 DT, SECONDS = 1.0 / 60.0, 70
@@ -88,23 +87,21 @@ class Replay(NamedTuple):
     """
     A tree after a record.
 
-    Its tips, its late, smoothed tips, (n, b, 3), its band, and that of the highest tip's distance.
+    Its tips, (n, b, 3), its band, and that of the highest tip's distance.
     """
 
     twin: ObservedTree
     tips: Floats
-    late: Floats
     band: Floats
     sway_band: Floats
 
 
 def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
     twin = ObservedTree(
-        TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True,
-    )  # fmt: skip
+        TREE, SPECIES, in_leaf=False, at={'phone': AT}, learns=learns, has_band=True
+    )
     wind, block = truth().wind, np.empty((TREE.n_segments, 7))
-    tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
+    tips = np.empty((len(wind), TREE.n_branches, 3))
     band = np.empty((len(wind), 2, len(BANDED), 3))
     sway_band = np.empty((len(wind), 2))
     first = 0
@@ -119,17 +116,15 @@ def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
             first += 1
         twin.step(each, DT)
         tips[k] = tips_of_poses(TREE, twin.place(block))
-        late[k] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
         band[k] = twin.band(BANDED)
         sway_band[k] = twin.sway_band()
-    return Replay(twin, tips, late, band, sway_band)
+    return Replay(twin, tips, band, sway_band)
 
 
-def dynamic_error(tips: Floats, late: int = 0) -> float:
+def dynamic_error(tips: Floats) -> float:
     """Return the error of the motion about its mean, over the true motion."""
-    rows = SCORED.start
-    true = truth().tips[rows - late : len(tips) - late]
-    motion, wrong = true - true.mean(axis=0), tips[rows:] - true
+    true = truth().tips[SCORED]
+    motion, wrong = true - true.mean(axis=0), tips[SCORED] - true
     wrong = wrong - wrong.mean(axis=0)
     return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
 
@@ -150,23 +145,19 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, *_ = good()
+    twin, tips, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
-    smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
-    assert smoothed < error
     assert not twin.problems
     counts = twin.sensors['phone'].counts
     assert counts.accepted == len(truth().wind)
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
-def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, *_ = good()
-    true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
-    rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
-    assert np.sqrt(rough[1]) < 1.5
-    assert np.sqrt(rough[0]) < 2.5
+def test_the_motion_is_hardly_rougher_than_the_true_one() -> None:
+    tips, true = good().tips[SCORED], truth().tips[SCORED]
+    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (tips, true)]
+    assert np.sqrt(rough[0] / rough[1]) < 2.5
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
@@ -255,9 +246,8 @@ def test_the_motion_does_not_depend_on_when_work_beside_the_steps_is_done(
 ) -> None:
     """As late as can be, by the steps themselves: then it would read what they have changed."""
     monkeypatch.setattr(later_work, 'submit_beside', Postponed)
-    _twin, tips, late, band, _ = replayed(measured(), learns=True)
+    _twin, tips, band, _ = replayed(measured(), learns=True)
     np.testing.assert_array_equal(tips, learning().tips)
-    np.testing.assert_array_equal(late, learning().late)
     np.testing.assert_array_equal(band, learning().band)
 
 
@@ -381,7 +371,7 @@ def test_a_step_with_a_sensor_makes_no_arrays(tmp_path: Path) -> None:
 
 def print_memory_of_steps(wind: Floats, *motion: Floats) -> None:
     """Print the peak of 198 steps over the memory before them, and what they keep [B]."""
-    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
     winds = [tuple(each) for each in wind.tolist()]
     samples = list(zip(*(each.tolist() for each in motion), strict=True))
 

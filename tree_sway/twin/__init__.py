@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from tree_sway.twin.sensor_place import SensorPlace as SensorPlace
     from tree_sway.twin.sensor_place import strain_of as strain_of
     from tree_sway.twin.sensor_report import sensor_reports as sensor_reports
-    from tree_sway.twin.smoothed_motion import LATE_STEPS as LATE_STEPS
     from tree_sway.twin.tree_fit import TreeFit as TreeFit
 else:
     __getattr__, __dir__, __all__ = face(__name__)
