@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent
 NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
 #: Houses of the library that bring commands.
 HOUSES = (
-    'files', 'forest', 'growth', 'page', 'pictures', 'simulation', 'twin',
+    'files', 'forest', 'growth', 'identification', 'page', 'pictures', 'simulation',
 )  # fmt: skip
 #: Kinds of objects that have a picture, and the function that draws each.
 DRAWN = {

@@ -32,7 +32,6 @@ from tree_sway.twin import later_work
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 from tree_sway.twin.sensor_report import sensor_reports
-from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.twin.tree_fit import TreeFit
 
 DT, SECONDS = 1.0 / 60.0, 70
@@ -89,12 +88,15 @@ class Replay(NamedTuple):
     """
     A tree after a record, and from FIRST on what it showed.
 
+<<<<<<< HEAD
     Its tips, its late, smoothed tips, (m, b, 3), its band, and that of the highest tip's distance.
+=======
+    Its tips, (n, b, 3), its band, and that of the highest tip's distance.
+>>>>>>> h-twin
     """
 
     twin: ObservedTree
     tips: Floats
-    late: Floats
     band: Floats
     sway_band: Floats
 
@@ -103,6 +105,7 @@ def replayed(
     motion: SensedMotion | None, *, learns: bool = False, seconds: int = SECONDS
 ) -> Replay:
     twin = ObservedTree(
+<<<<<<< HEAD
         TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
         has_band=True,
     )  # fmt: skip
@@ -111,6 +114,14 @@ def replayed(
     tips, late = np.empty((2, kept, TREE.n_branches, 3))
     band = np.empty((kept, 2, len(BANDED), 3))
     sway_band = np.empty((kept, 2))
+=======
+        TREE, SPECIES, in_leaf=False, at={'phone': AT}, learns=learns, has_band=True
+    )
+    wind, block = truth().wind, np.empty((TREE.n_segments, 7))
+    tips = np.empty((len(wind), TREE.n_branches, 3))
+    band = np.empty((len(wind), 2, len(BANDED), 3))
+    sway_band = np.empty((len(wind), 2))
+>>>>>>> h-twin
     first = 0
     for k, each in enumerate(wind):
         while motion is not None and first < len(motion.time):
@@ -122,6 +133,7 @@ def replayed(
             )  # fmt: skip
             first += 1
         twin.step(each, DT)
+<<<<<<< HEAD
         if (row := k - FIRST) < 0:
             continue
         tips[row] = tips_of_poses(TREE, twin.place(block))
@@ -129,12 +141,23 @@ def replayed(
         band[row] = twin.band(BANDED)
         sway_band[row] = twin.sway_band()
     return Replay(twin, tips, late, band, sway_band)
+=======
+        tips[k] = tips_of_poses(TREE, twin.place(block))
+        band[k] = twin.band(BANDED)
+        sway_band[k] = twin.sway_band()
+    return Replay(twin, tips, band, sway_band)
+>>>>>>> h-twin
 
 
-def dynamic_error(tips: Floats, late: int = 0) -> float:
+def dynamic_error(tips: Floats) -> float:
     """Return the error of the motion about its mean, over the true motion."""
+<<<<<<< HEAD
     true = truth().tips[: len(tips) - late]
     motion, wrong = true - true.mean(axis=0), tips[late:] - true
+=======
+    true = truth().tips[SCORED]
+    motion, wrong = true - true.mean(axis=0), tips[SCORED] - true
+>>>>>>> h-twin
     wrong = wrong - wrong.mean(axis=0)
     return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
 
@@ -155,23 +178,28 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, *_ = good()
+    twin, tips, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
-    smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
-    assert smoothed < error
     assert not twin.problems
     counts = twin.sensors['phone'].counts
     assert counts.accepted == len(truth().wind)
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
+<<<<<<< HEAD
 def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
     _twin, tips, late, *_ = good()
     true = np.square(np.diff(truth().tips, 2, axis=0)).sum()
     rough = [np.square(np.diff(each, 2, axis=0)).sum() / true for each in (tips, late)]
     assert np.sqrt(rough[1]) < 1.5
     assert np.sqrt(rough[0]) < 2.5
+=======
+def test_the_motion_is_hardly_rougher_than_the_true_one() -> None:
+    tips, true = good().tips[SCORED], truth().tips[SCORED]
+    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (tips, true)]
+    assert np.sqrt(rough[0] / rough[1]) < 2.5
+>>>>>>> h-twin
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
@@ -260,9 +288,8 @@ def test_the_motion_does_not_depend_on_when_work_beside_the_steps_is_done(
 ) -> None:
     """As late as can be, by the steps themselves: then it would read what they have changed."""
     monkeypatch.setattr(later_work, 'submit_beside', Postponed)
-    _twin, tips, late, band, _ = replayed(measured(), learns=True)
+    _twin, tips, band, _ = replayed(measured(), learns=True)
     np.testing.assert_array_equal(tips, learning().tips)
-    np.testing.assert_array_equal(late, learning().late)
     np.testing.assert_array_equal(band, learning().band)
 
 
@@ -386,7 +413,7 @@ def test_a_step_with_a_sensor_makes_no_arrays(tmp_path: Path) -> None:
 
 def print_memory_of_steps(wind: Floats, *motion: Floats) -> None:
     """Print the peak of 198 steps over the memory before them, and what they keep [B]."""
-    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
     winds = [tuple(each) for each in wind.tolist()]
     samples = list(zip(*(each.tolist() for each in motion), strict=True))
 

@@ -96,8 +96,6 @@ class ObservedTree(SwaySimulator):
         Place of each sensor by its name, as `place_on` takes it.
     rate
         Steps per second in [Hz].
-    is_smoothed
-        Whether the smoothed state is kept too (`smoothed`).
     learns
         Whether stiffness and damping follow the sensors.
     has_band
@@ -127,7 +125,6 @@ class ObservedTree(SwaySimulator):
         *,
         at: Mapping[str, str | float],
         rate: float = 60.0,
-        is_smoothed: bool = False,
         learns: bool = True,
         has_band: bool = False,
         upwind: float = 0.0,
@@ -152,7 +149,7 @@ class ObservedTree(SwaySimulator):
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
         self._explained = ExplainedMotion()
-        self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
+        self._has_band, self._rate = has_band, 0.0
         self._as_made = self.check_tuning()
         self._tuned: tuple[Tuning, ...] = ()
         tunable = self._bank.oscillators.tunable
@@ -220,12 +217,7 @@ class ObservedTree(SwaySimulator):
             for each in self.sensors.values()
         ]
         self.observer: Observer = Observer(
-            self,
-            tracks,
-            1.0 / rate,
-            before=before,
-            wind=self.late_wind,
-            is_smoothed=self._is_smoothed,
+            self, tracks, 1.0 / rate, before=before, wind=self.late_wind
         )
         """What the sensors tell."""
         self._dragged = DraggedMotion(self.observer, 1.0 / rate)
@@ -346,7 +338,6 @@ class ObservedTree(SwaySimulator):
         correction = self.observer.step(self.now, self._last_wind, n_periods)
         self._bound(correction)
         self._dragged.step(correction, n_periods, added)
-        self.observer.note_dragged(self._dragged.motion[0])
         if self.members is not None:
             self.members.step(swing, self._last_wind[:2], self._apart)
         eta += added[0]
@@ -451,11 +442,6 @@ class ObservedTree(SwaySimulator):
         if is_changed:
             self.observer.refresh()
         return is_changed
-
-    @property
-    def smoothed(self) -> Floats:
-        """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
-        return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
     def band(self, branches: Sequence[int] | None = None) -> Floats:
         """
