@@ -23,7 +23,8 @@ _MAKERS = table_beside(__file__, 'makers.csv')
 
 def maker_of(table: TextTable) -> dict[str, Any]:
     """Return the row of the first maker that a table fits; empty for a table of none."""
-    names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
+    plain = [name_and_unit(column.rpartition('.')[2], 'speed')[0] for column in table.columns]
+    names = list(map(folded, plain))
     above = '\n'.join(table.above)
     for maker in _MAKERS:
         is_it = set(maker['names'].split()) <= set(names) and (maker['above'] or '') in above

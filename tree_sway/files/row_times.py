@@ -55,7 +55,12 @@ def _numbers(parts: Sequence[str]) -> str:
     return f'{century + year}-{month}-{day} {hour}:{minute:02d}'
 
 
+def _seconds(parts: Sequence[str]) -> str:
+    return f'{parts[0]}.{parts[1].zfill(9)}'
+
+
 _JOINS: dict[str, Join] = {
+    'seconds, nanoseconds': _seconds,
     'numbers': _numbers,
     'date, hour': _date_and_hour,
     'date, digits': _date_and_digits,
