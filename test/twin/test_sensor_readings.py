@@ -100,11 +100,20 @@ def test_a_sensor_is_silent_after_a_second_and_counted_once() -> None:
         of.read(step * DT, step, step - 1)
         if step * DT < 0.9:
             assert track.in_use
+        assert 'clock' not in track.problem
     track.heed()
     assert track.is_silent
     assert not track.in_use
     assert track.sensor.counts.silent == 1
     assert 'silent for 3 s' in track.problem
+
+
+@pytest.mark.parametrize(('seen', 'left'), [(0.0, 20), (12.5, 8), (19.8, 1), (20.0, 1), (21.0, 1)])
+def test_a_mounting_is_promised_in_a_second_or_more(seen: float, left: int) -> None:
+    track = track_of(readings(1)[0])
+    track.sensor.offer(0.0, acceleration=REST)
+    track.native.count = round(seen / DT)
+    assert f'found within {left} s of sway' in track.problem
 
 
 def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:

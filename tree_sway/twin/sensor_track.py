@@ -435,13 +435,14 @@ class SensorTrack:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
             return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
-        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+        is_heard = native.unheard <= _ABSENT_AFTER < native.absent - native.unheard
+        if self.is_silent and is_heard:
             return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
             return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
         if self.alignment is None:
-            left = (self._next_fit - native.count) * self._dt
-            return f'{name}: its mounting is found within {left:.0f} s of sway'
+            left = max(math.ceil((self._next_fit - native.count) * self._dt - 1e-9), 1)
+            return f'{name}: its mounting is found within {left} s of sway'
         if self.alignment.problem:
             return f'{name}: {self.alignment.problem}'
         if native.is_refused:
