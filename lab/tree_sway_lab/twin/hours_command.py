@@ -207,7 +207,7 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
     misfits = Misfit(rest), Misfit(rest)
     block = np.empty((tree.n_segments, 7))
     waiting, used, step = list[tuple[float, Floats, Floats]](), 0, 0
-    chunks = list[tuple[Floats, Floats, Floats]]()
+    stretch = list[tuple[Floats, Floats]]()
     per_row = max(round(weather.seconds / _CHUNK / _ROWS), 1)
     every = min(round(_MEAN / _CHUNK), per_row)
     for count, true in enumerate(swayed_in_weather(tree, species, at, outside, weather), start=1):
@@ -226,12 +226,12 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
             used += twin.observer.tracks[0].in_use
             if step % round(1.0 / DT) == 0:
                 said.note(step * DT, _said_of(twin))
-        chunks.append((tips[0], tips[1], true.tips))
-        if len(chunks) == every:
-            without, with_sensor, wanted = (np.concatenate(each) for each in zip(*chunks, strict=True))
-            misfits[0].add(without, wanted)
-            misfits[1].add(with_sensor, wanted)
-            chunks.clear()
+        stretch.append((tips, true.tips))
+        if len(stretch) == every:
+            found, wanted = (np.concatenate(each, axis=-3) for each in zip(*stretch, strict=True))
+            for misfit, each in zip(misfits, found, strict=True):
+                misfit.add(each, wanted)
+            stretch.clear()
         if count % per_row == 0:
             _print(step * DT, weather, twin, misfits, used / (per_row * len(true.wind)))
             used = 0
@@ -239,7 +239,7 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
 
 
 def _said_of(twin: ObservedTree) -> list[str]:
-    """What is said of the sensor, and whether the tree sways differently."""
+    """Return what is said of the sensor, and whether the tree sways differently."""
     notes = [note for report in sensor_reports(twin) for note in report.notes]
     changes = [str(each) for each in twin.sway_changes if each.is_change]
     return [*twin.problems, *notes, *changes]

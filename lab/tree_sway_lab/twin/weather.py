@@ -60,22 +60,22 @@ class Weather:
     rain: float = 0.3
 
     def speed_at(self, time: float) -> float:
-        """Mean wind in [m/s]."""
+        """Return the mean wind in [m/s]."""
         return self.speed * self._between(time, _SPEEDS)
 
     def turn_at(self, time: float) -> float:
-        """Angle by which the wind has turned in [rad]."""
+        """Return the angle by which the wind has turned in [rad]."""
         return float(self.turn * self._between(time, _TURNS))
 
     def water_at(self, time: float) -> float:
-        """Mass of the water on the leaves over that of the leaves [-]."""
+        """Return the mass of the water on the leaves over that of the leaves [-]."""
         share = time / self.seconds
         if share < _WET:
             return self.rain * float(np.interp(share, _RAIN, (0.0, 1.0)))
         return self.rain * float(np.exp(-(share - _WET) / _DRY))
 
     def rate_at(self, time: float) -> float:
-        """Samples per second of a sensor on a battery in [Hz]; 0 while it is empty."""
+        """Return the samples per second of a sensor on a battery in [Hz]; 0 while it is empty."""
         share = time / self.seconds
         return [60.0, *(rate for begin, rate in _BATTERY if share >= begin)][-1]
 
