@@ -199,8 +199,13 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
     at = advised_places(make_simulator(tree, species, in_leaf=True), 1, weather.speed)[0].at
     twin = ObservedTree(tree, species, in_leaf=True, at={at: at}, **far)
     print(f'tree,{name},{tree.n_segments} segments,sensor at {at}')
-    factors = outside.wood, outside.damping, outside.drag
-    print('true wood damping drag,' + ','.join(f'{each:.2f}' for each in factors))
+    limb = tree.branch_of_segment[place_on(tree, at).segment]
+    wood = outside.wood * float(np.broadcast_to(outside.branches, tree.n_branches)[limb])
+    factors = wood, outside.damping, outside.drag
+    print(
+        'true stiffness of this limb and damping and drag,'
+        + ','.join(f'{each:.2f}' for each in factors)
+    )
     print(','.join(_HEAD), flush=True)
     rest = tips_of_poses(tree, alone.place())
     sensor, said = LiveSensor(seed), Sayings()
