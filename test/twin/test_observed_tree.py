@@ -225,6 +225,26 @@ def test_a_silent_sensor_is_counted_and_its_correction_fades() -> None:
     np.testing.assert_allclose(tips[after], alone().tips[after], atol=1e-3)
 
 
+def test_in_a_calm_a_tree_does_not_follow_the_noise_of_its_sensor() -> None:
+    twin = ObservedTree(TREE, SPECIES, model=30, in_leaf=False, at={'phone': AT})
+    motion, rng, moved = measured(), np.random.default_rng(19), list[Floats]()
+    still = motion.acceleration.mean(axis=0)
+    block = np.empty((TREE.n_segments, 7))
+    for k in range(105 * 60):
+        is_calm = k >= 35 * 60
+        felt = still + 0.03 * rng.normal(size=3) if is_calm else motion.acceleration[k]
+        turning = 0.004 * rng.normal(size=3) if is_calm else motion.rate[k]
+        twin.offer('phone', (k + 1) * DT, acceleration=felt, rate=turning)
+        twin.step((0.4, 0.0, 0.0) if is_calm else truth().wind[k], DT)
+        if k == 35 * 60:
+            assert twin.observer.trust.any()
+        moved.append(tips_of_poses(TREE, twin.place(block))[0])
+    gusty, calm = (
+        np.std(moved[rows], axis=0).max() for rows in (slice(1500, 2100), slice(-600, None))
+    )
+    assert calm < 0.025 * gusty
+
+
 def test_a_sensor_that_comes_loose_is_refused() -> None:
     motion = measured()
     turned = motion.acceleration.copy()

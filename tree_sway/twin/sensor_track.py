@@ -40,6 +40,11 @@ LEARNING = 20.0
 
 _LATER, _MEMORY = 1.2, 600.0
 _ABSENT_AFTER = 1.0
+_MEAN_EVERY = 30.0
+"""
+Time in [s] after which the mean difference from the model is found again: with that of another
+wind, or of a battery that was warmer, the tree would lean for an hour as it does not.
+"""
 _KNOCKED = 5.0
 _COMPARED, _LEAST_COMPARED = 8.0, 3.0
 """
@@ -369,6 +374,7 @@ class SensorTrack:
         compared = max(_COMPARED, _LEAST_COMPARED * period)
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(LEARNING / dt)
+        self._next_mean = 0
         self._quantities = sensor.quantities
         self._left_for: float | None = None
         self.late = 0.0
@@ -435,13 +441,14 @@ class SensorTrack:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
             return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
-        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+        is_heard = native.unheard <= _ABSENT_AFTER < native.absent - native.unheard
+        if self.is_silent and is_heard:
             return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
             return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
         if self.alignment is None:
-            left = (self._next_fit - native.count) * self._dt
-            return f'{name}: its mounting is found within {left:.0f} s of sway'
+            left = max(math.ceil((self._next_fit - native.count) * self._dt - 1e-9), 1)
+            return f'{name}: its mounting is found within {left} s of sway'
         if self.alignment.problem:
             return f'{name}: {self.alignment.problem}'
         if native.is_refused:
@@ -460,6 +467,8 @@ class SensorTrack:
         Returns whether it measures other quantities, of which no mounting is known.
         """
         native, counts = self.native, self.sensor.counts
+        if native.in_use and native.count >= self._next_mean:
+            self._follow_mean()
         counts.silent = native.silences
         if native.disagreements != counts.disagreed:
             counts.disagreed = native.disagreements
@@ -475,6 +484,18 @@ class SensorTrack:
         native.excess = native.usual = 1.0
         self._next_fit = round(LEARNING / self._dt)
         return True
+
+    def _follow_mean(self) -> None:
+        """Let the mean difference from the model be that of the last minutes."""
+        every = round(_MEAN_EVERY / self._dt)
+        count = self.native.count
+        self._next_mean = count + every
+        alignment = self.alignment
+        assert alignment is not None
+        rows = np.arange(max(count - every, 0), count) % len(self._sensed)
+        model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
+        missed = (alignment.motion(self._sensed[rows]) - model).mean(axis=0) - self.bias
+        self.bias += len(rows) / len(self._sensed) * missed
 
     @property
     def is_due(self) -> bool:
@@ -554,6 +575,7 @@ class SensorTrack:
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
+        self._next_mean = native.count + round(_MEAN_EVERY / self._dt)
 
     def judge(self, size: float) -> None:
         """Judge it by the mean square of its innovations over that expected."""
