@@ -88,11 +88,7 @@ class Replay(NamedTuple):
     """
     A tree after a record, and from FIRST on what it showed.
 
-<<<<<<< HEAD
-    Its tips, its late, smoothed tips, (m, b, 3), its band, and that of the highest tip's distance.
-=======
-    Its tips, (n, b, 3), its band, and that of the highest tip's distance.
->>>>>>> h-twin
+    Its tips, (m, b, 3), its band, and that of the highest tip's distance.
     """
 
     twin: ObservedTree
@@ -105,23 +101,13 @@ def replayed(
     motion: SensedMotion | None, *, learns: bool = False, seconds: int = SECONDS
 ) -> Replay:
     twin = ObservedTree(
-<<<<<<< HEAD
-        TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True,
-    )  # fmt: skip
-    wind, block = truth().wind[: seconds * 60], np.empty((TREE.n_segments, 7))
-    kept = len(wind) - FIRST
-    tips, late = np.empty((2, kept, TREE.n_branches, 3))
-    band = np.empty((kept, 2, len(BANDED), 3))
-    sway_band = np.empty((kept, 2))
-=======
         TREE, SPECIES, in_leaf=False, at={'phone': AT}, learns=learns, has_band=True
     )
-    wind, block = truth().wind, np.empty((TREE.n_segments, 7))
-    tips = np.empty((len(wind), TREE.n_branches, 3))
-    band = np.empty((len(wind), 2, len(BANDED), 3))
-    sway_band = np.empty((len(wind), 2))
->>>>>>> h-twin
+    wind, block = truth().wind[: seconds * 60], np.empty((TREE.n_segments, 7))
+    kept = len(wind) - FIRST
+    tips = np.empty((kept, TREE.n_branches, 3))
+    band = np.empty((kept, 2, len(BANDED), 3))
+    sway_band = np.empty((kept, 2))
     first = 0
     for k, each in enumerate(wind):
         while motion is not None and first < len(motion.time):
@@ -133,31 +119,18 @@ def replayed(
             )  # fmt: skip
             first += 1
         twin.step(each, DT)
-<<<<<<< HEAD
         if (row := k - FIRST) < 0:
             continue
         tips[row] = tips_of_poses(TREE, twin.place(block))
-        late[row] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
         band[row] = twin.band(BANDED)
         sway_band[row] = twin.sway_band()
-    return Replay(twin, tips, late, band, sway_band)
-=======
-        tips[k] = tips_of_poses(TREE, twin.place(block))
-        band[k] = twin.band(BANDED)
-        sway_band[k] = twin.sway_band()
     return Replay(twin, tips, band, sway_band)
->>>>>>> h-twin
 
 
 def dynamic_error(tips: Floats) -> float:
     """Return the error of the motion about its mean, over the true motion."""
-<<<<<<< HEAD
-    true = truth().tips[: len(tips) - late]
-    motion, wrong = true - true.mean(axis=0), tips[late:] - true
-=======
-    true = truth().tips[SCORED]
-    motion, wrong = true - true.mean(axis=0), tips[SCORED] - true
->>>>>>> h-twin
+    true = truth().tips[: len(tips)]
+    motion, wrong = true - true.mean(axis=0), tips - true
     wrong = wrong - wrong.mean(axis=0)
     return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
 
@@ -187,19 +160,9 @@ def test_a_sensor_takes_most_of_the_error_away() -> None:
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
-<<<<<<< HEAD
-def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, *_ = good()
-    true = np.square(np.diff(truth().tips, 2, axis=0)).sum()
-    rough = [np.square(np.diff(each, 2, axis=0)).sum() / true for each in (tips, late)]
-    assert np.sqrt(rough[1]) < 1.5
-    assert np.sqrt(rough[0]) < 2.5
-=======
 def test_the_motion_is_hardly_rougher_than_the_true_one() -> None:
-    tips, true = good().tips[SCORED], truth().tips[SCORED]
-    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (tips, true)]
+    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (good().tips, truth().tips)]
     assert np.sqrt(rough[0] / rough[1]) < 2.5
->>>>>>> h-twin
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
