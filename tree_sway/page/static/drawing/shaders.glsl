@@ -244,7 +244,7 @@ void main() {
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.22 + 0.78 * near);
-  vec3 up = sky * (0.11 + 0.94 * near) * (0.72 + 0.28 * n.z);
+  vec3 up = sky * (0.2 + 0.85 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
