@@ -7,7 +7,7 @@ const HALF = Math.tan((16 * Math.PI) / 180);
 /** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
 /** Distance from the edge of a stand, over its height, and height of the eye there [m]. */
-const [NEARBY, EYE] = [1.6, 2.5];
+const [NEARBY, EYE] = [2, 2.5];
 
 export class Camera {
   azimuth = -0.6;

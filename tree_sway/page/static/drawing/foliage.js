@@ -227,7 +227,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
     const frame = weeps ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] + (weeps && c === 2 ? 0.3 * size : 0));
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {

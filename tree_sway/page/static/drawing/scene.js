@@ -41,8 +41,8 @@ const PAINTED = 260;
 const [TILES, FEW_KINDS] = [[192, 128], 16];
 /** Specular reflection of a leathery evergreen leaf, and of a card of many leaves, which face all ways. */
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
-/** Colour of a crown of leaves or of needles in the open, over its green; species are half-way between it and that of a leaf,
- * and less bright or dark than that. */
+/** Colour of a crown of leaves or of needles in the open, over its green; where a leaf is more vivid it is
+ * half-way between, and less bright or dark. */
 const OPEN_GREENS = [[0.8, 1, 0.48], [0.68, 1, 0.6]];
 /** First and last row of no branch. */
 const NONE = [-2, -2];
@@ -321,7 +321,7 @@ export class Scene {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + (each * look.green[1]) / look.green[c])),
+        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.cbrt(0.05 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
         gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };

@@ -85,8 +85,11 @@ out vec3 normal;
 out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
+#ifdef PLAIN
 out float sunny;
+#else
 out vec3 inMap; // place in the shadow map
+#endif
 out float high; // height over the ground, 1 at the top of the scene
 void main() {
   uint row = rowOf();
@@ -116,8 +119,9 @@ void main() {
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
 #ifdef PLAIN
   sunny = shadowArea.w < 0.5 ? sunlight(p) : 1.0;
-#endif
+#else
   inMap = inSunMap(p);
+#endif
   high = (p.z - ground) * shadowTop;
   gl_Position = seen(p);
 }
@@ -127,10 +131,13 @@ in vec3 normal;
 in vec2 at;
 in vec3 tone;
 in float mark;
+#ifdef PLAIN
 in float sunny;
+#else
 in vec3 inMap;
-in float high;
 uniform mediump sampler2DShadow sunMap;
+#endif
+in float high;
 uniform vec3 light;
 uniform vec3 sun;
 uniform vec3 sky;
@@ -236,8 +243,8 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.16 + 0.84 * near * near);
-  vec3 up = sky * (0.07 + 0.98 * near) * (0.72 + 0.28 * n.z);
+  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.22 + 0.78 * near);
+  vec3 up = sky * (0.2 + 0.85 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
