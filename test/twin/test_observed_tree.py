@@ -349,8 +349,7 @@ def test_the_band_of_the_sway_holds_that_of_the_real_tree() -> None:
     widths = []
     for each in (alone(), good()):
         true, found = (
-            np.linalg.norm(tips[:, highest] - rest, axis=1)
-            for tips in (truth().tips, each.tips)
+            np.linalg.norm(tips[:, highest] - rest, axis=1) for tips in (truth().tips, each.tips)
         )
         low, high = each.sway_band.T
         assert np.mean((low <= true - found) & (true - found <= high)) > 0.75
