@@ -67,7 +67,7 @@ struct Segment {
   int64_t n_slots;          // branches that have this segment, in the first slots
 };
 
-inline __attribute__((always_inline)) void raise_to(int64_t &largest, int64_t value) {
+INLINE void raise_to(int64_t &largest, int64_t value) {
   if (value > largest) largest = value;
 }
 
@@ -147,8 +147,6 @@ constexpr bool ON_TABLES = true;
 constexpr bool ON_TABLES = false;
 #endif
 
-inline __attribute__((always_inline)) bool is_limp(const sway_model &model) {
-  return !ON_TABLES && model.sizes.is_stepped == 2;
-}
+INLINE bool is_limp(const sway_model &model) { return !ON_TABLES && model.sizes.is_stepped == 2; }
 
 }  // namespace sway

@@ -95,7 +95,7 @@ INLINE Vector<Vec> along(const Row *pose, int slot, Vec length) {
 }
 
 // Add the parts across the x axes of points in the frames of poses.
-static void go_aside(const Row *pose, Row *point, double scale, const Row *local, int count) {
+void go_aside(const Row *pose, Row *point, double scale, const Row *local, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
     const Vector<Vec> aside = {Vec{}, load(local[1] + slot), load(local[2] + slot)};
     const Vector<Vec> turned = rotated(orientation_of(pose, slot), aside);
@@ -112,7 +112,7 @@ INLINE void read_keys(const Block &block, Slots &slots, const double *keys, int 
 }
 
 // Put the ground, at the root node and turned about the vertical, in place of a parent.
-static void stand_on_ground(Slots &slots, const Place &place) {
+void stand_on_ground(Slots &slots, const Place &place) {
   for (int slot = 0; slot < WIDTH; slot++) {
     for (int row = 0; row < 8; row++) slots.parent_base[row][slot] = 0.0;
     slots.parent_base[0][slot] = place.cosine;
@@ -287,8 +287,7 @@ INLINE void write_late(Late &late, int64_t lines) {
 }
 
 // Place every segment by the key rotations in the room.
-static void place(const sway_model &model, const Place &where, Room &room, double *poses,
-                  Late &late) {
+void place(const sway_model &model, const Place &where, Room &room, double *poses, Late &late) {
   Slots slots(room.slots, model.rows + 4);
   for (int64_t number = 0; number < model.n_blocks; number++) {
     const Block &block = model.blocks[number];
@@ -323,7 +322,7 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
 
 // Write the key rotations of a state to the room: shapes times what is shown of the coordinates. The
 // shapes of a tree of many branches are its largest table: they are summed in single precision.
-static void find_keys(const sway_model &model, const State &state, Room &room) {
+void find_keys(const sway_model &model, const State &state, Room &room) {
   const int64_t m = model.sizes.coordinates;
   const int64_t n_shown = m - count_of(*state.left_out, m);
   for (int64_t i = 0; i < n_shown; i++) room.shown[i] = float(state.eta[i] - state.hidden[i]);

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "memory.h"
+
 #if defined(__AVX512F__)
 #include <immintrin.h>
 #define SWAY_LANES 8
@@ -22,8 +24,6 @@
 #include <emmintrin.h>
 #endif
 #endif
-
-#define INLINE static inline __attribute__((always_inline, unused))
 
 namespace {
 
@@ -197,32 +197,30 @@ INLINE Quaternion<V> quaternion_of(const HalfAngle<V> &by, const Vector<V> &half
 // The largest squared half angles [rad^2] of the short and the long series: 0.2 and 1.5 rad.
 constexpr double NEAR = 0.04, FAR = 2.25;
 
-// Series of cos(sqrt t) and sin(sqrt t) / sqrt t; the error is below 3e-14 up to NEAR with 4 terms
-// and below 3e-13 up to FAR with 8.
+// Coefficients of the series of cos(sqrt t) and sin(sqrt t) / sqrt t.
+struct Coefficients {
+  double cosine[9] = {}, sinc[9] = {};
+
+  constexpr Coefficients() {
+    double factor = 1.0;
+    for (int term = 0; term < 9; term++) {
+      cosine[term] = 1.0 / factor;
+      factor *= 2 * term + 1;
+      sinc[term] = 1.0 / factor;
+      factor *= -(2 * term + 2);
+    }
+  }
+};
+
+constexpr Coefficients BY = {};
+
+// The error is below 3e-14 up to NEAR with 4 terms and below 3e-13 up to FAR with 8.
 template <int TERMS, class V> INLINE HalfAngle<V> half_angle_series(V square) {
-  constexpr double COSINE[] = {1.0,
-                               -1.0 / 2.0,
-                               1.0 / 24.0,
-                               -1.0 / 720.0,
-                               1.0 / 40320.0,
-                               -1.0 / 3628800.0,
-                               1.0 / 479001600.0,
-                               -1.0 / 87178291200.0,
-                               1.0 / 20922789888000.0};
-  constexpr double SINC[] = {1.0,
-                             -1.0 / 6.0,
-                             1.0 / 120.0,
-                             -1.0 / 5040.0,
-                             1.0 / 362880.0,
-                             -1.0 / 39916800.0,
-                             1.0 / 6227020800.0,
-                             -1.0 / 1307674368000.0,
-                             1.0 / 355687428096000.0};
-  V cosine = COSINE[TERMS] * square + COSINE[TERMS - 1];
-  V sinc = SINC[TERMS] * square + SINC[TERMS - 1];
+  V cosine = BY.cosine[TERMS] * square + BY.cosine[TERMS - 1];
+  V sinc = BY.sinc[TERMS] * square + BY.sinc[TERMS - 1];
   for (int term = TERMS - 2; term >= 0; term--) {
-    cosine = cosine * square + COSINE[term];
-    sinc = sinc * square + SINC[term];
+    cosine = cosine * square + BY.cosine[term];
+    sinc = sinc * square + BY.sinc[term];
   }
   return {cosine, sinc};
 }
