@@ -231,20 +231,14 @@ INLINE HalfAngle<double> half_angle(double square) {
   return {__builtin_cos(angle), __builtin_sin(angle) / angle};
 }
 
-// The half angles of all lanes, whose squares are at most `bound`.
+// The half angles of all lanes, whose squares are at most `bound`: of a part of a large one, doubled.
 INLINE HalfAngle<Vec> half_angle(Vec square, double bound) {
   if (bound <= NEAR) return half_angle_series<4>(square);
-  if (bound <= FAR) return half_angle_series<8>(square);
-  if (bound <= 4.0 * FAR) {  // twice the angle of the series
-    const HalfAngle<Vec> half = half_angle_series<8>(0.25 * square);
-    return {2.0 * half.cosine * half.cosine - 1.0, half.cosine * half.sinc};
-  }
-  HalfAngle<Vec> found{};
-  for (int lane = 0; lane < LANES; lane++) {
-    const HalfAngle<double> one = half_angle(double(square[lane]));
-    found.cosine[lane] = one.cosine;
-    found.sinc[lane] = one.sinc;
-  }
+  int doubled = 0;
+  for (; bound > FAR && doubled < 512; doubled++, bound *= 0.25) square *= 0.25;
+  HalfAngle<Vec> found = half_angle_series<8>(square);
+  for (; doubled > 0; doubled--)
+    found = {2.0 * found.cosine * found.cosine - 1.0, found.cosine * found.sinc};
   return found;
 }
 
