@@ -60,7 +60,7 @@ struct LimpTree {
 // Memory of one thread for limp trees.
 struct LimpRoom {
   double *turned, *turning, *keys;            // key rotations, their rates, others (keys)
-  double *here, *ahead, *behind, *trial;      // places
+  double *here, *ahead, *behind;              // places
   float *bend;                                // of the motion (places)
   double *tangent;                            // of the segments (places)
   float *force;                               // on them (places)

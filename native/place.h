@@ -233,15 +233,13 @@ INLINE void join(const Segment &segment, Slots &slots, double scale, int slot,
 }
 
 // Segments of branches that bend by their first two key rotations alone.
-template <int TERMS>
 INLINE void bend_plain(const Segment &segment, Slots &slots, double scale, bool has_blend,
                        double bound, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
     Vec slope = load(segment.slope + slot);
     if (has_blend) slope += load(slots.blend + slot) * load(segment.tip_slope + slot);
     const Vec square = slope * slope * load(slots.rotation_square + slot);
-    const HalfAngle<Vec> half =
-        TERMS ? half_angle_series<TERMS ? TERMS : 8>(square) : half_angle(square, bound);
+    const HalfAngle<Vec> half = half_angle(square, bound);
     const Vec sine = slope * half.sinc;
     const Quaternion<Vec> base = load_quaternion(slots.base, slot);
     const Quaternion<Vec> times = load_quaternion(slots.times_half, slot);
@@ -283,7 +281,7 @@ INLINE void write_late(Late &late, int64_t lines) {
   if (lines > late.lines) lines = late.lines;
   late.lines -= lines;
   for (; lines > 0; lines--, late.from += Late::LINE, late.to += Late::LINE)
-    for (int i = 0; i < Late::LINE; i += LANES) store_past(late.to + i, load(late.from + i));
+    copy_past(late.from, late.to);
 }
 
 // Place every segment by the key rotations in the room.
@@ -306,12 +304,8 @@ void place(const sway_model &model, const Place &where, Room &room, double *pose
       const Segment &segment = model.segments[block.first_record + rank];
       if (block.n_rows > 2)
         bend_by_all(segment, slots, where.scale, block.n_rows, bound, count);
-      else if (bound <= NEAR)
-        bend_plain<4>(segment, slots, where.scale, has_blend, bound, count);
-      else if (bound <= FAR)
-        bend_plain<8>(segment, slots, where.scale, has_blend, bound, count);
       else
-        bend_plain<0>(segment, slots, where.scale, has_blend, bound, count);
+        bend_plain(segment, slots, where.scale, has_blend, bound, count);
       if (!block.is_joined) go_aside(slots.pose, slots.start, where.scale, segment.chord, count);
       write_poses(block, slots, rank, segment.n_slots, poses);
       write_late(late, segment.n_slots);

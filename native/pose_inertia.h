@@ -68,11 +68,11 @@ void turn(const sway_model &model, const double *eta, const double *rate, double
   const int64_t m = model.sizes.coordinates;
   constexpr int PARTS = 4;
   for (int64_t first = 0; first < limp.keys; first += PARTS * LANES) {
-    const double *shapes = limp.shapes + first / 32 * m * 32 + first % 32;
+    const float *shapes = model.shapes + first / 64 * m * 64 + first % 64;
     Vec of_eta[PARTS] = {}, of_rate[PARTS] = {};
     for (int64_t i = 0; i < m; i++)
       for (int part = 0; part < PARTS; part++) {
-        const Vec shape = load(shapes + 32 * i + part * LANES);
+        const Vec shape = load_singles(shapes + 64 * i + part * LANES);
         of_eta[part] += eta[i] * shape;
         of_rate[part] += rate[i] * shape;
       }
@@ -134,19 +134,19 @@ void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t c
   for (int64_t k = 0; k < count; k++) {
     const int64_t number = (tree.next + k) % m;
     const double amount = limp.amount[number];
-    place_along(model, room, amount, limp.directions + number * limp.keys, own.trial);
+    place_along(model, room, amount, limp.directions + number * limp.keys, own.behind);
     float *column = tree.columns + number * limp.places;
     const double per_amount = 1.0 / amount;
     for (int64_t i = 0; i < limp.places; i += LANES) {
-      const Vec moved = per_amount * (load(own.trial + i) - load(own.here + i));
-      store(own.trial + i, moved);
+      const Vec moved = per_amount * (load(own.behind + i) - load(own.here + i));
+      store(own.behind + i, moved);
       store_singles(column + i, moved);
     }
     own.rows[2 + k] = column;
     if (number >= limp.leading) continue;
     const double linear =
         limp.weight[number] + dot(limp.slopes + number * model.padded, eta, model.padded);
-    tree.weight[number] = dot(own.trial + 2 * limp.each, limp.gravity, limp.each) - linear;
+    tree.weight[number] = dot(own.behind + 2 * limp.each, limp.gravity, limp.each) - linear;
   }
 }
 

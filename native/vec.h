@@ -20,9 +20,6 @@
 #define SWAY_LANES 4
 #else
 #define SWAY_LANES 2
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 #endif
 
 namespace {
@@ -45,18 +42,6 @@ typedef double FourAt __attribute__((vector_size(32), aligned(8), may_alias));
 
 INLINE Vec load(const double *from) { return *reinterpret_cast<const VecAt *>(from); }
 INLINE void store(double *to, Vec value) { *reinterpret_cast<VecAt *>(to) = value; }
-// Store past the caches, to a whole vector of memory.
-INLINE void store_past(double *to, Vec value) {
-#if defined(__AVX512F__)
-  _mm512_stream_pd(to, reinterpret_cast<__m512d>(value));
-#elif defined(__AVX2__)
-  _mm256_stream_pd(to, reinterpret_cast<__m256d>(value));
-#elif defined(__SSE2__)
-  _mm_stream_pd(to, reinterpret_cast<__m128d>(value));
-#else
-  store(to, value);
-#endif
-}
 INLINE Singles load(const float *from) { return *reinterpret_cast<const SinglesAt *>(from); }
 INLINE void store(float *to, Singles value) { *reinterpret_cast<SinglesAt *>(to) = value; }
 
