@@ -3,7 +3,7 @@
 """
 Loads of uniform winds on a tree that bends and moves, by the native core.
 
-``native/branch_loads.cpp`` has the law. A load is a moment on each key rotation; by virtual work,
+``native/branch_loads.h`` has the law. A load is a moment on each key rotation; by virtual work,
 the load on a shape of motion is the power of these moments on it.
 """
 
