@@ -80,8 +80,8 @@ INLINE void go_outward(const sway_branches &tree, int64_t b, const A &x, const B
   const Joint<V> rate = joint_of<V>(tree, b, *v);
   const V shortening = 2.0 * per_arm * dot(joint.shift, rate.shift);
   const Vector<X> back = -1.0 * joint.rotation;
-  own.velocity = turned_by(back, on.velocity + cross(on.spin, own.arm) + rate.shift -
-                                     shortening * rest_arm);
+  own.velocity =
+      turned_by(back, on.velocity + cross(on.spin, own.arm) + rate.shift - shortening * rest_arm);
   own.spin = turned_by(back, on.spin + spin_by(joint.rotation, rate.rotation));
 }
 
@@ -151,8 +151,8 @@ INLINE void go_inward(const sway_branches &tree, int64_t b, const Load<X, V> &ow
 
 // Add the moments of a wind on the key rotations of a tree at x that moves at v, or is still.
 template <class X, class V, class A, class B, class Out>
-static void add_moments(const sway_branches &tree, const A &x, const B *v, const double *mode,
-                        const Vector<X> &wind, Load<X, V> *loads, const Out &moments) {
+void add_moments(const sway_branches &tree, const A &x, const B *v, const double *mode,
+                 const Vector<X> &wind, Load<X, V> *loads, const Out &moments) {
   loads[0] = Load<X, V>{};
   loads[0].orientation.w = 1.0 + X{};
   for (int64_t b = 0; b < tree.branches; b++) {

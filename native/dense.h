@@ -44,8 +44,8 @@ INLINE void row_products(const T *const *rows, int64_t n_rows, const T *others, 
 
 // Write the scalar product of each row and each of `n_others` rows of a matrix.
 template <class T>
-static void multiply_rows(const T *const *rows, int64_t n_rows, const T *others, int64_t n_others,
-                          int64_t stride, int64_t count, double *out, int64_t out_stride) {
+void multiply_rows(const T *const *rows, int64_t n_rows, const T *others, int64_t n_others,
+                   int64_t stride, int64_t count, double *out, int64_t out_stride) {
   constexpr int TOGETHER = LANES < 8 ? 2 : 4;  // as many as there are registers for
   // Of so many numbers all rows stay in the nearest cache.
   constexpr int64_t NEAREST = 4096 / sizeof(T);
@@ -54,10 +54,10 @@ static void multiply_rows(const T *const *rows, int64_t n_rows, const T *others,
     int64_t other = 0;
     for (; other + TOGETHER <= n_others; other += TOGETHER)
       row_products<5, TOGETHER>(rows, n_rows, others + other * stride, stride, first, end,
-                             out + other, out_stride);
+                                out + other, out_stride);
     for (; other < n_others; other++)
       row_products<5, 1>(rows, n_rows, others + other * stride, stride, first, end, out + other,
-                      out_stride);
+                         out_stride);
   }
 }
 
@@ -100,8 +100,8 @@ INLINE void eliminate(double *matrix, int64_t stride, int64_t first, int64_t i) 
 // matrix (n, stride), of which the upper half is read, end in the right-hand sides; rows of
 // `solved` (n_rights, stride) are zero at first; `inverse` (n) is scratch memory. Returns whether
 // the matrix was positive definite.
-static bool solve_positive(double *matrix, int64_t n, int64_t stride, int64_t n_rights,
-                           double *inverse, double *solved) {
+bool solve_positive(double *matrix, int64_t n, int64_t stride, int64_t n_rights, double *inverse,
+                    double *solved) {
   constexpr int64_t TOGETHER = 4;
   for (int64_t first = 0; first < n; first += TOGETHER) {
     const int64_t end = first + TOGETHER < n ? first + TOGETHER : n;

@@ -60,7 +60,7 @@ struct LimpTree {
 // Memory of one thread for limp trees.
 struct LimpRoom {
   double *turned, *turning, *keys;            // key rotations, their rates, others (keys)
-  double *here, *ahead, *behind, *trial;      // places
+  double *here, *ahead, *behind;              // places
   float *bend;                                // of the motion (places)
   double *tangent;                            // of the segments (places)
   float *force;                               // on them (places)
@@ -87,7 +87,7 @@ struct Room {
 };
 
 // A number of coordinates that a state has, 0 to `most`, whatever was written to it.
-inline __attribute__((always_inline)) int64_t count_of(double value, int64_t most) {
+INLINE int64_t count_of(double value, int64_t most) {
   if (!(value > 0.0)) return 0;
   return value < double(most) ? int64_t(value) : most;
 }
@@ -104,7 +104,6 @@ struct Place {
 
 // The work of a frame.
 struct Frame {
-  const char *target;
   // Step a tree in a wind in its own frame; whether it was clamped.
   bool (*step)(const sway_model &model, const double *stiffness, const Step &step, State &state,
                Room &room, const double wind[3]);

@@ -73,9 +73,9 @@ INLINE void add(const Slopes &to, int64_t key, const Changing &moment) {
   store(row, load(row) + moment.change);
 }
 
-static void load_slopes(const sway_branches &tree, const double *x, const double *wind,
-                        const double *shapes, size_t columns, double *scratch, double *turning,
-                        double *damping) {
+void load_slopes(const sway_branches &tree, const double *x, const double *wind,
+                 const double *shapes, size_t columns, double *scratch, double *turning,
+                 double *damping) {
   auto *turned = reinterpret_cast<Load<Changing, Changing> *>(scratch);
   auto *loads = reinterpret_cast<Load<double, Changing> *>(scratch);
   static_assert(sizeof(*turned) <= 333 * sizeof(double), "sway_load_slopes");

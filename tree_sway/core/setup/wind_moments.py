@@ -3,7 +3,7 @@
 """
 Loads of uniform winds on a tree that bends and moves, by the native core.
 
-``native/branch_loads.cpp`` has the law. A load is a moment on each key rotation; by virtual work,
+``native/branch_loads.h`` has the law. A load is a moment on each key rotation; by virtual work,
 the load on a shape of motion is the power of these moments on it.
 """
 
@@ -113,13 +113,13 @@ class WindMoments:
         """
         Find the changes of moments on a still tree by motion along shapes, and by its rates.
 
-        The tree is at x, (N,), in a wind, (3,); shapes are (N, c), c a multiple of 8, and so are the
-        changes, which are written. Memory is the caller's: to take it anew takes as long as to
-        fill it.
+        The tree is at x, (N,), in a wind, (3,); shapes are (N, c), c a multiple of 8, and so are
+        the changes, which are written. Memory is the caller's: to take it anew takes as long as
+        to fill it.
         """
         shape = self.n, shapes.shape[1]
         LIBRARY.sway_load_slopes(
             ctypes.byref(self._branches), contiguous(x, (self.n,)), contiguous(wind, (3,)),
-            contiguous(shapes, shape), shapes.shape[1], address(self._scratch), contiguous(turning, shape),
-            contiguous(damping, shape),
+            contiguous(shapes, shape), shapes.shape[1], address(self._scratch),
+            contiguous(turning, shape), contiguous(damping, shape),
         )  # fmt: skip
