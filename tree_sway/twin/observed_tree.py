@@ -185,7 +185,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
-        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = (0.0, 0.0, 0.0)
         self._learned = np.zeros(2)
         self._followed = 0.0
         self._tips: Floats | None = None
@@ -313,8 +313,7 @@ class ObservedTree(SwaySimulator):
             self.counts.refused += 1
             x, y, z = self._held_wind
         self._held_wind = x, y, z
-        x, y, z = self.late_wind.push(x, y, z, dt)
-        self._last_wind = x, y, z
+        late = x, y, z = self.late_wind.push(x, y, z, dt)
         whole = self._whole
         if self._far_crown is not None:
             whole[:] = self._far_crown.push(x, y, z, dt)
@@ -322,7 +321,7 @@ class ObservedTree(SwaySimulator):
             by_delay = self._crown.push(x, y, z, dt)
             np.dot(self._share, by_delay, out=whole)
             np.dot(self._about_mean, by_delay, out=self._apart)
-            whole += self._last_wind
+            whole += late
         status = super().step(whole, dt)
         if refused:
             status |= Outcome.WIND_REFUSED
@@ -335,11 +334,11 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        correction = self.observer.step(self.now, self._last_wind, n_periods)
+        correction = self.observer.step(self.now, late, n_periods)
         self._bound(correction)
         self._dragged.step(correction, n_periods, added)
         if self.members is not None:
-            self.members.step(swing, self._last_wind[:2], self._apart)
+            self.members.step(swing, late[:2], self._apart)
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
@@ -432,7 +431,7 @@ class ObservedTree(SwaySimulator):
         if self.members is not None:
             self.members.reset()
         self.now, self._given = 0.0, None
-        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = (0.0, 0.0, 0.0)
         for record in self._records.values():
             record.next = 0
 
