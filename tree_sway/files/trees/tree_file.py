@@ -21,6 +21,7 @@ import numpy as np
 from tree_sway.core.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
+from tree_sway.files.kinds import expected
 from tree_sway.files.paths import of_file
 from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
@@ -64,10 +65,11 @@ def read_trees(
         An option that this format does not have, or a wrong value.
 
     """
-    chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
-    chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
-    wanted = TreeOptions(**{**chosen.defaults, **options})
-    content = chosen.read(path)
+    with expected(path, 'tree'):
+        chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
+        chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
+        wanted = TreeOptions(**{**chosen.defaults, **options})
+        content = chosen.read(path)
     if isinstance(content, TreeFile):
         files = [replace(content, tree=wanted.in_metres(content.tree))]
     else:

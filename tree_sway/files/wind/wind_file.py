@@ -14,6 +14,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError, nearest
 from tree_sway.files.file_format import contains, FileFormat, format_of
+from tree_sway.files.kinds import expected
 from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.paths import of_file
 from tree_sway.files.wind.bag import read_bag_wind
@@ -78,7 +79,8 @@ def read_wind(path: Path, /, format: str | None = None, **options: Any) -> WindR
         path = Path(str(files('tree_sway.files.wind').joinpath(f'{path}.csv')))
     elif not path.exists() and (guess := nearest(str(path), EXAMPLES)):
         raise FormatError('no such file', cure=guess)
-    chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
-    chosen.refuse_others(options, chosen.own_options)
-    record: WindRecord = chosen.read(path, **options)
-    return record
+    with expected(path, 'wind'):
+        chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
+        chosen.refuse_others(options, chosen.own_options)
+        record: WindRecord = chosen.read(path, **options)
+        return record

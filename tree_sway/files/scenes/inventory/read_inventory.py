@@ -42,7 +42,7 @@ _CODES = (
 """
 Columns of codes: all of them, and those of trees that are dead or gone.
 
-They are those of ForestGEO (forestgeo/fgeo.validate) beside L and D, and of FIA (FIADB user guide).
+ForestGEO (forestgeo/fgeo.validate), with the L of plots that have L and D; FIA (user guide).
 """
 
 
@@ -176,8 +176,10 @@ def inventory_of(
 def _leave_out_dead(columns: InventoryColumns) -> None:
     for index in columns.table.find_all('status'):
         name, texts = columns.table.columns[index], columns.texts(index)
-        is_code = (folded(name) == each and known >= {*texts} for each, known, _ in _CODES)
-        gone = next((codes for (*_, codes), is_it in zip(_CODES, is_code) if is_it), '')
+        of_name = [
+            gone for each, known, gone in _CODES if each == folded(name) and known >= {*texts}
+        ]
+        gone = ''.join(of_name)
         for row, text in enumerate(texts):
             if _DEAD.search(text) or (text and text in gone):
                 columns.leave_out(row, 'dead or gone', columns.told(index, row))
