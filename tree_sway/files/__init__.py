@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from tree_sway.files.column_names import UNITS as UNITS
     from tree_sway.files.json_values import list_of as list_of
     from tree_sway.files.json_values import object_of as object_of
-    from tree_sway.files.kinds import expected as expected
     from tree_sway.files.paths import is_file as is_file
     from tree_sway.files.paths import path_of as path_of
     from tree_sway.files.reading_options import reader_options as reader_options

@@ -47,6 +47,7 @@ _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
 _SCALED = re.compile(r'(\d+(?:\.\d+)?) ?(\D.*)')
+_ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
@@ -121,11 +122,11 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
     Split the name of a column from its unit, of a kind in `UNITS`.
 
     The unit is in brackets, or behind ``-`` or a comma. If none of these is a unit of the kind, it
-    is the text in the first brackets, or empty without them. A number in brackets, as in ``u(1)``,
-    tells the element of a logger's array.
+    is the text in the first brackets, or empty without them. A number or an axis in brackets, as
+    in ``u(1)``, tells the element of a logger's array.
     """
     text = _GROUP.sub('', column.strip().strip('"').strip())
-    in_brackets = [found for found in _BRACKETS.findall(text) if not found.isdigit()]
+    in_brackets = [found for found in _BRACKETS.findall(text) if not _ELEMENT.fullmatch(found)]
     behind = [found.strip() for found in _BEHIND.findall(text)]
     name = _NAME_ENDS.sub('', text, count=1).strip() or text
     for unit in (*in_brackets, *behind):

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import motion_of
+from tree_sway.files.column_names import folded, motion_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.text_file import read_head
 from tree_sway.files.yaml_document import begins_with_key
@@ -20,6 +20,7 @@ _TREE = 'tree'
 _SCENE = 'scene'
 _WIND = 'wind'
 _MOTION = 'motion'
+_SWAY = 'sway'
 _STUDY = 'study'
 _RECORD = 'record'
 _KEYS = {
@@ -37,6 +38,7 @@ _KINDS = {
     'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
     _WIND: ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
     _MOTION: ('a record of motion', 'give it behind --motion, as in tree-sway show --motion {0}'),
+    _SWAY: ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
     _STUDY: ('a study', 'run it by tree-sway study {0}'),
     _RECORD: ('the sheet of a record', 'give its folder to tree-sway lab twin'),
 }
@@ -62,18 +64,20 @@ def expected(path: Path, *kinds: str) -> Iterator[None]:
 def kind_of(path: Path) -> str:
     """Return the kind of a file by its beginning; empty if nothing tells it."""
     from tree_sway.files.scenes.stand_table import is_stand_table
-    from tree_sway.files.trees.tree_file import TREE_FORMATS
-    from tree_sway.files.wind.wind_file import WIND_FORMATS
+    from tree_sway.files.trees.tree_formats import TREE_FORMATS
+    from tree_sway.files.wind.wind_formats import WIND_FORMATS
 
     with suppress(FormatError):
         head = read_head(path)
         for key, kind in _KEYS.items():
             if begins_with_key(path, head, key):
                 return kind
+        if head.startswith('time [s],wind_x [m/s],'):
+            return _SWAY
         if is_stand_table(head, path):
             return 'inventory'
-        *others, _ = WIND_FORMATS
-        if any(each.recognise(head) for each in others):
+        sure = (each for each in WIND_FORMATS if each.name not in ('sonic', 'csv'))
+        if any(each.recognise(head) for each in sure):
             return _WIND
         names = {each.name for each in TREE_FORMATS if each.recognise(head)} - {'treegraph'}
         return _TREE if names else _kind_of_table(head)
@@ -90,6 +94,7 @@ def _kind_of_table(head: str) -> str:
             return ''
         if any(found[2] for found in map(motion_of, table.columns) if found):
             return _MOTION
-        has_wind = table.find_all('wind_speed') or table.find_all('wind_x')
+        components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
+        has_wind = table.find_all('wind_speed') or components - {'x', 'east'}
         return _WIND if has_wind else ''
     return ''

@@ -22,7 +22,8 @@ from pathlib import Path
 from tree_sway.cache import ROOT, source_digest
 from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, inside, nearest, ParameterError
-from tree_sway.files import expected, path_of, read_bytes, read_text, read_yaml
+from tree_sway.files import path_of, read_bytes, read_text, read_yaml
+from tree_sway.files.scenes import expected
 from tree_sway.files.wind import EXAMPLES
 from tree_sway.forest.cluster import ROOMS
 from tree_sway.forest.entries import listed, Plain, trees_of, winds_of

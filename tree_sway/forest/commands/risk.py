@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 from tree_sway.commands import bar, refuse_overwriting, RowFile
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
-from tree_sway.files import expected, path_of, read_head, refuse_unwritable
-from tree_sway.files.scenes import inventory_of, inventory_table
+from tree_sway.files import path_of, read_head, refuse_unwritable
+from tree_sway.files.scenes import expected, inventory_of, inventory_table
 from tree_sway.forest.climate import Climate, climate_of
 from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
 from tree_sway.forest.risk import add_classes, CRITICAL, is_beyond, risk_rows, risk_work, Row
