@@ -54,6 +54,7 @@ OTHERS = [
     for wanted in READERS
     if TAKEN[name.partition('.')[0]][0] != wanted
     and not (name.startswith(('tree', *SEVERAL)) and wanted in ('a tree', 'a list of trees'))
+    and not (name.startswith('forest') and wanted == 'a study')  # which lacks its winds
 ]
 
 

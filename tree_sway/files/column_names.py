@@ -46,7 +46,7 @@ _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
-_SCALED = re.compile(r'(\d+(?:\.\d+)?) ?(\D.*)')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
 _ELEMENT = re.compile(r'\d+|[xyzXYZ]')
 _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
@@ -112,9 +112,11 @@ def unit_factor(kind: str, unit: str) -> float | None:
         return 1.0
     known = UNITS.get(kind, {}).get(_folded_unit(unit))
     scaled = _SCALED.fullmatch(unit.strip())
-    if known is None and scaled is not None and (of_one := unit_factor(kind, scaled[2])):
-        return float(scaled[1]) * of_one
-    return known
+    # Without a space only times have one: DIAMETRE_1M is no diameter in units of 1 m.
+    if known is not None or scaled is None or not (scaled[2] or kind == 'time'):
+        return known
+    of_one = unit_factor(kind, scaled[3])
+    return None if of_one is None else float(scaled[1]) * of_one
 
 
 def name_and_unit(column: str, kind: str) -> tuple[str, str]:

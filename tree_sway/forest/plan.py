@@ -96,7 +96,7 @@ def read_study(path: str | Path) -> list[Case]:
     """
     path = path_of(path)
     schema = json.loads(files('tree_sway.forest').joinpath('study_schema.json').read_text('utf-8'))
-    with expected(path, 'study'):
+    with expected(path, 'study', 'scene'):
         document = read_yaml(read_text(path), str(path), schema, 'trees and winds')
     study = document.values
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
