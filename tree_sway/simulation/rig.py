@@ -44,6 +44,7 @@ _MAX_STEPS = 6_000_000
 """Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
+_UNCHECKED = 'a clock that is up to 1 s off is hardly told: synchronise those of wind and motion'
 
 
 class PlacedMotion(NamedTuple):
@@ -317,14 +318,14 @@ def _said_by_sensors(simulator: ObservedTree | None) -> tuple[str, ...]:
     if simulator is None:
         return ()
     found = list(simulator.problems)
-    for track in simulator.observer.tracks:
+    tracks = simulator.observer.tracks
+    for track in tracks:
         counts = track.sensor.counts
         if track.in_use:
-            noted = '; '.join(track.alignment.notes) if track.alignment else ''
-            found.append(
-                f'{track.sensor.name}: {counts.accepted} samples followed, {counts.refused} '
-                f'refused{"; " + noted if noted else ""}'
-            )
+            noted = list(track.alignment.notes) if track.alignment else []
+            noted += [_UNCHECKED] if len(tracks) == 1 else []
+            told = f'{counts.accepted} samples followed, {counts.refused} refused'
+            found.append('; '.join([f'{track.sensor.name}: {told}', *noted]))
     if simulator.late_wind.note:
         found.append(simulator.late_wind.note)
     if (fit := simulator.observer.fit) is not None:

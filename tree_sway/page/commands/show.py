@@ -118,6 +118,7 @@ def _serve(
         )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
+    picture = next((each.picture for each in added if each.picture is not None), None)
 
     def apply(name: str, value: Value) -> None:
         if not any(each.apply(name, value) for each in added):
@@ -135,7 +136,7 @@ def _serve(
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel((*own, *controls), apply, session.pull)
         panel.update(session.values())
-    pages = PageServer(settings, panel, status, session.written, critical_winds)
+    pages = PageServer(settings, panel, status, session.written, critical_winds, picture)
     with pages as server:
         session.serve(server)
         print_address(server, 'open')
