@@ -96,6 +96,8 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     first = next(
         (text for stamp in stamps if (text := stamp.strip()).lower() not in ('', 'nan')), ''
     )
+    if first.endswith(' sec'):  # durations of MATLAB
+        return times_of([stamp.removesuffix(' sec') for stamp in stamps], factor)
     if finite(first) is None or _DIGITS.fullmatch(first):
         return dates(stamps)
     numbers = [finite(stamp) for stamp in stamps]

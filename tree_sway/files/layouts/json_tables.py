@@ -31,7 +31,7 @@ from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 12
 _DECIMAL = re.compile(r'-?\d+,\d+')
-_BEGINS = re.compile(r'\s*(\{|\[\s*[\[{"])')
+_BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 Cells = dict[str, str]
 
 

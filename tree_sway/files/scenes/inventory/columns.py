@@ -153,7 +153,7 @@ class InventoryColumns:
         unit = header if unit_known('length', header) else counts.most_common(1)[0][0]
         n_without = int(np.isfinite(values).sum()) - counts.total()
         name = self.table.columns[index]
-        if unit != header and counts.total() <= n_without:
+        if unit != header and counts.total() < n_without:
             self.note(f'{counts.total()} cells of {name} have a unit of their own')
             unit = ''
         elif unit != header and n_without:

@@ -36,13 +36,13 @@ _SAYS_DEAD = {
 }
 """Cells of a column of living or of dead trees that say that one is dead."""
 _CODES = (
-    ('status', {'A', 'AB', 'AS', 'D', 'G', 'M', 'P', 'L', ''}, 'D'),
-    ('statuscd', {'0', '1', '2', '3', ''}, '23'),
+    ('status', {'A', 'AB', 'AS', 'D', 'G', 'M', 'P', 'L', ''}, {'A', 'L'}, 'D'),
+    ('statuscd', {'0', '1', '2', '3', ''}, {'1'}, '23'),
 )
 """
-Columns of codes: all of them, and those of trees that are dead or gone.
+Columns of codes: all of them, those of living trees, and of trees that are dead or gone.
 
-They are those of ForestGEO (forestgeo/fgeo.validate) beside L and D, and of FIA (FIADB user guide).
+ForestGEO (forestgeo/fgeo.validate), with the L of plots that have L and D; FIA (user guide).
 """
 
 
@@ -176,8 +176,11 @@ def inventory_of(
 def _leave_out_dead(columns: InventoryColumns) -> None:
     for index in columns.table.find_all('status'):
         name, texts = columns.table.columns[index], columns.texts(index)
-        is_code = (folded(name) == each and known >= {*texts} for each, known, _ in _CODES)
-        gone = next((codes for (*_, codes), is_it in zip(_CODES, is_code) if is_it), '')
+        gone = ''.join(
+            codes
+            for each, known, alive, codes in _CODES
+            if each == folded(name) and known >= {*texts} and alive & {*texts}
+        )
         for row, text in enumerate(texts):
             if _DEAD.search(text) or (text and text in gone):
                 columns.leave_out(row, 'dead or gone', columns.told(index, row))
