@@ -4,9 +4,10 @@
 ``tree-sway lab hours``: whether a tree with one sensor drifts or says what is not so, in hours.
 
 The true tree is that of ``lab twin``: rigid segments in a field of gusts beside a mast, its wood,
-damping and drag drawn by the seed. It is in leaf. In the time of ``--hours`` the wind turns to and
-fro, falls to a calm twice and rises again, rain makes the leaves heavier by ``--rain`` and they
-dry, and the battery of the sensor fades twice: fewer samples, none, and all again (`weather`).
+damping and drag drawn by the seed. It is in leaf. In the time of ``--hours`` the wind turns and
+turns back, falls to a calm twice and rises again, rain makes the leaves heavier by ``--rain`` and
+they dry, and the battery of the sensor fades twice: fewer samples, none, and all again
+(`weather`).
 
 Each row is a twelfth of the record, as it passes; nothing of it is kept.
 ``expected`` and ``error`` are those of all tips over their motion, each about the means of two
@@ -21,7 +22,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 import re
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -188,7 +189,7 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
     tree, species = tree_called(name)
     outside = Outside(speed=weather.speed, seconds=weather.seconds, seed=seed).drawn(tree)
     distance, bearing = mast_of(outside)
-    far = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+    far: dict[str, Any] = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
     alone = make_simulator(tree, species, in_leaf=True, gusts='expected', **far)
     at = advised_places(make_simulator(tree, species, in_leaf=True), 1, weather.speed)[0].at
     twin = ObservedTree(tree, species, in_leaf=True, at={at: at}, **far)
