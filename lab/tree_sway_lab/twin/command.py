@@ -272,7 +272,7 @@ def _scored_beside(
     true: TrueMotion,
     outside: Outside,
     known: SwaySimulator,
-    apart: Mapping[str, float],
+    apart: Mapping[str, Any],
 ) -> dict[str, Score]:
     """Score what needs no sensor on a tree outside, by its rows."""
     in_leaf = bool(known.settings.in_leaf)

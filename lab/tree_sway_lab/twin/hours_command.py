@@ -4,17 +4,17 @@
 ``tree-sway lab hours``: whether a tree with one sensor drifts or says what is not so, in hours.
 
 The true tree is that of ``lab twin``: rigid segments in a field of gusts beside a mast, its wood,
-damping and drag drawn by the seed. It is in leaf. In the time of ``--hours`` the wind turns to and
-fro, falls to a calm twice and rises again, rain makes the leaves heavier by ``--rain`` and they
-dry, and the battery of the sensor fades twice: fewer samples, none, and all again (`weather`).
+damping and drag drawn by the seed. It is in leaf. In the time of ``--hours`` the wind turns and
+turns back, falls to a calm twice and rises again, rain makes the leaves heavier by ``--rain`` and
+they dry, and the battery of the sensor fades twice: fewer samples, none, and all again
+(`weather`).
 
 Each row is a twelfth of the record, as it passes; nothing of it is kept.
 ``expected`` and ``error`` are those of all tips over their motion, each about the means of two
 minutes, without the sensor and with it; ``expected lean`` and ``lean`` the error of the mean lean
 over that lean; ``in use`` the share of the time that the sensor is followed. Behind are the
-factors on stiffness, damping and drag that were learned, with their errors. Rows at the end say
-what the tree said of its sensor, at which hours, and for how long. The truth beside them is in the
-first lines.
+factors on stiffness, damping and drag that were learned, with their errors; the second line has
+the true ones. Below each row is what was said of the sensor in its time, and for how many seconds.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 import re
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -44,6 +44,9 @@ _MEAN = 120.0
 
 _CHUNK = 10.0
 """Time in [s] that is swayed and measured at once."""
+
+_SCORED = 3
+"""Steps of which one is compared."""
 
 _WAY = 0.02
 """Time in [s] in which a sample comes."""
@@ -163,38 +166,30 @@ def _squares(values: Floats) -> float:
 
 
 class Sayings:
-    """What was said, from when until when, whatever the numbers in it."""
+    """What was said, and for how long, whatever the numbers in it."""
 
     def __init__(self) -> None:
-        self._said: dict[str, list[list[float]]] = {}
-        self._first: dict[str, str] = {}
+        self._said: dict[str, tuple[int, str]] = {}
 
-    def note(self, time: float, texts: list[str]) -> None:
-        """Note what is said at a time, which is asked for every second."""
+    def note(self, texts: list[str]) -> None:
+        """Note what is said in a second."""
         for text in texts:
             key = re.sub(r'[-+]?\d+(\.\d+)?', '#', text)
-            times = self._said.setdefault(key, [])
-            self._first.setdefault(key, text)
-            if times and time - times[-1][1] < 1.5:
-                times[-1][1] = time
-            else:
-                times.append([time, time])
+            seconds, first = self._said.get(key, (0, text))
+            self._said[key] = seconds + 1, first
 
-    def rows(self) -> list[str]:
-        """One row for each: how often, for how many seconds, from which hour on, and the words."""
-        found = []
-        for key, times in self._said.items():
-            whole = sum(last - first + 1.0 for first, last in times)
-            when = ' '.join(f'{first / 3600.0:.2f}' for first, _ in times[:8])
-            found.append(f'said,{len(times)} times,{whole:.0f} s,at {when},{self._first[key]}')
-        return found
+    def take(self) -> list[str]:
+        """Return a row for each since they were asked for last."""
+        rows = [f'said,{seconds} s,{text}' for seconds, text in self._said.values()]
+        self._said.clear()
+        return rows
 
 
 def _follow(name: str, weather: Weather, seed: int) -> None:
     tree, species = tree_called(name)
     outside = Outside(speed=weather.speed, seconds=weather.seconds, seed=seed).drawn(tree)
     distance, bearing = mast_of(outside)
-    far = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
+    far: dict[str, Any] = {'anemometer_distance': distance, 'anemometer_bearing': bearing}
     alone = make_simulator(tree, species, in_leaf=True, gusts='expected', **far)
     at = advised_places(make_simulator(tree, species, in_leaf=True), 1, weather.speed)[0].at
     twin = ObservedTree(tree, species, in_leaf=True, at={at: at}, **far)
@@ -218,20 +213,22 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
     for count, true in enumerate(swayed_in_weather(tree, species, at, outside, weather), start=1):
         rate = weather.rate_at(step * DT)
         waiting.extend(zip(*sensor.measured(true.poses, rate), strict=True))
-        tips = np.empty((2, *true.tips.shape))
+        scored = slice(_SCORED - 1, None, _SCORED)
+        tips = np.empty((2, len(true.wind) // _SCORED, tree.n_branches, 3))
         for k, wind in enumerate(true.wind):
             step += 1
             while waiting and waiting[0][0] + _WAY <= step * DT:
                 time, acceleration, turning = waiting.pop(0)
                 twin.offer(at, time, acceleration=acceleration, rate=turning)
             alone.step(wind, DT)
-            tips[0, k] = tips_of_poses(tree, alone.place(block))
             twin.step(wind, DT)
-            tips[1, k] = tips_of_poses(tree, twin.place(block))
+            if step % _SCORED == 0:
+                tips[0, k // _SCORED] = tips_of_poses(tree, alone.place(block))
+                tips[1, k // _SCORED] = tips_of_poses(tree, twin.place(block))
             used += twin.observer.tracks[0].in_use
             if step % round(1.0 / DT) == 0:
-                said.note(step * DT, _said_of(twin))
-        stretch.append((tips, true.tips))
+                said.note(_said_of(twin))
+        stretch.append((tips, true.tips[scored]))
         if len(stretch) == every:
             found, wanted = (np.concatenate(each, axis=-3) for each in zip(*stretch, strict=True))
             for misfit, each in zip(misfits, found, strict=True):
@@ -239,8 +236,9 @@ def _follow(name: str, weather: Weather, seed: int) -> None:
             stretch.clear()
         if count % per_row == 0:
             _print(step * DT, weather, twin, misfits, used / (per_row * len(true.wind)))
+            for row in said.take():
+                print(row, flush=True)
             used = 0
-    print('\n'.join(said.rows()), flush=True)
 
 
 def _said_of(twin: ObservedTree) -> list[str]:
