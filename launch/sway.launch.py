@@ -157,7 +157,21 @@ def arguments_given(configurations):
         raise ValueError(
             f"launch argument 'wind_source': '{source}' is none of {', '.join(SOURCES)}"
         )
-    return given, warnings
+    return given, warnings + unused(given)
+
+
+def unused(given):
+    """Return warnings for arguments of a source of wind that is not started."""
+    nodes = {name: node for name, (node, _) in OF_PARAMETERS.items()} | {'wind_topic': 'topic'}
+    usual = {name: default for name, default, _ in ARGUMENTS}
+    chosen = given['wind_source']
+    return [
+        f"launch argument '{name}' has no effect with wind_source:={chosen}; give {source}"
+        for name, node in nodes.items()
+        for source in SOURCES
+        if node in (source, *SOURCES[source][:-1]) and source != chosen
+        if given[name] not in ('', usual[name])
+    ]
 
 
 def misspelled(configurations):
@@ -166,7 +180,8 @@ def misspelled(configurations):
     warnings = []
     for name in configurations:
         if name not in known and name not in FORMER_ARGUMENTS:
-            for near in get_close_matches(name, known, 1, 0.85):
+            words = [each for each in known if name in each.split('_')]
+            for near in get_close_matches(name, known, 1, 0.85) or words[:1]:
                 warnings.append(f"no launch argument '{name}'; did you mean '{near}'?")
     return warnings
 

@@ -142,6 +142,24 @@ def test_a_misspelled_argument_is_told(launch_file):
     typed = {'wind_sorce': 'player', 'ros_namespace': '/elm', 'other_package': 'x'}
     _, warnings = launch_file.arguments_given(typed)
     assert warnings == ["no launch argument 'wind_sorce'; did you mean 'wind_source'?"]
+    _, warnings = launch_file.arguments_given({'speed': '12'})
+    assert warnings == ["no launch argument 'speed'; did you mean 'mean_speed'?"]
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'source'),
+    [
+        ('wind_file', 'storm.csv', 'player'),
+        ('sensor_address', 'udp://:10110', 'sensor'),
+        ('wind_topic', '/mast/wind', 'topic'),
+        ('mean_speed', '12', 'simulated'),
+    ],
+)
+def test_an_argument_of_a_source_that_is_not_started_is_told(launch_file, name, value, source):
+    for chosen in launch_file.SOURCES:
+        _, warnings = launch_file.arguments_given({name: value, 'wind_source': chosen})
+        said = f"'{name}' has no effect with wind_source:={chosen}; give {source}"
+        assert warnings == ([] if chosen == source else [f'launch argument {said}'])
 
 
 @pytest.mark.parametrize(
