@@ -225,18 +225,6 @@ def test_a_parameter_file_of_any_namespace_is_used(launch_file, tmp_path):
         launch_file.refuse_params_file(str(path))
 
 
-def test_former_names_of_arguments_work_and_name_their_successors(launch_file):
-    typed = {'source': 'elsewhere', 'shards': '3', 'here': '1', 'tree': 'oak'}
-    given, warnings = launch_file.arguments_given(typed)
-    wanted = {'wind_source': 'remote', 'shard_count': '3', 'local_shards': '1', 'tree': 'oak'}
-    assert {name: given[name] for name in wanted} == wanted
-    assert given['wind_topic'] == 'wind'
-    assert len(warnings) == 4
-    assert "launch argument 'here' is now called 'local_shards'" in warnings
-    assert launch_file.arguments_given({'wind_source': 'topic'})[1] == []
-    assert set(launch_file.FORMER_ARGUMENTS.values()) <= set(given)
-
-
 def test_a_source_that_does_not_exist_is_refused(launch_file):
     with pytest.raises(ValueError, match="'wind_source': 'mast' is none of simulated, player"):
         launch_file.arguments_given({'wind_source': 'mast'})
