@@ -32,7 +32,6 @@ from tree_sway.twin import later_work
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 from tree_sway.twin.sensor_report import sensor_reports
-from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.twin.tree_fit import TreeFit
 
 DT, SECONDS = 1.0 / 60.0, 70
@@ -89,12 +88,11 @@ class Replay(NamedTuple):
     """
     A tree after a record, and from FIRST on what it showed.
 
-    Its tips, its late, smoothed tips, (m, b, 3), its band, and that of the highest tip's distance.
+    Its tips, (m, b, 3), its band, and that of the highest tip's distance.
     """
 
     twin: ObservedTree
     tips: Floats
-    late: Floats
     band: Floats
     sway_band: Floats
 
@@ -103,12 +101,11 @@ def replayed(
     motion: SensedMotion | None, *, learns: bool = False, seconds: int = SECONDS
 ) -> Replay:
     twin = ObservedTree(
-        TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True,
-    )  # fmt: skip
+        TREE, SPECIES, in_leaf=False, at={'phone': AT}, learns=learns, has_band=True
+    )
     wind, block = truth().wind[: seconds * 60], np.empty((TREE.n_segments, 7))
     kept = len(wind) - FIRST
-    tips, late = np.empty((2, kept, TREE.n_branches, 3))
+    tips = np.empty((kept, TREE.n_branches, 3))
     band = np.empty((kept, 2, len(BANDED), 3))
     sway_band = np.empty((kept, 2))
     first = 0
@@ -125,16 +122,15 @@ def replayed(
         if (row := k - FIRST) < 0:
             continue
         tips[row] = tips_of_poses(TREE, twin.place(block))
-        late[row] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
         band[row] = twin.band(BANDED)
         sway_band[row] = twin.sway_band()
-    return Replay(twin, tips, late, band, sway_band)
+    return Replay(twin, tips, band, sway_band)
 
 
-def dynamic_error(tips: Floats, late: int = 0) -> float:
+def dynamic_error(tips: Floats) -> float:
     """Return the error of the motion about its mean, over the true motion."""
-    true = truth().tips[: len(tips) - late]
-    motion, wrong = true - true.mean(axis=0), tips[late:] - true
+    true = truth().tips[: len(tips)]
+    motion, wrong = true - true.mean(axis=0), tips - true
     wrong = wrong - wrong.mean(axis=0)
     return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
 
@@ -155,23 +151,18 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, *_ = good()
+    twin, tips, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
-    smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
-    assert smoothed < error
     assert not twin.problems
     counts = twin.sensors['phone'].counts
     assert counts.accepted == len(truth().wind)
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
-def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, *_ = good()
-    true = np.square(np.diff(truth().tips, 2, axis=0)).sum()
-    rough = [np.square(np.diff(each, 2, axis=0)).sum() / true for each in (tips, late)]
-    assert np.sqrt(rough[1]) < 1.5
-    assert np.sqrt(rough[0]) < 2.5
+def test_the_motion_is_hardly_rougher_than_the_true_one() -> None:
+    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (good().tips, truth().tips)]
+    assert np.sqrt(rough[0] / rough[1]) < 2.5
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
@@ -195,6 +186,26 @@ def test_a_silent_sensor_is_counted_and_its_correction_fades() -> None:
     assert 'silent' in twin.problems[0]
     after = slice(54 * 60 - FIRST, len(tips))
     np.testing.assert_allclose(tips[after], alone().tips[after], atol=1e-3)
+
+
+def test_in_a_calm_a_tree_does_not_follow_the_noise_of_its_sensor() -> None:
+    twin = ObservedTree(TREE, SPECIES, model=30, in_leaf=False, at={'phone': AT})
+    motion, rng, moved = measured(), np.random.default_rng(19), list[Floats]()
+    still = motion.acceleration.mean(axis=0)
+    block = np.empty((TREE.n_segments, 7))
+    for k in range(105 * 60):
+        is_calm = k >= 35 * 60
+        felt = still + 0.03 * rng.normal(size=3) if is_calm else motion.acceleration[k]
+        turning = 0.004 * rng.normal(size=3) if is_calm else motion.rate[k]
+        twin.offer('phone', (k + 1) * DT, acceleration=felt, rate=turning)
+        twin.step((0.4, 0.0, 0.0) if is_calm else truth().wind[k], DT)
+        if k == 35 * 60:
+            assert twin.observer.trust.any()
+        moved.append(tips_of_poses(TREE, twin.place(block))[0])
+    gusty, calm = (
+        np.std(moved[rows], axis=0).max() for rows in (slice(1500, 2100), slice(-600, None))
+    )
+    assert calm < 0.025 * gusty
 
 
 def test_a_sensor_that_comes_loose_is_refused() -> None:
@@ -260,9 +271,8 @@ def test_the_motion_does_not_depend_on_when_work_beside_the_steps_is_done(
 ) -> None:
     """As late as can be, by the steps themselves: then it would read what they have changed."""
     monkeypatch.setattr(later_work, 'submit_beside', Postponed)
-    _twin, tips, late, band, _ = replayed(measured(), learns=True)
+    _twin, tips, band, _ = replayed(measured(), learns=True)
     np.testing.assert_array_equal(tips, learning().tips)
-    np.testing.assert_array_equal(late, learning().late)
     np.testing.assert_array_equal(band, learning().band)
 
 
@@ -385,7 +395,7 @@ def test_a_step_with_a_sensor_makes_no_arrays(tmp_path: Path) -> None:
 
 def print_memory_of_steps(wind: Floats, *motion: Floats) -> None:
     """Print the peak of 198 steps over the memory before them, and what they keep [B]."""
-    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
     winds = [tuple(each) for each in wind.tolist()]
     samples = list(zip(*(each.tolist() for each in motion), strict=True))
 
