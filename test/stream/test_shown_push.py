@@ -27,7 +27,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     factors, n_rotations = reductions.with_subtrees.reduction.factors, len(sim.rotations())
     lengths = np.add.reduceat(tree.length, tree.branch_first[:-1])
     limbs = np.flatnonzero(tree.branch_parent == 0)
-    longest = limbs[np.argsort(lengths[limbs])[::-1][:13:3]]
+    longest = limbs[np.argsort(lengths[limbs])[::-1][:7:3]]
     errors = []
     for branch in longest:
         first, end = tree.branch_first[branch : branch + 2]

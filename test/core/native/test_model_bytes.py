@@ -17,7 +17,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.errors import FormatError, ParameterError
 
 TRIALS = int(os.environ.get('TREE_SWAY_TRIALS', '3000'))
-"""Damaged models of a run; each that is read is stepped and placed."""
+"""Damaged models of a run, both layouts and seeds together; each that is read is stepped."""
 
 
 @pytest.fixture(scope='module', params=['by a table', 'at its pose'])
@@ -53,7 +53,7 @@ def test_a_sound_model_is_stepped_and_placed(arrays):
 def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays, seed):
     sound, rng, refused = bytes_of(arrays), np.random.default_rng(seed), 0
     header = 16 + 72 * len(arrays)
-    for trial in range(TRIALS // 2):
+    for trial in range(TRIALS // 4):
         content = bytearray(sound)
         # Headers, indices and numbers alike.
         end = header if trial % 3 == 0 else len(content)
@@ -69,7 +69,7 @@ def test_damaged_bytes_are_refused_or_stepped_within_their_memory(arrays, seed):
         else:
             continue
         assert "array '" in reason
-    assert 0.1 * TRIALS < refused < TRIALS // 2
+    assert 0.05 * TRIALS < refused < TRIALS // 4
 
 
 @pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf, 1e308])

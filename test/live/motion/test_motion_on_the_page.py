@@ -316,8 +316,8 @@ def test_a_viewer_moves_the_sensor_and_a_place_that_is_none_is_refused(sensor: S
 
 
 def test_a_sensor_that_falls_silent_leaves_the_wind(sensor: Sensor) -> None:
-    sensor.ends_at = 30.0
-    session, tips = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')])  # type: ignore[arg-type]
+    sensor.ends_at = 25.0
+    session, tips = swayed(sensor, [PlacedSensor(sensor, f'segment:{SEGMENT}')], until=38)  # type: ignore[arg-type]
     (told,) = session.status()['motion']['sensors']
     assert not told['in_use']
     assert 'silent' in told['problem']
