@@ -53,6 +53,7 @@ NEEDS = {
         (
             'ros',
             'film',
+            'camera',
             'parquet',
             'netcdf',
             'inventory',

@@ -401,6 +401,16 @@ def test_pixi_has_what_setup_asks_for(setup_words: dict[str, Any]) -> None:
         assert pixi['environments'][distribution] == [distribution]
 
 
+def test_the_recipe_of_conda_has_what_setup_asks_for(setup_words: dict[str, Any]) -> None:
+    page = (ROOT / 'doc' / 'releasing.md').read_text(encoding='utf-8')
+    blocks = [yaml.safe_load(each) for each in re.findall('```yaml\n(.*?)```', page, re.DOTALL)]
+    recipe = next(each for each in blocks if 'requirements' in each)
+    listed = {each.replace(' ', '') for each in recipe['requirements']['run']}
+    asked = {each.lower() for each in setup_words['install_requires']}
+    assert listed - asked == {f'python{setup_words["python_requires"]}'}
+    assert asked <= listed
+
+
 @pytest.mark.long
 def test_a_wheel_brings_executables_to_where_ros2_run_looks(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:

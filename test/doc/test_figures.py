@@ -52,7 +52,7 @@ FIGURES = {
     'doc/reference.md': {r'Rows (\d+) s and more apart are means': [LEAST_INTERVAL]},
     'doc/trees.md': {
         r'more than ([\d.]+) times as high': [round(kind_classes._HEIGHTS**0.5, 1)],
-        r'height to diameter by more than (\d+) %': [
+        r'height to diameter differs by more than (\d+) %': [
             round(100 * (kind_classes._SLENDERNESSES**0.5 - 1)),
         ],
         r'\| `oak` \| oak \| ([\d.]+) \| (\d+) ': [

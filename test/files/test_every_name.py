@@ -210,6 +210,8 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'fecha': '2026-03-01', 'data': '2026-03-01', 'rtcdate': '2026-03-01', 'hh24': '{k}',
         'yearmonthdayhourminutesinyyyy': '2026', 'miformatinlocaltime': '0',
         'timestamp1': '2026-03-01', 'timestamp2': '{k}00', 'doy': '60',
+        'sec': '177232320{k}', 'headerstampsec': '177232320{k}', 'headerstampsecs': '177232320{k}',
+        'nanosec': '0', 'headerstampnanosec': '0', 'headerstampnsecs': '0',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])
@@ -248,7 +250,7 @@ def test_a_name_of_two_lists_is_decided_by_rule() -> None:
     table = parse_table(['species,height,x,y', 'Quercus robur,12,0,0'], 'a.csv')
     assert inventory_of(table).species == ('Quercus robur',)
     wind = [folded(name) for each in WIND for name in COLUMNS[each]['names']]
-    assert {name for name in wind if len(name) == 1} == set('tuvwxyzfd')
+    assert {name for name in wind if len(name) == 1} == set('tuvwxyzfsd')
     table = parse_table(['date,t,ff,dd', '2026-03-01,283.1,5.0,270'], 'a.csv')
     assert table.find('time').index == 0  # type: ignore[union-attr]
 

@@ -83,18 +83,18 @@ def test_a_tree_that_is_not_alive_is_left_out(tmp_path: Path, cells: tuple[str, 
 
 
 @pytest.mark.parametrize(
-    ('head', 'row'),
+    ('head', 'row', 'what'),
     [
-        ('time,wind speed [m/s],wind direction [deg]', '{},5,270'),
-        ('time,ax,ay,az', '{},0.1,0.2,9.8'),
+        ('time,wind speed [m/s],wind direction [deg]', '{},5,270', 'wind'),
+        ('time,ax,ay,az', '{},0.1,0.2,9.8', 'motion'),
     ],
 )
 def test_a_table_over_time_is_named_where_a_tree_is_expected(
-    tmp_path: Path, head: str, row: str
+    tmp_path: Path, head: str, row: str, what: str
 ) -> None:
     table = written(tmp_path, '\n'.join([head, *(row.format(i) for i in range(5)), '']))
     for opened in (open_tree, open_scene):
-        with pytest.raises(FormatError, match=': a table of wind or of motion over time, not a'):
+        with pytest.raises(FormatError, match=f': a record of {what}, not a tree'):
             opened(table)
 
 
@@ -103,9 +103,7 @@ def test_a_motion_that_was_simulated_is_no_tree(tmp_path: Path) -> None:
     seedling = str(HERE / 'data' / 'seedling.yaml')
     assert main(['simulate', seedling, '--seconds', '1', '-o', str(table)]) == 0
     for opened in (open_tree, open_scene):
-        with pytest.raises(
-            FormatError, match='motion that `tree-sway simulate` wrote, not a tree'
-        ):
+        with pytest.raises(FormatError, match='table that `tree-sway simulate` wrote, not a tree'):
             opened(table)
 
 

@@ -120,6 +120,48 @@ TOA5 = (
             1.0,
             False,
         ),
+        (
+            'x,y,UTC_DATE,WIND_SPEED,WIND_DIRECTION,LOCAL_DATE\n',
+            '-75.7,45.4,2024-03-05T{clock}:00,{speed},22.5,2024-03-05 09:00',
+            3.6,
+            False,
+        ),
+        (
+            ' 101 ! (c)\n 4 2024 03 05 00 00 00\n STID STNM TIME WSPD WDIR\n',
+            ' NRMN 121 {n} {speed} 225',
+            1.0,
+            False,
+        ),
+        (
+            ' YYYYMMDD HHMM WSPD[m/s] WDIR\n',
+            ' 20240305 14{n:02d} {speed} 225',
+            1.0,
+            False,
+        ),
+        (
+            'Date,Time (EST),Wind Dir,Wind Speed (kts)\n',
+            '05-Mar-24,14{n:02d},225,{speed}',
+            1 / 0.514444,
+            False,
+        ),
+        (
+            'FORMATTED DATE_TIME,Wind Speed (km/h),Direction - True (°T)\n',
+            '2024-03-05 {clock},{speed},225',
+            3.6,
+            False,
+        ),
+        (
+            '"TOACI1","Mast","T"\n"TMSTAMP","RECNBR","WS_ms_Avg","WindDir"\n',
+            '"2024-03-05 {clock}:00",{n},{speed},SW (225°)',
+            1.0,
+            False,
+        ),
+        (
+            ' Bondville\n 40.05 -88.37 213 m version 1\n',
+            ' 2024 65 3 5 14 {n} 14.1 60.1' + ' -9999.9 0' * 17 + ' {speed} 0 225.0 0 998.0 0',
+            1.0,
+            False,
+        ),
     ],
     ids=[
         'units above',
@@ -137,6 +179,13 @@ TOA5 = (
         'day of the year',
         'days',
         'unit of the maker',
+        'a place and no components',
+        'minutes of the maker',
+        'clock of digits',
+        'months by name',
+        'true degrees',
+        'degrees behind a point',
+        'flags between',
     ],
 )
 def test_winds_are_read_as_they_say(
@@ -198,8 +247,14 @@ def json_rows(form: str) -> str:
             ']}',
         ),
         ('[', '{"fecha":"20N-01-01","dir":"22.5","velmedia":"S"}', ']'),
+        (
+            '[',
+            '{"dateTime":"2024-03-05 14:N:00","wind":{"speed":S,"unit":"m/s","direction":225}}',
+            ']',
+        ),
+        ('{"type":"obs_st","obs":[', '[17096472N,0,S,30,225]', ']}'),
     ],
-    ids=['legend', 'titles', 'tens of degrees'],
+    ids=['legend', 'titles', 'tens of degrees', 'unit of the group', 'many in one message'],
 )
 def test_json_with_names_beside_its_rows(tmp_path: Path, head: str, form: str, tail: str) -> None:
     rows = json_rows(form)
@@ -223,6 +278,11 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('"TOB1","1","CR1000"\r\n\x00\xff', 'a.dat', 'a binary table of a Campbell logger'),
         ('53131 20190101 1610 4.4 C 0\n' * 3, 'a.txt', 'no header: the first line'),
         ('time,speed,direction\nnow,3,90\n', 'a.csv', 'no time in it'),
+        ('date,clock,speed,dir\n' + '2024-03-05,14:00,3,9\n' * 9, 'a.csv', 'stands or goes back'),
+        ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
+        ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
+        ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),
+        ('time,s,d\n[2024-03-05] <STX>Q,229,002.74\n', 'a.txt', 'no time in it'),
     ],
 )
 def test_what_is_no_table_of_wind_is_told(
@@ -233,11 +293,39 @@ def test_what_is_no_table_of_wind_is_told(
         read_wind(tmp_path / name)
 
 
+def test_the_unit_that_was_asked_for_is_asked_and_flags_are_no_speed(tmp_path: Path) -> None:
+    form = '{"t":"2024-03-05 14:N","s":"S","d":"225.00","dr":"SW","g":"30","f":"0,0"}'
+    path = written(tmp_path, f'{{"data":[{json_rows(form)}]}}', 'a.json')
+    with pytest.raises(FormatError, match='does not say the unit of the speed'):
+        read_wind(path)
+    record = read_wind(path, turbulence=False, speed_unit='m/s')
+    np.testing.assert_allclose(np.hypot(*record.velocity[:, :2].T), SPEEDS)
+
+
+def test_reports_of_airports_have_the_date_before_them(tmp_path: Path) -> None:
+    rows = [f'20240305{h}20 METAR EDDF 05{h}20Z 24010KT 9999 NOSIG=' for h in (14, 15, 16)]
+    record = read_wind(written(tmp_path, '\n'.join(rows), 'a.txt'), turbulence=False)
+    assert record.epoch == 1709648400.0
+
+
+@pytest.mark.parametrize('years', [(1998, 1986), (1999, 2003)])
+def test_months_of_a_typical_year_are_of_one_year(tmp_path: Path, years: tuple[int, int]) -> None:
+    rows = [f'01/31/{years[0]},{hour}:00,5,225' for hour in range(12, 24)]
+    rows += [f'02/01/{years[1]},{hour}:00,5,225' for hour in range(12)]
+    rows += [f'03/01/{years[0] + 2},{hour}:00,5,225' for hour in range(12)]
+    path = written(tmp_path, 'Date (MM/DD/YYYY),Time,Wspd (m/s),Wdir\n' + '\n'.join(rows))
+    record = read_wind(path, turbulence=False)
+    assert not record.refused
+    assert record.duration == pytest.approx(86400.0 * 29 - 3600.0)
+    assert f'months of several years are taken as those of {years[0]}' in record.notes
+
+
 def motion_rows(form: str) -> str:
     lines = []
     for row in range(200):
         x = 0.3 * math.sin(0.1 * row)
-        lines.append(form.format(s=0.02 * row, ms=20 * row, ns=20_000_000 * row, x=x, z=GRAVITY))
+        time = {'s': 0.02 * row, 'cs': 2 * row, 'ms': 20 * row, 'ns': 20_000_000 * row}
+        lines.append(form.format(**time, x=x, z=GRAVITY))
     return '\n'.join(lines) + '\n'
 
 
@@ -264,6 +352,28 @@ AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
         ('#time,accel_x,accel_y,accel_z\n', '{s},{x:.5f},0,9806.65'),
         ('stamp,accX,accY,accZ\n', '{ms}000,{x:.5f},0,{z}'),
         ('HH:MM:SS.mmm,RawData,AccX[mg],AccY[mg],AccZ[mg]\n', '12:00:0{s:.3f},0,{x:.5f},0,1000'),
+        ('Time [10ms],AccX [mg],AccY [mg],AccZ [mg]\n', '{cs},{x:.5f},0,1000'),
+        ('TimeStartup,Accel[X],Accel[Y],Accel[Z]\n', '{ns},{x:.5f},0,{z}'),
+        (
+            'cts,date,Accel (z) [m/s2],Accel (x) [m/s2],Accel (y) [m/s2]\n',
+            '{ms},2024-03-05T14:00:0{s:.3f}Z,{z},{x:.5f},0',
+        ),
+        (
+            'Tempo (s),Accelerazione x (m/s^2),Accelerazione y (m/s^2),Accelerazione z (m/s^2)\n',
+            '{s:.3f},{x:.5f},0,{z}',
+        ),
+        ('时间,加速度X(g),加速度Y(g),加速度Z(g)\n', '{s:.3f},{x:.5f},0,1'),
+        ('Time,Acceleration_1,Acceleration_2,Acceleration_3\n', '{s:.2f} sec,{x:.5f},0,{z}'),
+        ('', '12:00:0{s:.3f} -> ax: {x:.5f} | ay: 0.0 | az: {z}'),
+        (
+            '',
+            '1709647200,{ns},imu,0,0,0,1'
+            + ',0' * 9
+            + ',0,0,0'
+            + ',0' * 9
+            + ',{x:.5f},0,{z}'
+            + ',0' * 9,
+        ),
     ],
     ids=[
         'groups',
@@ -275,16 +385,36 @@ AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
         'millimetres',
         'times by their step',
         'clock as a name',
+        'tens of milliseconds',
+        'axes in brackets and nanoseconds',
+        'axes in brackets and units',
+        'Italian',
+        'Chinese',
+        'durations',
+        'pairs',
+        'a message of ROS',
     ],
 )
 def test_motions_are_read_as_they_are(tmp_path: Path, head: str, form: str) -> None:
     rows = motion_rows(form)
-    if 'Creation' in head:
+    if 'Creation' in head or not head:
         rows = '\n'.join(rows.splitlines()[:50])
     record = read_motion(written(tmp_path, head + rows, 'motion.csv'))
     assert np.nanmedian(np.diff(record.time)) == pytest.approx(0.02)
     assert record.acceleration is not None
     assert np.nanmedian(record.acceleration, axis=0)[2] == pytest.approx(GRAVITY, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ('text', 'match'),
+    [
+        ('GYROFLOW IMU LOG\nascale,0.1\nt,gx,gy,gz,ax,ay,az\n0,0,0,0,0,0,98\n', 'whose scales'),
+        ('sensor,timestamp,x,y,z\nACC,0,0,0,9.8\nGYRO,1,0,0,0\n', 'rows of 2 instruments'),
+    ],
+)
+def test_what_is_no_motion_is_told(tmp_path: Path, text: str, match: str) -> None:
+    with pytest.raises(FormatError, match=match):
+        read_motion(written(tmp_path, text))
 
 
 def scene_of(folder: Path, text: str) -> tuple[list[tuple[str, float]], float, str]:
@@ -328,6 +458,22 @@ def test_trees_of_a_plot_stand_by_their_field_coordinates(tmp_path: Path) -> Non
     assert len(trees) == 3
     assert width == pytest.approx(math.hypot(20.0, 40.0))
     assert 'one latitude and longitude' in notes
+
+
+@pytest.mark.parametrize(
+    ('head', 'dead'),
+    [
+        ('LAT,LON,STATUSCD,SPCD,DBH_CM,HEIGHT_M', '45.0001,-93,2,833,40,15'),
+        ('x,y,dead,species,dbh_cm,Htot', '9,0,TRUE,Tilia,40,15'),
+        ('Field_X,Field_Y,Status,Species,dbh_cm,TH', '9,0,D,Tilia,40,15'),
+    ],
+)
+def test_the_dead_are_told_by_codes(tmp_path: Path, head: str, dead: str) -> None:
+    alive = dead.replace('0001', '0002').replace(',2,8', ',1,8')
+    alive = alive.replace('TRUE', 'FALSE').replace('D,', 'L,').replace('9,0', '0,0')
+    trees, _, notes = scene_of(tmp_path, f'{head}\n{alive}\n{dead}\n')
+    assert [height for _, height in trees] == [15.0]
+    assert '1 row is left out: 1 dead or gone; line 3' in notes
 
 
 def test_a_name_that_is_another_tree_elsewhere_is_said(tmp_path: Path) -> None:

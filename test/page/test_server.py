@@ -377,6 +377,28 @@ def test_a_tree_is_written_or_refused_with_the_reason(server: PageServer) -> Non
     assert b'take 60' in why
 
 
+def test_what_a_camera_sees_is_for_who_may_control(server: PageServer) -> None:
+    pictures: list[bytes | None] = [None, b'jpeg']
+
+    async def answer(url: str, token: str, **headers: str) -> tuple[int, bytes, Any]:
+        headers['Authorization'] = f'Bearer {token}'
+        async with aiohttp.ClientSession(headers=headers) as session:
+            async with session.get(f'{url}camera.jpg') as found:
+                status, data = found.status, await found.read()
+            async with session.ws_connect(f'{url}stream') as viewer:
+                hello = (await viewer.receive_json(timeout=DEADLINE))['hello']
+            return status, data, hello['has_camera']
+
+    own = {'X-Requested-With': 'test'}
+    assert asyncio.run(answer(server.url, '', **own))[::2] == (404, False)
+    token = 'a token of some length'
+    with PageServer(PageSettings(port=0, token=token), picture=lambda: pictures.pop(0)) as seeing:
+        assert asyncio.run(answer(seeing.url, seeing.viewers_token, **own))[::2] == (403, False)
+        assert asyncio.run(answer(seeing.url, token))[0] == 403  # as by an image of another page
+        assert asyncio.run(answer(seeing.url, token, **own)) == (204, b'', True)
+        assert asyncio.run(answer(seeing.url, token, **own)) == (200, b'jpeg', True)
+
+
 def test_the_page_is_sent_packed_and_not_twice(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         url = f'{server.url}static/drawing/scene.js'

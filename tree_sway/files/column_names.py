@@ -46,7 +46,9 @@ _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?|[+-]?\d\d:\d\d')
-_SCALED = re.compile(r'(\d+(?:\.\d+)?) (\D.*)')
+_SCALED = re.compile(r'(\d+(?:\.\d+)?)( ?)(\D.*)')
+_ELEMENT = re.compile(r'\d+|[xyzXYZ]')
+_IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
@@ -108,10 +110,13 @@ def unit_factor(kind: str, unit: str) -> float | None:
     """
     if kind == 'time' and _ZONE.fullmatch(unit.strip()):
         return 1.0
+    known = UNITS.get(kind, {}).get(_folded_unit(unit))
     scaled = _SCALED.fullmatch(unit.strip())
-    if scaled is not None and kind in UNITS and (of_one := unit_factor(kind, scaled[2])):
-        return float(scaled[1]) * of_one
-    return UNITS.get(kind, {}).get(_folded_unit(unit))
+    # Without a space only times have one: DIAMETRE_1M is no diameter in units of 1 m.
+    if known is not None or scaled is None or not (scaled[2] or kind == 'time'):
+        return known
+    of_one = unit_factor(kind, scaled[3])
+    return None if of_one is None else float(scaled[1]) * of_one
 
 
 def name_and_unit(column: str, kind: str) -> tuple[str, str]:
@@ -119,11 +124,11 @@ def name_and_unit(column: str, kind: str) -> tuple[str, str]:
     Split the name of a column from its unit, of a kind in `UNITS`.
 
     The unit is in brackets, or behind ``-`` or a comma. If none of these is a unit of the kind, it
-    is the text in the first brackets, or empty without them. A number in brackets, as in ``u(1)``,
-    tells the element of a logger's array.
+    is the text in the first brackets, or empty without them. A number or an axis in brackets, as
+    in ``u(1)``, tells the element of a logger's array.
     """
     text = _GROUP.sub('', column.strip().strip('"').strip())
-    in_brackets = [found for found in _BRACKETS.findall(text) if not found.isdigit()]
+    in_brackets = [found for found in _BRACKETS.findall(text) if not _ELEMENT.fullmatch(found)]
     behind = [found.strip() for found in _BEHIND.findall(text)]
     name = _NAME_ENDS.sub('', text, count=1).strip() or text
     for unit in (*in_brackets, *behind):
@@ -159,7 +164,8 @@ def rank_of(column: str, quantity: str) -> int | None:
 def motion_of(column: str) -> tuple[str, str, str] | None:
     """Quantity of a column of a motion, its name and its axis; None for another column."""
     for quantity, pattern in MOTIONS.items():
-        name = _AXIS_FIRST.sub(r'\2 \1', name_and_unit(column, quantity)[0])
+        named = name_and_unit(_IN_BRACKETS.sub(r' \1', column), quantity)[0]
+        name = _AXIS_FIRST.sub(r'\2 \1', named)
         plain = _without_unit(name, quantity)[0] or folded(name)
         if found := pattern.fullmatch(plain):
             return quantity, plain[: found.start('axis')], found['axis'] or ''

@@ -11,9 +11,8 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.column_names import motion_of, rank_of
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.foreign_file import foreign_file
-from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.text_file import read_head
 
 _POINTS = 8
@@ -22,7 +21,6 @@ _POINT = re.compile(r'\s*[-+]?\d+(\.\d+)?([\s,;]+[-+]?\d+(\.\d+)?){2,8}\s*')
 
 
 _OF_TREES = ('species', 'diameter', 'girth')
-_OF_WIND = ('wind_speed', 'wind_x')
 
 
 class UnknownFormatError(FormatError):
@@ -146,14 +144,6 @@ def _is_cloud(head: str) -> bool:
     return len(lines) == _POINTS and all(map(_POINT.fullmatch, lines))
 
 
-def _names(head: str, quantities: Sequence[str], *, motion: bool = False) -> bool:
-    """Whether the first line names a column of some quantities, or of a motion with an axis."""
-    cells = re.split('[,;\t]', head.partition('\n')[0])
-    if motion and any(found[2] for found in map(motion_of, cells) if found):
-        return True
-    return any(rank_of(cell, each) is not None for cell in cells for each in quantities)
-
-
 def _unknown(path: Path, kind: str, names: str) -> FormatError:
     """Return the error for a file of no format: what it is, if its suffix tells, or its kind."""
     what, cure = foreign_file(path)
@@ -165,11 +155,9 @@ def _unknown(path: Path, kind: str, names: str) -> FormatError:
     if _is_cloud(head):
         what, cure = foreign_file(Path('cloud.las'))
         return FormatError(f'{what}, not a {kind}', cure=cure)
-    names_trees = _names(head, _OF_TREES)
-    if looks_like_wind(head) and _names(head, _OF_WIND, motion=True) and not names_trees:
-        what = 'a table of wind or of motion over time, not a tree'
-        return FormatError(what, cure='give it behind --wind or --motion, and a tree as TREE')
     if head:
+        cells = re.split('[,;\t]', head.partition('\n')[0])
+        names_trees = any(rank_of(cell, each) is not None for cell in cells for each in _OF_TREES)
         need = (
             'an inventory has columns for the place, the species, and the height or dbh; a tree '
             'as a table has segment, parent, x0, y0, z0, x1, y1, z1, d0, d1 [m]'

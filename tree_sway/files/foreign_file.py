@@ -3,7 +3,7 @@
 """
 What a file is that none of our readers takes, and what to give instead.
 
-Its suffix tells, or in `foreign_files.csv` how a file ``begins``.
+Its suffix tells, or in `foreign_files.csv` how a file ``begins``, without its spaces.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ def foreign_file(path: Path, head: str = '') -> tuple[str, str]:
     With its ``head``, the beginning of the file tells in place of the suffix.
     """
     if head:
-        found = (each for each in _FOREIGN if each['begins'] and head.startswith(each['begins']))
+        first = ''.join(head[:400].split())
+        found = (each for each in _FOREIGN if each['begins'] and first.startswith(each['begins']))
     else:
         suffix = path.suffix.lower()
         found = (each for each in _FOREIGN if suffix in each['suffixes'].split())

@@ -24,9 +24,12 @@ _MAKERS = table_beside(__file__, 'makers.csv')
 def maker_of(table: TextTable) -> dict[str, Any]:
     """Return the row of the first maker that a table fits; empty for a table of none."""
     names = [folded(name_and_unit(column, 'speed')[0]) for column in table.columns]
+    last = {folded(column.rpartition('.')[2]) for column in table.columns}  # of a name in groups
     above = '\n'.join(table.above)
     for maker in _MAKERS:
-        is_it = set(maker['names'].split()) <= set(names) and (maker['above'] or '') in above
+        is_it = (
+            set(maker['names'].split()) <= last | set(names) and (maker['above'] or '') in above
+        )
         if is_it and maker['by']:
             cells = table.cells(names.index(maker['by']), [0])
             is_it = cells[0].removesuffix('.0') == str(maker['value'])

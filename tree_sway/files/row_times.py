@@ -55,7 +55,12 @@ def _numbers(parts: Sequence[str]) -> str:
     return f'{century + year}-{month}-{day} {hour}:{minute:02d}'
 
 
+def _seconds(parts: Sequence[str]) -> str:
+    return f'{parts[0]}.{parts[1].zfill(9)}'
+
+
 _JOINS: dict[str, Join] = {
+    'seconds, nanoseconds': _seconds,
     'numbers': _numbers,
     'date, hour': _date_and_hour,
     'date, digits': _date_and_digits,
@@ -128,11 +133,30 @@ def row_times(
     """Return the times of some rows, in UTC where the table says its zone."""
     cells = [table.cells(column, rows) for column in columns]
     stamps = cells[0] if join is None else [join(parts) for parts in zip(*cells, strict=True)]
-    times = times_of(stamps, factor)
+    times = _of_one_year(times_of(stamps, factor))
     if join is None and times.epoch is None and not times.note:
         times = replace(times, note=_doubt(table, columns[0], times))
     zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
     return times if zone is None or times.epoch is None else _in_utc(times, zone[1])
+
+
+def _of_one_year(times: Times) -> Times:
+    """Return the months of a typical year, which are of several, in the first of these years."""
+    known = np.isfinite(times.seconds)
+    if times.epoch is None or not known.any():
+        return times
+    since_1970 = times.epoch + times.seconds[known]
+    months = since_1970.astype('datetime64[s]').astype('datetime64[M]')
+    years = months.astype('datetime64[Y]')
+    moved = years[0].astype('datetime64[M]') + months.astype(np.int64) % 12
+    shift = moved.astype('datetime64[s]') - months.astype('datetime64[s]')
+    seconds = times.seconds.copy()
+    seconds[known] += shift.astype(np.float64)
+    is_apart = bool((np.diff(since_1970) < 0.0).any()) or len(np.unique(years)) > 2
+    if not is_apart or not (np.diff(seconds[known]) > 0.0).all():
+        return times
+    note = f'months of several years are taken as those of {years[0]}'
+    return replace(times, seconds=seconds, note=note)
 
 
 def _doubt(table: TextTable, column: int, times: Times) -> str:

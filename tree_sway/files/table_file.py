@@ -43,7 +43,7 @@ _MOST_UNITS = 6
 _MEND = 'correct the cell or remove the row'
 _NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
-_WORDS = re.compile(r'\w+(?:\s+[\w/]+){2,}')
+_WORDS = re.compile(r'\w[^\s:]*(?:\s+[\w/][^\s:]*){2,}')
 _THOUSANDS = re.compile(r'(?<=\d)\.(?=\d{3}(?:\.\d{3})*,\d)')
 """Point between the thousands of a number with a decimal comma."""
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024

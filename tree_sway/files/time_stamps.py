@@ -33,7 +33,8 @@ _DATES = (
     r'(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)',
     r'(?P<first>\d\d?)(?P<sign>[-/. ])(?P<second>\d\d?)[-/. ](?P<year>\d{4}|(?<! )\d\d)',
     r'(?P<year>\d{4})(?P<month>\d\d)(?P<day>\d\d)',
-    r'(?P<day>\d\d?)[- ](?P<month>[A-Za-z]{3})[a-z]*[-, ]+(?P<year>\d{4})',
+    r'(?P<day>\d\d)(?P<month>\d\d)(?P<year>(19|20)\d\d)',
+    r'(?P<day>\d\d?)[- ](?P<month>[A-Za-z]{3})[a-z]*[-, ]+(?P<year>\d{4}|\d\d)',
     r'(?P<month>[A-Za-z]{3})[a-z]* (?P<day>\d\d?),? (?P<year>\d{4})',
 )
 _CLOCK = (
@@ -95,12 +96,14 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     first = next(
         (text for stamp in stamps if (text := stamp.strip()).lower() not in ('', 'nan')), ''
     )
+    if first.endswith(' sec'):  # durations of MATLAB
+        return times_of([stamp.removesuffix(' sec') for stamp in stamps], factor)
     if finite(first) is None or _DIGITS.fullmatch(first):
         return dates(stamps)
     numbers = [finite(stamp) for stamp in stamps]
     values = np.array([np.nan if number is None else number for number in numbers])
     values = unwrapped(values)
-    size = abs(float(np.nanmedian(values)))
+    size = abs(float(values[np.isfinite(values)][0]))  # what begins at 0 is no date
     days = _days(values, factor)
     if days is not None and days.epoch is not None:
         return days

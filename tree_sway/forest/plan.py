@@ -23,6 +23,7 @@ from tree_sway.cache import ROOT, source_digest
 from tree_sway.core.settings import Settings
 from tree_sway.errors import FormatError, inside, nearest, ParameterError
 from tree_sway.files import path_of, read_bytes, read_text, read_yaml
+from tree_sway.files.scenes import expected
 from tree_sway.files.wind import EXAMPLES
 from tree_sway.forest.cluster import ROOMS
 from tree_sway.forest.entries import listed, Plain, trees_of, winds_of
@@ -95,7 +96,8 @@ def read_study(path: str | Path) -> list[Case]:
     """
     path = path_of(path)
     schema = json.loads(files('tree_sway.forest').joinpath('study_schema.json').read_text('utf-8'))
-    document = read_yaml(read_text(path), str(path), schema, 'trees and winds')
+    with expected(path, 'study', 'scene'):
+        document = read_yaml(read_text(path), str(path), schema, 'trees and winds')
     study = document.values
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
     _refuse_large(study, Case({}, {}, **common), str(path))

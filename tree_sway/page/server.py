@@ -74,6 +74,9 @@ class PageServer:
         raises a `TreeSwayError` to refuse.
     critical_winds
         Band of the critical wind of each tree by its name [m/s], by which viewers colour trees.
+    picture
+        Function called on a separate thread for what a camera sees, a JPEG or None yet; it is for
+        those alone who may control.
 
     Raises
     ------
@@ -95,6 +98,7 @@ class PageServer:
         status: Callable[[], Mapping[str, object]] | None = None,
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
+        picture: Callable[[], bytes | None] | None = None,
     ) -> None:
         self.settings = settings
         self._tls = settings.tls()
@@ -104,6 +108,7 @@ class PageServer:
         self._status = status or dict
         self._written = written
         self._critical_winds = critical_winds
+        self._picture = picture
         self._published = Published()
         self._clients: set[PageClient] = set()
         self._refusals = Refusals()
@@ -291,6 +296,7 @@ class PageServer:
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
         app.router.add_get('/tree.{suffix:glb|html}', self._tree)
+        app.router.add_get('/camera.jpg', self._camera)
         app.router.add_static('/static/', STATIC)
         app.on_response_prepare.append(add_headers)
         logger = logging.Logger('page')
@@ -329,6 +335,16 @@ class PageServer:
         finally:
             self._n_waiting -= 1
         return web.Response(body=data, content_type='application/octet-stream')
+
+    async def _camera(self, request: web.Request) -> web.StreamResponse:
+        """Answer with what the camera sees, for its check and not for whoever looks on."""
+        refused = self._guard.refused
+        if self._picture is None:
+            return refused(404, 'no camera looks at this tree')
+        if not (self._guard.may_control(request) and is_own_page(request.headers)):
+            return refused(403, _MAY_LOOK)
+        data = await asyncio.to_thread(self._picture)
+        return web.Response(status=200 if data else 204, body=data, content_type='image/jpeg')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         """Serve a page from its first message to its last."""
@@ -375,6 +391,7 @@ class PageServer:
             'address': self.settings.address,
             'viewers_token': self.viewers_token,
             'critical_winds': self._critical_winds,
+            'has_camera': self._picture is not None and may_control,
         }
         return json.dumps({'hello': hello})
 

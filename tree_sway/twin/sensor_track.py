@@ -3,9 +3,9 @@
 """
 One sensor over time: first its mounting is found, then it is in use while it agrees.
 
-Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
-the model has in the wind alone. From then on its mounting is found again after 1.2 times as long,
-and so on, from all motion of the last ten minutes.
+Until a sensor has seen the tree sway for 20 s, its samples are compared with the motion that the
+model has in the wind alone. From then on its mounting is found again after 1.2 times as long, and
+so on, from all motion of the last ten minutes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sway_lever import other_lever
 from tree_sway.twin.wind_lag import find_lag
 
-LEARNING = 20.0
+_LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.2, 600.0
@@ -200,7 +200,7 @@ def _mounting(
         if is_of_wind and abs(steps) >= lags.least:
             lag, left = steps, SensorLag()
     if lag:
-        later, earlier = lagging(lag, len(sensed))
+        later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
         found = align(sensed, upright, free, *known, sign)
     is_free = found.has_gravity and sensor.place.facing is None and not found.problem
@@ -332,7 +332,7 @@ def _lag(
     return found.steps if found.is_sure and abs(found.steps) >= lags.least else 0
 
 
-def lagging(lag: int, count: int) -> tuple[slice, slice]:
+def _lagging(lag: int, count: int) -> tuple[slice, slice]:
     """Rows of a sensor, and those of a model by a lag before, of a number of rows each."""
     return slice(max(lag, 0), count + min(lag, 0)), slice(max(-lag, 0), count + min(-lag, 0))
 
@@ -378,7 +378,7 @@ class SensorTrack:
         period = 1.0 / frequency
         compared = max(_COMPARED, _LEAST_COMPARED * period)
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
-        self._next_fit = round(LEARNING / dt)
+        self._next_fit = round(_LEARNING / dt)
         self._next_mean = 0
         self._quantities = sensor.quantities
         self._left_for: float | None = None
@@ -480,7 +480,7 @@ class SensorTrack:
             counts.disagreed = native.disagreements
             # A knock may have moved it: its mounting is found from what comes after.
             native.count = -round(_KNOCKED / self._dt)
-            self._next_fit = round(LEARNING / self._dt)
+            self._next_fit = round(_LEARNING / self._dt)
         if (given := self.sensor.quantities) == self._quantities:
             return False
         self._quantities = given
@@ -488,7 +488,7 @@ class SensorTrack:
         native.in_use = native.is_mounted = native.is_refused = native.count = 0
         native.is_awaited = 1
         native.excess = native.usual = 1.0
-        self._next_fit = round(LEARNING / self._dt)
+        self._next_fit = round(_LEARNING / self._dt)
         return True
 
     def _follow_mean(self, alignment: Alignment) -> None:
@@ -550,7 +550,7 @@ class SensorTrack:
     def delay_model(self, lag: int) -> None:
         """Remember the model as if its wind had been later by a number of steps."""
         sensed, computed = self._remembered()
-        later, earlier = lagging(lag, len(sensed))
+        later, earlier = _lagging(lag, len(sensed))
         kept = max(len(sensed) - abs(lag), 0)
         self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
         gone = self.native.count - kept

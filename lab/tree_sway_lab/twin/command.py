@@ -9,10 +9,10 @@ damping and drag drawn by the seed (`gusty_truth`). Without a tree there are six
 half, and gusts that reach limb after limb with a copy of the measured wind: kinder than a tree
 outdoors, as what shakes the crown is in the measured wind.
 
-Each row has one number of sensors: dynamic error of all tips and roughness, at once and smoothed,
-the correlation of the stem's tip, the share of
-the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
-and the time per step of the thread that finds gains, mountings and fits beside the steps.
+Each row has one number of sensors: dynamic error of all tips and roughness, the correlation of the
+stem's tip, the share of the time that the band of 80 % holds the tips, the time of a step, median
+and 99th percentile, and the time per step of the thread that finds gains, mountings and fits
+beside the steps.
 ``sensor r`` is the correlation at the first sensor, then follow the times at which it was first
 in use, and first out of use after that. ``--fault`` adds faults of the sensors (`sensor_faults`),
 those that begin later from 90 s on; ``late`` is a record of a wrong clock, ``live`` one that comes
@@ -86,8 +86,6 @@ _HEAD = (
     'sensors',
     'error',
     'rough',
-    'smoothed',
-    'smoothed rough',
     'stem r',
     'held',
     'us/step',
@@ -298,10 +296,7 @@ def _scored_beside(
 
 
 def _print(name: str, sensors: str, score: Score) -> None:
-    figures = (
-        score.error, score.roughness, score.late_error, score.late_roughness, score.stem,
-        score.held,
-    )  # fmt: skip
+    figures = score.error, score.roughness, score.stem, score.held
     row = [
         name,
         sensors,

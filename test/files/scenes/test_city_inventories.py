@@ -247,6 +247,34 @@ def test_geojson(place: tuple[float, float], tmp_path: Path) -> None:
         open_scene(path)
 
 
+OAK = {'species': 'Quercus robur', 'height_m': 12, 'dbh_cm': 25}
+
+
+@pytest.mark.parametrize(
+    'document',
+    [
+        {'features': [{'attributes': OAK, 'geometry': {'x': 11.5, 'y': 48.1}}]},
+        {'success': True, 'result': {'records': [OAK | {'x_wgs84': '11.5', 'y_wgs84': '48.1'}]}},
+        {'results': [OAK | {'geo_point_2d': {'lon': 11.5, 'lat': 48.1}}]},
+        {'records': [{'fields': OAK, 'geometry': {'type': 'Point', 'coordinates': [11.5, 48.1]}}]},
+    ],
+    ids=['ArcGIS', 'CKAN', 'Opendatasoft', 'Opendatasoft before'],
+)
+def test_json_of_portals(tmp_path: Path, document: dict[str, object]) -> None:
+    path = tmp_path / 'trees.json'
+    path.write_text(json.dumps(document))
+    check(read(path), [('oak', 12.0, 0.25)])
+    assert len(open_scene(path).trees) == 1
+
+
+def test_places_on_maps_of_the_web_are_not_in_metres(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.json'
+    found = {'attributes': OAK, 'geometry': {'x': 1280174.1, 'y': 6124759.3}}
+    path.write_text(json.dumps({'spatialReference': {'wkid': 102100}, 'features': [found]}))
+    with pytest.raises(FormatError, match='Web Mercator'):
+        open_scene(path)
+
+
 def test_openstreetmap(tmp_path: Path) -> None:
     tags = {'natural': 'tree', 'species': 'Aesculus hippocastanum', 'height': '14'}
     path = tmp_path / 'trees.json'

@@ -99,7 +99,14 @@ def test_a_view_refuses_clicks_beside_the_tree_and_another_size(cv2: Any) -> Non
         with pytest.raises(ParameterError, match='no camera fits the clicks'):
             beside.follow(0.0, still)
     view = CameraView(tree, clicks(tree), print)
-    assert len(view.follow(0.0, still).points) > 20
+    assert view.drawn() is None
+    points = view.follow(0.0, still).points
+    assert len(points) > 20
+    shown = cv2.imdecode(np.frombuffer(view.drawn() or b'', dtype=np.uint8), cv2.IMREAD_COLOR)
+    assert shown.shape == (*still.shape, 3)
+    column, row = points[0].astype(int)
+    blue, green, red = shown[row, column].astype(int)
+    assert green > 100 + max(blue, red)
     dark = CameraView(tree, clicks(tree), print)
     assert not len(dark.follow(0.0, 0 * still).points)
     assert len(dark.follow(0.1, still).points) > 20

@@ -83,6 +83,7 @@ def test_the_motion_follows_the_recording(
     assert 'motion.csv: read ax, ay, az, gx, gy, gz' in notes
     assert 'as it and the wind have no dates, it is taken to begin with the wind' in notes
     assert 'samples followed, 0 refused' in notes
+    assert 'synchronise those of wind and motion' in notes
     after = slice(30 * 60, 44 * 60)
     errors = []
     for name in ('alone', 'twin'):

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
@@ -30,6 +31,7 @@ from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 12
 _DECIMAL = re.compile(r'-?\d+,\d+')
+_BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 Cells = dict[str, str]
 
 
@@ -42,9 +44,7 @@ class _Quantity(NamedTuple):
 
 
 def _is_json(lines: Sequence[str]) -> bool:
-    filled = filter(None, map(str.strip, lines))
-    first = next(filled, '')
-    return first.startswith(('{', '[')) and not first.startswith('[0')
+    return _BEGINS.match('\n'.join(lines)) is not None
 
 
 def _read_json_table(lines: list[str], source: str) -> TextTable:
@@ -68,8 +68,8 @@ def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
     """Return the wind of a Tempest's messages of the most common type; empty for others."""
     of_type: dict[str, list[dict[str, Any]]] = {}
     for message in messages:
-        if values := tempest_values(message):
-            of_type.setdefault(message['type'], []).append(values)
+        if found := tempest_values(message):
+            of_type.setdefault(message['type'], []).extend(found)
     return max(of_type.values(), key=len, default=[])
 
 
@@ -198,7 +198,9 @@ def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, 
 
 
 def _unit_beside(record: Cells, name: str) -> str | None:
-    """Return the unit of the value that is beside it, as ``unitCode`` is beside ``value``."""
+    """Return the unit that is beside a value, as ``unitCode`` is; of a wind it is the speed's."""
+    if rank_of(name, 'wind_direction') is not None and not name.endswith('.value'):
+        return None
     group = name.rpartition('.')[0]
     beside = (f'{group}.{word}' for word in ('unitCode', 'unit', 'units'))
     return next((record[each] for each in beside if each in record), None)

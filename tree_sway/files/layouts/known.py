@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
-from tree_sway.errors import inside
+from tree_sway.errors import FormatError, inside
+from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.layouts.badc_csv import BADC_CSV
 from tree_sway.files.layouts.csiro import CSIRO
 from tree_sway.files.layouts.jma import JMA
@@ -38,6 +40,9 @@ def _layout_of(lines: Sequence[str]) -> Layout | None:
 def table_of(lines: list[str], source: str) -> TextTable:
     """Return the table of a file's lines; a `FormatError` if they are none."""
     with inside(source):
+        what, cure = foreign_file(Path(source), '\n'.join(lines[:3]) or ' ')
+        if what:
+            raise FormatError(what, cure=cure)
         return (_layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
 
 

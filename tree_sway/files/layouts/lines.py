@@ -4,9 +4,8 @@
 Files without a header whose lines are known: `lines.csv` has the form of each.
 
 ``line`` is a regular expression with a group for each column. ``skipped`` lines stand above,
-``units`` are those of columns, a cell of the form ``missing`` is empty. In ``one_year`` the first
-row's year counts for all, as the months of a typical year are of several. A group ``unit`` is that
-of speeds.
+``units`` are those of columns, a cell of the form ``missing`` is empty. A group ``unit`` is of
+speeds.
 """
 
 from __future__ import annotations
@@ -44,17 +43,14 @@ def _read(
 ) -> TextTable:
     names = [name for name in form.groupindex if name != 'unit']
     missing = re.compile(known['missing'] or '')
-    unit = year = ''
+    unit = ''
     rows = []
     for number, line in numbered(lines, known['skipped']):
         if not line.strip():
             continue
         found = form.fullmatch(line.strip())
         cells = dict.fromkeys(names, '') if found is None else found.groupdict('')
-        if unit == year == '':
-            unit, year = cells.get('unit', ''), cells.get('year', '')
-        if known['one_year'] and 'year' in cells:
-            cells['year'] = year
+        unit = unit or cells.get('unit', '')
         row = ['' if missing.fullmatch(cells[name]) else cells[name] for name in names]
         rows.append((number, ['', *(cell.replace(',', '.') for cell in row)]))
     units = dict(each.split('=') for each in known['units'].split(';'))

@@ -19,7 +19,7 @@ from tree_sway.files.table_file import SEPARATORS, TextTable
 
 _CLOCK = 'monitor_time'
 _STAMP = re.compile(r'(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?(.*)')
-_PAIR = re.compile(r'([A-Za-z]\w*)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)[,;\s]*')
+_PAIR = re.compile(r'([A-Za-z]\w*)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)[,;|\s]*')
 
 
 def _are_pairs(line: str) -> bool:

@@ -35,16 +35,15 @@ class PathValue(NamedTuple):
     time: str
 
 
-def tempest_values(message: Any) -> dict[str, Any] | None:
-    """Return the time and wind of a Tempest's message by name; None for any other message."""
+def tempest_values(message: Any) -> list[dict[str, Any]]:
+    """Return the times and winds of a Tempest's message by name; none of any other message."""
     kind = object_of(message).get('type')
     places = _TYPES.get(kind) if isinstance(kind, str) else None
     if places is None:
-        return None
+        return []
     cells = list_of(message.get(places['list']))
-    if cells and isinstance(cells[0], list):
-        cells = cells[0]
-    return {name: cells[places[name]] if places[name] < len(cells) else None for name in _VALUES}
+    rows = map(list_of, cells) if cells and isinstance(cells[0], list) else [cells]
+    return [{name: (row + [None] * 20)[places[name]] for name in _VALUES} for row in rows]
 
 
 def signalk_values(message: Any) -> Iterator[PathValue]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tree_sway.files.kinds import expected
 from tree_sway.files.motion.imu_bag import read_imu_bag
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.motion.motion_table import read_motion_table
@@ -37,4 +38,5 @@ def read_motion(path: str | Path, topic: str | None = None) -> MotionRecord:
         topic = behind or None
     file = path_of(path)
     is_bag = file.is_dir() or file.suffix in _BAGS
-    return read_imu_bag(file, topic) if is_bag else read_motion_table(file)
+    with expected(file, 'motion'):
+        return read_imu_bag(file, topic) if is_bag else read_motion_table(file)

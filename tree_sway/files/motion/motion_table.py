@@ -103,6 +103,7 @@ def read_motion_table(path: Path) -> MotionRecord:
 def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord:
     """Return the motion of the lines of a table; others tell about the phone."""
     table = table_of(lines, source)
+    table.refuse_several()
     clock = time_columns(table)
     stem = folded(Path(source).stem)
     picked = _axes(table, stem)
@@ -115,7 +116,6 @@ def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord
             f'no {"time" if times is None else "motion"} among {", ".join(table.columns[:20])}',
             cure=_NAMES,
         )
-    table.refuse_several()
     values = {quantity: table.values(columns) for quantity, columns in picked.items()}
     column = None if clock is None else clock[0][0]
     times = _checked_times(table, times, np.hstack(list(values.values())), column)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.files.kinds import expected as expected
     from tree_sway.files.scenes.classes import kind_classes as kind_classes
     from tree_sway.files.scenes.critical_winds import read_critical_winds as read_critical_winds
     from tree_sway.files.scenes.inventory.inventory_file import inventory_table as inventory_table

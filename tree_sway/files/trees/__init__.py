@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tree_sway.files.trees.source import open_tree as open_tree
     from tree_sway.files.trees.source import scene_of_files as scene_of_files
     from tree_sway.files.trees.source import unknown_tree as unknown_tree
-    from tree_sway.files.trees.tree_file import TREE_FORMATS as TREE_FORMATS
+    from tree_sway.files.trees.tree_formats import TREE_FORMATS as TREE_FORMATS
     from tree_sway.files.trees.tree_options import FITTED as FITTED
 else:
     __getattr__, __dir__, __all__ = face(__name__)

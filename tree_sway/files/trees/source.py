@@ -17,6 +17,7 @@ from tree_sway.core.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.file_format import UnknownFormatError
+from tree_sway.files.kinds import expected
 from tree_sway.files.paths import path_of
 from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
@@ -111,9 +112,10 @@ def _refuse_several_trees(path: Path, head: str) -> None:
     """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
     where = str(path)
     if begins_with_key(path, head, 'trees'):
-        raise FormatError(
-            'a forest, where one tree is expected', where=where, cure='name one of its trees'
-        )
+        with expected(path, 'scene'):
+            raise FormatError(
+                'a forest, where one tree is expected', where=where, cure='name one of its trees'
+            )
     is_table = is_stand_table(head, path)
     if is_table or begins_with_key(path, head, 'stand'):
         what = 'an inventory' if is_table else 'a stand'
@@ -198,7 +200,8 @@ def _scene(
             where=str(path),
             cure='convert its trees first, and name the new files in the forest',
         )
-    scene = read()
+    with expected(path, 'scene', 'inventory'):
+        scene = read()
     if wood is same:
         return scene
     return scene.of_species(wood(scene.trees[0].species)).checked()

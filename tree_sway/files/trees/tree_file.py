@@ -11,29 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from importlib import import_module
 from pathlib import Path
-import pkgutil
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.species import Species
 from tree_sway.errors import ParameterError
-from tree_sway.files.file_format import FileFormat, format_of
+from tree_sway.files.file_format import format_of
+from tree_sway.files.kinds import expected
 from tree_sway.files.paths import of_file
-from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.tree_formats import TREE_FORMATS as TREE_FORMATS
 from tree_sway.files.trees.tree_options import same, TreeOptions
-
-TREE_FORMATS: tuple[FileFormat, ...] = tuple(
-    each
-    for module in pkgutil.iter_modules(formats.__path__)
-    for each in vars(import_module(f'{formats.__name__}.{module.name}')).values()
-    if isinstance(each, FileFormat)
-)
-"""All formats, in the order of modules and of their contents."""
 
 
 @of_file
@@ -64,10 +55,11 @@ def read_trees(
         An option that this format does not have, or a wrong value.
 
     """
-    chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
-    chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
-    wanted = TreeOptions(**{**chosen.defaults, **options})
-    content = chosen.read(path)
+    with expected(path, 'tree'):
+        chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
+        chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
+        wanted = TreeOptions(**{**chosen.defaults, **options})
+        content = chosen.read(path)
     if isinstance(content, TreeFile):
         files = [replace(content, tree=wanted.in_metres(content.tree))]
     else:

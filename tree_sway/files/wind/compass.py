@@ -48,6 +48,7 @@ def velocity_to(speed: Floats, bearing: Floats) -> Floats:
 
 
 def _point(cell: str) -> str:
-    text = _WORD.sub(lambda word: COMPASS[word[0]], cell.strip().lower())
+    plain = cell.partition('(')[0].strip().lower()  # WSW (247°)
+    text = _WORD.sub(lambda word: COMPASS[word[0]], plain)
     text = text.replace('-', '').replace(' ', '').upper()
     return text if len(text) <= 3 and set(text) <= set('NESWO') else ''

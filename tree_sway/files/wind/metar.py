@@ -5,7 +5,8 @@ METAR, the reports of airports: ``EDDF 221150Z 24015G27KT ...``, a line each.
 
 The group of the wind is where it comes from in degrees, its mean speed and maybe its gust (WMO
 Manual on Codes 306, FM 15). A report has the day of the month and no month: one whose day is
-smaller than that of the line before is on the next day.
+smaller than that of the line before is on the next day. A date before the first one, as Ogimet
+writes it, is that of the record.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.files.column_names import unit_factor
 from tree_sway.files.text_file import read_lines
+from tree_sway.files.time_stamps import dates
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
 
@@ -27,6 +29,8 @@ METAR = re.compile(
     r'\b(\d\d)(\d\d)(\d\d)Z\b.*?\b(\d{3}|VRB|///)(\d\d\d?|//)(?:G(\d\d\d?))?(KT|MPS|KMH)\b',
     re.ASCII,
 )
+_DATE = re.compile(r'\b20\d{4}(\d\d)')
+"""Year, month and day before a report."""
 _MEAN = 600.0
 """Length of the mean of a report in [s] (WMO Manual on Codes 306, FM 15)."""
 
@@ -41,11 +45,15 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
     gusts = list[float]()
     day = 0
     passed = 0
+    epoch = None
     for number, line in enumerate(read_lines(path), start=1):
         report = METAR.search(line)
         if report is None:
             continue
         today, hour, minute = (int(report[i]) for i in (1, 2, 3))
+        date = None if day else _DATE.search(line[: report.start()])
+        if date and int(date[1]) == today:
+            epoch = dates([date[0]]).epoch
         if today != day:
             passed += max(today - day, 1) if day else 0
             day = today
@@ -58,7 +66,7 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
         gusts.append(unit * float(report[6]) if report[6] else np.nan)
         rows.add(number, time, velocity_of_bearing(unit * float(report[5]), bearing))
     rows.gust = np.array(gusts)
-    record = rows.record()
+    record = rows.record(epoch=epoch)
     if len(record.time) == 1:
         record = _ten_minutes(record)
     return filled_means(record, turbulence, seed, least=2)

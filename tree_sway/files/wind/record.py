@@ -143,6 +143,12 @@ class WindRows:
             why = f'{speed[index]:.3g} m/s at {time[index]:g} s'
             self.refuse(self.number[index], why if np.isfinite(time[index]) else 'no time in it')
         late = ~increasing(time[good])
+        if 2 * np.count_nonzero(late) > len(late):
+            raise FormatError(
+                f'time stands or goes back in {np.count_nonzero(late)} of {len(late)} rows',
+                where=self.source,
+                cure='put the rows in order, and call the column of the clock time',
+            )
         for index in np.flatnonzero(good)[late]:
             self.refuse(self.number[index], 'its time is out of order')
         rows = np.flatnonzero(good)[~late]

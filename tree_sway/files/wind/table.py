@@ -24,7 +24,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import folded, rank_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.makers import maker_of
 from tree_sway.files.row_times import row_times, time_columns
@@ -44,6 +44,8 @@ _HEIGHT = re.compile(
 )
 """Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``, Spd80mN."""
 _WIND = ('wind_speed', 'wind_direction', *_COMPONENTS, 'gust')
+_PLACES = ('x', 'east')
+"""Names of a first component that is a place where a table has a speed and a direction."""
 _CIRCLE = 2.0 * np.pi
 _USUAL = 10.0
 """Height of the wind of stations and services [m]."""
@@ -161,6 +163,9 @@ def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]
         return [Column(index, table.factor_of(index, 'wind_x')) for index in indices]
     found = [table.find(each) for each in _COMPONENTS]
     if found[0] is None or found[1] is None:
+        return []
+    is_place = folded(table.columns[found[0].index]) in _PLACES
+    if is_place and table.find('wind_speed') and table.find('wind_direction'):
         return []
     return [column for column in found if column is not None]
 

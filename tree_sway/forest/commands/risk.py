@@ -18,7 +18,7 @@ from tree_sway.commands import bar, refuse_overwriting, RowFile
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
 from tree_sway.files import path_of, read_head, refuse_unwritable
-from tree_sway.files.scenes import inventory_of, inventory_table
+from tree_sway.files.scenes import expected, inventory_of, inventory_table
 from tree_sway.forest.climate import Climate, climate_of
 from tree_sway.forest.commands.study import add_cluster_arguments, refuse_wrong_cluster
 from tree_sway.forest.risk import add_classes, CRITICAL, is_beyond, risk_rows, risk_work, Row
@@ -80,7 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_overwriting(output, '--output')
     refuse_unwritable(output)
     path = path_of(arguments.inventory)
-    inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
+    with expected(path, 'inventory'):
+        inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
     places = {each or arguments.exposure for each in inventory.exposures}
     if arguments.spacing is not None and places <= {'open', 'street'}:
         refuse_spacing_in_the_open()

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.extras import refuse_missing
@@ -22,6 +23,7 @@ from tree_sway.twin.camera import Camera, camera_of_clicks, drawn_wood, DrawnWoo
 _BESIDE = 8
 """Width in pixels about the wood in which points are found."""
 _RED = (0, 0, 255)
+_GREEN = (0, 220, 0)
 
 
 def opencv(command: str) -> Any:
@@ -68,6 +70,7 @@ class CameraView:
         self.camera: Camera | None = None
         """Where it stands; None before the first picture."""
         self._shape: tuple[int, ...] = ()
+        self._newest: tuple[Any, Floats] | None = None
         self._refusal: ParameterError | None = None
 
     def follow(self, time: float, picture: Any) -> Sighting:
@@ -82,7 +85,23 @@ class CameraView:
         if picture.shape[:2] != self._shape:
             sizes = [' x '.join(map(str, each[1::-1])) for each in (picture.shape, self._shape)]
             raise ParameterError(f'a picture of {sizes[0]} after those of {sizes[1]}')
-        return self._tracker.follow(time, picture)
+        sighting = self._tracker.follow(time, picture)
+        self._newest = picture, sighting.points
+        return sighting
+
+    def drawn(self) -> bytes | None:
+        """
+        Draw the newest picture, with lines where the wood is at rest and the points that are seen.
+
+        Returns a JPEG; None before the first picture. May be called in any thread.
+        """
+        if self._newest is None:
+            return None
+        picture, points = self._newest
+        cv2, drawn = self.cv2, self._with_wood(picture)
+        for at in points[np.isfinite(points).all(axis=1)].astype(int).tolist():
+            cv2.circle(drawn, tuple(at), 3, _GREEN, -1)
+        return bytes(cv2.imencode('.jpg', drawn)[1])
 
     def place(self, picture: Any) -> Camera:
         """Find where the camera stands by a first picture; the errors are those of `follow`."""
@@ -93,8 +112,9 @@ class CameraView:
         try:
             found = camera_of_clicks(tree, (wide, high), told.clicks, told.told)
             wood = drawn_wood(found.camera, tree.start, tree.end, tree.base_diameter)
+            self._wood = wood
             if told.check:
-                self._check(picture, wood)
+                self._check(picture)
         except ParameterError as error:
             self._refusal = error
             raise
@@ -105,13 +125,17 @@ class CameraView:
         self.camera = found.camera
         return self.camera
 
-    def _check(self, picture: Any, wood: DrawnWood) -> None:
-        """Write a picture with lines where the wood should be."""
-        cv2, path = self.cv2, self.told.check
+    def _with_wood(self, picture: Any) -> Any:
+        """Return a picture in colour with lines where the wood should be."""
         is_grey = picture.ndim == 2
-        drawn = cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR) if is_grey else picture.copy()
-        _draw(cv2, drawn, wood, _RED, 0)
-        if not cv2.imwrite(path, drawn):
+        drawn = self.cv2.cvtColor(picture, self.cv2.COLOR_GRAY2BGR) if is_grey else picture.copy()
+        _draw(self.cv2, drawn, self._wood, _RED, 0)
+        return drawn
+
+    def _check(self, picture: Any) -> None:
+        """Write a picture with lines where the wood should be."""
+        path = self.told.check
+        if not self.cv2.imwrite(path, self._with_wood(picture)):
             raise ParameterError(
                 f"'{path}' cannot be written",
                 where='--at',

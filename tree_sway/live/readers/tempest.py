@@ -26,9 +26,10 @@ def is_tempest(document: Any) -> bool:
 
 def read_tempest(document: Any) -> Sequence[Reading]:
     """Read the wind of an instant; nothing of any other message."""
-    values = tempest_values(document)
-    if values is None or document['type'] != KIND:
+    found = tempest_values(document)
+    if not found or document['type'] != KIND:
         return ()
+    values = found[0]
     speed, bearing = number(values['wind_speed']), bearing_of(values['wind_direction'])
     if speed is None or speed < 0.0:
         return [Refusal(KIND, f'ob is {str(document.get("ob"))[:40]}')]

@@ -74,6 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
+    if arguments.seconds is not None:
+        within('--seconds', arguments.seconds, 0.0, 1e9, 's', above=True)
     refuse_unused_wind(arguments)
     added = [each(arguments) for each in additions('show')]
     with Ending(is_last=True) as ending, ExitStack() as stack:
@@ -118,6 +120,7 @@ def _serve(
         )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
+    picture = next((each.picture for each in added if each.picture is not None), None)
 
     def apply(name: str, value: Value) -> None:
         if not any(each.apply(name, value) for each in added):
@@ -135,7 +138,7 @@ def _serve(
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel((*own, *controls), apply, session.pull)
         panel.update(session.values())
-    pages = PageServer(settings, panel, status, session.written, critical_winds)
+    pages = PageServer(settings, panel, status, session.written, critical_winds, picture)
     with pages as server:
         session.serve(server)
         print_address(server, 'open')

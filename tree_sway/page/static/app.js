@@ -58,6 +58,7 @@ const stream = new TreeStream(address.href, {
       view.fit();
       element("pull").hidden = hello.can_pull !== true;
       risk.take(hello.critical_winds);
+      element("camera").hidden = hello.has_camera !== true;
       const missed = state.follow(stream, settings);
       if (missed.length) toast(word("of_link", missed.join(", ")));
     }
@@ -71,6 +72,7 @@ const stream = new TreeStream(address.href, {
       state.status = status;
       view.hideIdle();
       view.listAdded(status.facts ?? {});
+      view.showCamera();
       scene.grass.gusts.foresee(view.time, status.wind_ahead);
     }
     if (Number.isFinite(state.status.record_time)) panel.update({ record_time: state.status.record_time });

@@ -110,6 +110,17 @@ export class View {
     element("facts").append(...rows);
   }
 
+  /** Show what the camera sees, while its fold is open. */
+  async showCamera() {
+    if (!/** @type {HTMLDetailsElement} */ (element("camera")).open) return;
+    const answer = await fetch("camera.jpg", { headers: { "X-Requested-With": "page" } }).catch(() => undefined);
+    if (answer?.status !== 200) return;
+    const picture = await createImageBitmap(await answer.blob());
+    const canvas = /** @type {HTMLCanvasElement} */ (element("seen"));
+    [canvas.width, canvas.height] = [picture.width, picture.height];
+    canvas.getContext("2d")?.drawImage(picture, 0, 0);
+  }
+
   _showFacts() {
     const { scene, stream, state: { status }, traces, _since: since } = this;
     const { connection, playout } = stream;

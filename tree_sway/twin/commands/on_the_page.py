@@ -62,6 +62,8 @@ class SensorsOnThePage(PageAddition):
         film = stack.enter_context(filming(self.arguments, self._named_tree))
         self.motion = stack.enter_context(sensing(self.arguments))
         self.motion.film = film
+        if film is not None:
+            self.picture = film.view.drawn
         self.places = self.motion.places
         if (path := self.arguments.history) is not None:
             with inside('--history'):

@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-GeoJSON (RFC 7946) and OpenStreetMap's JSON as tables: a row per point, a column per property.
+JSON of trees as tables: a row per record, a column per property.
 
-A tree's place is a point; of other shapes the mean of the corners. OpenStreetMap's elements have
-their properties under ``tags``.
+So are GeoJSON (RFC 7946), whose place is a point or else the mean of the corners, OpenStreetMap's
+elements with ``tags``, ArcGIS's features with ``attributes``, and the records of the portals CKAN
+and Opendatasoft.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 import math
 from pathlib import Path
+import re
 from typing import Any
 
 from tree_sway.errors import FormatError
@@ -21,28 +23,46 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 
 _DEEPEST = 6
+_LISTS = ('features', 'elements', 'records', 'results')
+_PROPERTIES = ('properties', 'attributes', 'fields', 'tags')
+_BEGINS = re.compile(
+    rf'\s*\{{.*"({"|".join(_LISTS)}|Feature(Collection)?|geometryType)"', re.DOTALL
+)
+_IS_WIND = re.compile(r'"wind_?(speed|dir)', re.IGNORECASE)
+_MERCATOR = re.compile(r'\b(3857|102100|900913)\b')
+"""Numbers of the system of maps on the web, whose metres are longer than those of the ground."""
 PLACES = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
 """Properties that a geometry replaces."""
 
 
 def looks_like_geojson(head: str) -> bool:
-    """Whether the beginning of a file is GeoJSON, or JSON of OpenStreetMap."""
-    begun = head.lstrip()[:1] == '{'
-    return begun and ('"FeatureCollection"' in head or '"elements"' in head or '"Feature"' in head)
+    """Whether the beginning of a file is JSON with a list of records, none of which is a wind."""
+    return _BEGINS.match(head) is not None and _IS_WIND.search(head) is None
 
 
 def read_geojson(path: Path) -> TextTable:
     """
-    Return a table of the features; one whose place is broken has none.
+    Return a table of the records; one whose geometry is broken has no place.
 
-    Raises a `FormatError` for broken JSON, no features, or no feature with a place.
+    Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
     """
     document = object_of(parsed('\n'.join(read_lines(path)), 'GeoJSON'))
-    records = [*_elements(document), *_features(document)]
-    if not records:
+    inner = object_of(document.get('result')) or document
+    listed = next((name for name in _LISTS if name in inner), '')
+    found = list_of(inner[listed]) if listed else [inner]
+    records = [dict(_cells(record)) for record in map(object_of, found)]
+    if listed == 'elements':  # those of ways and relations have no tags
+        records = [each for each in records if any(name.startswith('tags.') for name in each)]
+    if not any(records):
         raise FormatError('no features', cure='export points with properties')
+    system = document.get('spatialReference', document.get('crs'))
+    if _MERCATOR.search(str(system)):
+        raise FormatError(
+            'places in the Web Mercator of maps, which is not in metres of the ground',
+            cure='export degrees, as by outSR=4326 in ArcGIS',
+        )
     names = list(dict.fromkeys(name for record in records for name in record))
-    if not {'x', 'longitude'} & {*names}:
+    if listed == 'features' and not {'x', 'longitude'} & {*names}:
         raise FormatError(
             'no feature has a place',
             cure='give each feature a geometry with coordinates of two numbers',
@@ -51,24 +71,21 @@ def read_geojson(path: Path) -> TextTable:
     return table_of_cells(names, rows, str(path), row_name='feature')
 
 
-def _elements(document: dict[str, Any]) -> Iterator[dict[str, str]]:
-    """Yield the cells of each element of OpenStreetMap that has a place and tags."""
-    for element in map(object_of, list_of(document.get('elements'))):
-        tags = object_of(element.get('tags'))
-        if 'lat' in element and 'lon' in element and tags:
-            place = {'latitude': cell_of(element['lat']), 'longitude': cell_of(element['lon'])}
-            yield place | {f'tags.{name}': cell_of(each) for name, each in tags.items()}
-
-
-def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
-    """Yield the cells of each feature."""
-    is_one = document.get('type') == 'Feature'
-    for feature in map(object_of, [document] if is_one else list_of(document.get('features'))):
-        properties = _flat(object_of(feature.get('properties')))
-        place = _place(object_of(feature.get('geometry')).get('coordinates'))
-        taken = PLACES if place else ()
-        cells = {name: each for name, each in properties.items() if name.lower() not in taken}
-        yield {name: cell_of(each) for name, each in cells.items()} | place
+def _cells(record: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the names and cells of a record, its place last."""
+    own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
+    before = 'tags.' if own == 'tags' else ''
+    geometry = object_of(record.get('geometry'))
+    place = _place(geometry.get('coordinates', [geometry.get('x'), geometry.get('y')]))
+    taken = PLACES if place else ()
+    for name, each in _flat(object_of(record[own]) if own else record).items():
+        if name.lower() not in taken:
+            inside = each if isinstance(each, dict) else {'': each}
+            for last, cell in inside.items():
+                yield f'{before}{name}.{last}'.removesuffix('.'), cell_of(cell)
+    if own == 'tags':
+        yield from ((name, cell_of(record[name])) for name in ('lat', 'lon') if name in record)
+    yield from place.items()
 
 
 def _flat(properties: dict[str, Any]) -> dict[str, Any]:

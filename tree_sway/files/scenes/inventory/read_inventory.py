@@ -14,6 +14,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.species import Species
 from tree_sway.errors import FormatError
+from tree_sway.files.column_names import folded
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
 from tree_sway.files.scenes.inventory.places import Places, places_of
@@ -29,10 +30,20 @@ _DEAD = re.compile(
     re.IGNORECASE,
 )
 
-_NOT = ('false', 'no', 'non', '0', 'dead')
-"""Cells of a column of living trees that say that one is dead."""
-_FOREST_GEO = frozenset(('A', 'AB', 'AS', 'D', 'G', 'M', 'P', ''))
-"""Letters of ForestGEO's column ``status``, of which D is dead (forestgeo/fgeo.validate)."""
+_SAYS_DEAD = {
+    'alive': ('false', 'no', 'non', '0', 'dead'),
+    'dead': ('true', 'yes', 'oui', 'si', '1', 'dead'),
+}
+"""Cells of a column of living or of dead trees that say that one is dead."""
+_CODES = (
+    ('status', {'A', 'AB', 'AS', 'D', 'G', 'M', 'P', 'L', ''}, {'A', 'L'}, 'D'),
+    ('statuscd', {'0', '1', '2', '3', ''}, {'1'}, '23'),
+)
+"""
+Columns of codes: all of them, those of living trees, and of trees that are dead or gone.
+
+ForestGEO (forestgeo/fgeo.validate), with the L of plots that have L and D; FIA (user guide).
+"""
 
 
 @dataclass(frozen=True)
@@ -165,14 +176,19 @@ def inventory_of(
 def _leave_out_dead(columns: InventoryColumns) -> None:
     for index in columns.table.find_all('status'):
         name, texts = columns.table.columns[index], columns.texts(index)
-        has_letters = name.lower() == 'status' and 'A' in texts and _FOREST_GEO.issuperset(texts)
+        gone = ''.join(
+            codes
+            for each, known, alive, codes in _CODES
+            if each == folded(name) and known >= {*texts} and alive & {*texts}
+        )
         for row, text in enumerate(texts):
-            if _DEAD.search(text) or (has_letters and text == 'D'):
+            if _DEAD.search(text) or (text and text in gone):
                 columns.leave_out(row, 'dead or gone', columns.told(index, row))
-    for index in columns.table.find_all('alive'):
-        for row, text in enumerate(columns.texts(index)):
-            if text.lower() in _NOT:
-                columns.leave_out(row, 'dead or gone', columns.told(index, row))
+    for quantity, words in _SAYS_DEAD.items():
+        for index in columns.table.find_all(quantity):
+            for row, text in enumerate(columns.texts(index)):
+                if text.lower() in words:
+                    columns.leave_out(row, 'dead or gone', columns.told(index, row))
 
 
 def _exposures(columns: InventoryColumns) -> list[str | None]:

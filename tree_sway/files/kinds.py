@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What a file is where another was expected: its kind, and what takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from tree_sway.errors import FormatError
+from tree_sway.files.column_names import folded, motion_of
+from tree_sway.files.layouts.known import looks_like_wind, table_of
+from tree_sway.files.text_file import read_head
+from tree_sway.files.yaml_document import begins_with_key
+
+_ROWS = 60
+"""Lines at the beginning of a table that are looked at."""
+_TREE = 'tree'
+_SCENE = 'scene'
+_WIND = 'wind'
+_MOTION = 'motion'
+_SWAY = 'sway'
+_STUDY = 'study'
+_RECORD = 'record'
+_KEYS = {
+    'tree_sway_record': _RECORD,
+    'winds': _STUDY,
+    'trees': _SCENE,
+    'stand': _SCENE,
+    'branches': _TREE,
+}
+"""Outermost keys of YAML that tell a kind, those of a study first as it has trees too."""
+
+_KINDS = {
+    _TREE: ('a tree', 'give it as TREE, as in tree-sway info {0}'),
+    _SCENE: ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
+    'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
+    _WIND: ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
+    _MOTION: ('a record of motion', 'give it behind --motion, as in tree-sway show --motion {0}'),
+    _SWAY: ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
+    _STUDY: ('a study', 'run it by tree-sway study {0}'),
+    _RECORD: ('the sheet of a record', 'give its folder to tree-sway lab twin'),
+}
+"""What a kind of files is called, and what takes it."""
+
+
+@contextmanager
+def expected(path: Path, *kinds: str) -> Iterator[None]:
+    """Say what a file is instead, if it cannot be read as one of some kinds but is of another."""
+    try:
+        yield
+    except FormatError:
+        found = kind_of(path)
+        if found in kinds or not found:
+            raise
+        what, cure = _KINDS[found]
+        wanted = _KINDS[kinds[0]][0]
+        raise FormatError(
+            f'{what}, not {wanted}', where=str(path), cure=cure.format(path.name)
+        ) from None
+
+
+def kind_of(path: Path) -> str:
+    """Return the kind of a file by its beginning; empty if nothing tells it."""
+    from tree_sway.files.scenes.stand_table import is_stand_table
+    from tree_sway.files.trees.tree_formats import TREE_FORMATS
+    from tree_sway.files.wind.wind_formats import WIND_FORMATS
+
+    with suppress(FormatError):
+        head = read_head(path)
+        for key, kind in _KEYS.items():
+            if begins_with_key(path, head, key):
+                return kind
+        if head.startswith('time [s],wind_x [m/s],'):
+            return _SWAY
+        if is_stand_table(head, path):
+            return 'inventory'
+        sure = (each for each in WIND_FORMATS if each.name not in ('sonic', 'csv'))
+        if any(each.recognise(head) for each in sure):
+            return _WIND
+        names = {each.name for each in TREE_FORMATS if each.recognise(head)} - {'treegraph'}
+        return _TREE if names else _kind_of_table(head)
+    return ''
+
+
+def _kind_of_table(head: str) -> str:
+    """Return whether the columns of a table over time are a wind or a motion."""
+    with suppress(FormatError):
+        if head.lstrip()[:1] in ('{', '['):  # its end may be missing
+            return _WIND if looks_like_wind(head) else ''
+        table = table_of(head.splitlines()[:_ROWS], '')
+        if not table.find_all('time'):
+            return ''
+        if any(found[2] for found in map(motion_of, table.columns) if found):
+            return _MOTION
+        components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
+        has_wind = table.find_all('wind_speed') or components - {'x', 'east'}
+        return _WIND if has_wind else ''
+    return ''
