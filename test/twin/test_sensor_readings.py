@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 import resource
 from types import SimpleNamespace
@@ -131,6 +132,27 @@ def test_the_mean_difference_from_the_model_is_that_of_the_last_ten_minutes() ->
             track.heed()
         missed = found.motion(sample) - track.bias
         np.testing.assert_allclose(missed, left * found.motion(sample), rtol=0.15)
+
+
+@pytest.mark.parametrize(
+    ('unit', 'error', 'is_taken'),
+    [(1.0, 0.1, True), (1.0, 0.14, True), (1.0, 0.2, False), (0.0175, 0.14, False),
+     (0.0175, 0.05, True)],
+)  # fmt: skip
+def test_a_mounting_that_is_less_sure_does_not_replace_one(
+    unit: float, error: float, is_taken: bool
+) -> None:
+    track = track_of(readings(1)[0])
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1), azimuth_error=0.1)
+    track.take(FoundMounting(known, np.zeros(9)))
+    other = replace(known, scale=np.array([1.0, unit]), azimuth_error=error)
+    track.take(FoundMounting(other, np.zeros(9)))
+    assert track.alignment is (other if is_taken else known)
+    track.native.is_refused = 1
+    track.take(FoundMounting(other, np.zeros(9)))
+    assert track.alignment is other
 
 
 def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:
