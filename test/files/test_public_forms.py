@@ -549,6 +549,20 @@ def test_cylinders_above_other_tables(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    'form',
+    [
+        '1,1,0,0,0,.1,-1\n2,1,0,0,4,.08,1\n',
+        'id type x y z radius parent\n1 1 0 0 0 .1 -1\n2 1 0 0 4 .08 1\n',
+        '1 1 0 0 0 .1 -1 0 1 0 10000 0\n2 1 0 0 4 .08 1 0 1 0 10000 0\n',
+    ],
+    ids=['commas', 'names', 'further columns'],
+)
+def test_forms_of_swc(tmp_path: Path, form: str) -> None:
+    for name in ('a.swc', 'a.txt'):
+        assert open_tree(written(tmp_path, form, name), warn=False).tree.height == 4.0
+
+
+@pytest.mark.parametrize(
     ('name', 'text', 'match'),
     [
         ('a.lpy', 'Axiom: A(0.1)\n', 'rules that grow a tree'),

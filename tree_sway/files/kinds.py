@@ -37,7 +37,7 @@ _KINDS = {
     _SCENE: ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
     'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
     _WIND: ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
-    _MOTION: ('a record of motion', 'give it behind --motion, as in tree-sway show --motion {0}'),
+    _MOTION: ('a record of motion', 'give it behind --motion of tree-sway simulate, with --at'),
     _SWAY: ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
     _STUDY: ('a study', 'run it by tree-sway study {0}'),
     _RECORD: ('the sheet of a record', 'give its folder to tree-sway lab twin'),
