@@ -282,7 +282,7 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
         ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
         ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),
-        ('time,s,d\n[2024-03-05] <STX>Q,229,002.74\n', 'a.txt', 'no time in it'),
+        ('M:x =   335 y =   218 z =     5 t =  2203\n' * 3, 'a.csv', 'no header: the first line'),
     ],
 )
 def test_what_is_no_table_of_wind_is_told(
