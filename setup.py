@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent
 NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
 #: Houses of the library that bring commands.
 HOUSES = (
-    'files', 'forest', 'growth', 'page', 'pictures', 'simulation', 'twin',
+    'files', 'forest', 'growth', 'identification', 'page', 'pictures', 'simulation',
 )  # fmt: skip
 #: Kinds of objects that have a picture, and the function that draws each.
 DRAWN = {
@@ -139,8 +139,7 @@ class BuildNative(build_ext):
         for name, own in TARGETS.get(MACHINE, {'baseline': []}).items():
             if is_zig:
                 own = [each.replace('x86-64-v', 'x86_64_v') for each in own]
-            names = [f'-DSWAY_FRAME=frame_{name}', f'-DSWAY_TARGET="{name}"']
-            compiled(f'frame_{name}', 'frame', *names, *own)
+            compiled(f'frame_{name}', 'frame', f'-DSWAY_FRAME=frame_{name}', *own)
         # Nothing of the run-time library of C++ is needed.
         linker = ['cc' if word == 'c++' else word for word in compiler] if is_zig else compiler
         linked = folder / Path(self.get_ext_filename(ext.name)).name
@@ -223,7 +222,7 @@ class BuildWasm(Command):
         options = [*OPTIONS.split(), '-target', 'wasm32-wasi', '-msimd128', '-DSWAY_PAGE']
         # Lanes are those of vec.h.
         frame = ['-O2', '-fno-vectorize', '-fno-slp-vectorize']
-        frame += ['-DSWAY_FRAME=frame_baseline', '-DSWAY_TARGET="wasm"']
+        frame += ['-DSWAY_FRAME=frame_baseline']
         with TemporaryDirectory() as folder:
             objects = []
             for name in (*(each for each in SOURCES if each != 'threads'), 'page', 'frame'):

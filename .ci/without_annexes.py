@@ -19,8 +19,8 @@ import tempfile
 
 ROOT = Path(__file__).resolve().parent.parent
 ANNEXES = (
-    'fidelity', 'twin', 'simulation', 'files', 'live', 'stream', 'page', 'forest', 'pictures',
-    'commands',
+    'fidelity', 'identification', 'twin', 'simulation', 'files', 'live', 'stream', 'page',
+    'forest', 'pictures', 'commands',
 )  # fmt: skip
 NOT_FOUND = ('tree_sway_ros', 'tree_sway_lab', *(f'tree_sway.{name}' for name in ANNEXES))
 """Modules that an installation beside would offer all the same."""

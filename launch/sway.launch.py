@@ -82,21 +82,6 @@ ARGUMENTS = (
     ('use_rviz', 'false', 'Start RViz.'),
 )
 
-FORMER_ARGUMENTS = {
-    'source': 'wind_source',
-    'file': 'wind_file',
-    'start': 'playback_start',
-    'loop': 'playback_loop',
-    'address': 'sensor_address',
-    'rate': 'solver_rate',
-    'shards': 'shard_count',
-    'here': 'local_shards',
-    'page': 'use_viewer',
-    'rviz': 'use_rviz',
-}
-FORMER_SOURCES = {'live': 'topic', 'elsewhere': 'remote'}
-"""Former names, which still work, and what they are called now."""
-
 
 def generate_launch_description():
     """Declare the arguments and start what they ask for."""
@@ -108,7 +93,7 @@ def generate_launch_description():
 
 
 def start_nodes(context):
-    """Make the nodes that the arguments ask for, and the warnings of former names."""
+    """Make the nodes that the arguments ask for, and warnings of the others."""
     given, warnings = arguments_given(context.launch_configurations)
     config = os.path.join(get_package_share_directory(PACKAGE), 'config')
     if given['params_file']:
@@ -141,23 +126,28 @@ def start_nodes(context):
 
 
 def arguments_given(configurations):
-    """Values of the arguments, under their present names, and a warning for each former name."""
+    """Values of the arguments, and a warning for each that changes nothing."""
     given = {name: configurations.get(name, default) for name, default, _ in ARGUMENTS}
-    warnings = []
-    for former, name in FORMER_ARGUMENTS.items():
-        if former in configurations:
-            given[name] = configurations[former]
-            warnings.append(f"launch argument '{former}' is now called '{name}'")
-    warnings += misspelled(configurations)
     source = given['wind_source']
-    if source in FORMER_SOURCES:
-        given['wind_source'] = FORMER_SOURCES[source]
-        warnings.append(f"wind_source '{source}' is now called '{FORMER_SOURCES[source]}'")
-    elif source not in SOURCES:
+    if source not in SOURCES:
         raise ValueError(
             f"launch argument 'wind_source': '{source}' is none of {', '.join(SOURCES)}"
         )
-    return given, warnings
+    return given, misspelled(configurations) + unused(given)
+
+
+def unused(given):
+    """Return warnings for arguments of a source of wind that is not started."""
+    nodes = {name: node for name, (node, _) in OF_PARAMETERS.items()} | {'wind_topic': 'topic'}
+    usual = {name: default for name, default, _ in ARGUMENTS}
+    chosen = given['wind_source']
+    return [
+        f"launch argument '{name}' has no effect with wind_source:={chosen}; give {source}"
+        for name, node in nodes.items()
+        for source in SOURCES
+        if node in (source, *SOURCES[source][:-1]) and source != chosen
+        if given[name] not in ('', usual[name])
+    ]
 
 
 def misspelled(configurations):
@@ -165,8 +155,9 @@ def misspelled(configurations):
     known = [name for name, _, _ in ARGUMENTS]
     warnings = []
     for name in configurations:
-        if name not in known and name not in FORMER_ARGUMENTS:
-            for near in get_close_matches(name, known, 1, 0.85):
+        if name not in known:
+            words = [each for each in known if name in each.split('_')]
+            for near in get_close_matches(name, known, 1, 0.85) or words[:1]:
                 warnings.append(f"no launch argument '{name}'; did you mean '{near}'?")
     return warnings
 

@@ -68,23 +68,20 @@ INLINE Pair within_guard(const Pair &theta) {
   return shrink * theta;
 }
 
-// s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), with errors up to
-// 3e-9 within the guard; s = -1/6 + t s1 and c = -1/2 + t c1.
+// s and c are series in t, with errors up to 3e-11 within the guard; s = -1/6 + t s1 and
+// c = -1/2 + t c1.
 struct Series {
-  explicit inline __attribute__((always_inline)) Series(Vec t) {
-    s1 = 1.5032424712277569e-10 * t - 2.5002780465942419e-8;
-    s1 = s1 * t + 2.7556346133638428e-6;
-    s1 = s1 * t - 1.9841263105038876e-4;
-    s1 = s1 * t + 8.3333333258591991e-3;
-    c1 = 1.9343564401159469e-9 * t - 2.7483756547269252e-7;
-    c1 = c1 * t + 2.4800137070434030e-5;
-    c1 = c1 * t - 1.3888878852585004e-3;
-    c1 = c1 * t + 4.1666666555315840e-2;
-    s = s1 * t - 1.0 / 6.0;
-    c = c1 * t - 0.5;
+  explicit inline __attribute__((always_inline)) Series(Vec t)
+      : s1(all(BY.sinc[8])), c1(all(BY.cosine[8])) {
+    for (int term = 7; term > 1; term--) {
+      s1 = s1 * t + BY.sinc[term];
+      c1 = c1 * t + BY.cosine[term];
+    }
+    s = s1 * t + BY.sinc[1];
+    c = c1 * t + BY.cosine[1];
   }
 
-  Vec s, c, s1, c1;
+  Vec s1, c1, s, c;
 };
 
 // The moment T of a force times its lever, W along b, e1, e2 [N m], at any deflection; it is (W_1,
@@ -210,8 +207,8 @@ INLINE int64_t step_lanes(sway_branch_block &block, int slot, Row *state, const 
 constexpr int REST_TURNS = 30;
 constexpr double REST_SHARE = 0.4;
 
-static void rest_branches(sway_branch_block *blocks, size_t count, const double wind[3],
-                          double drag_density, const double *stiffness, double *rotations) {
+void rest_branches(sway_branch_block *blocks, size_t count, const double wind[3],
+                   double drag_density, const double *stiffness, double *rotations) {
   for (size_t first = 0; first < count; first += 16) {
     const size_t n = count - first < 16 ? count - first : 16;
     Row k1, state[2];
@@ -233,8 +230,8 @@ static void rest_branches(sway_branch_block *blocks, size_t count, const double 
   }
 }
 
-static int64_t step_branches(sway_branch_block *blocks, size_t count, double *x, double *v,
-                             const double wind[3], double drag_density) {
+int64_t step_branches(sway_branch_block *blocks, size_t count, double *x, double *v,
+                      const double wind[3], double drag_density) {
   int64_t n_clamped = 0;
   double not_finite = 0.0;  // a difference of equal numbers is 0 unless they are not finite
   for (size_t first = 0; first < count; first += 16) {

@@ -36,8 +36,8 @@ namespace {
 constexpr double FASTEST_SWING = 2.5;
 
 // Fill the coefficients of a part of a step of dt [s].
-static void fill_coupled(const sway_model &model, const Tuning &tuning, double dt, int64_t n_parts,
-                         CoupledStep &law) {
+void fill_coupled(const sway_model &model, const Tuning &tuning, double dt, int64_t n_parts,
+                  CoupledStep &law) {
   const Limp &limp = model.limp;
   const int64_t M = model.padded;
   const double h = dt / double(n_parts);
@@ -67,8 +67,8 @@ enum { FREE, LAST_PULL, TURNING, ALONG, ROOTED, INERTIAL, DRAGGED, INVERSE };
 // Find the constant force of the step, `new_force`, by the force F at the middle, `wanted`, the force
 // s at right angles to the motion, `across`, and r, `along`; `drag` is that of the air on the
 // coordinates, a factor of their damping.
-static void find_coupled_force(const sway_model &model, const CoupledStep &law, const State &state,
-                               const LimpTree &tree, LimpRoom &own, double drag) {
+void find_coupled_force(const sway_model &model, const CoupledStep &law, const State &state,
+                        const LimpTree &tree, LimpRoom &own, double drag) {
   const int64_t M = model.padded, stride = model.limp.row, count = law.n_coupled;
   for (int64_t i = 0; i < M; i += LANES) {
     const Vec damped = drag * load(law.own_damping + i);

@@ -1,8 +1,8 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Products and solutions of small dense matrices. Rows are filled up with zeros to whole multiples
-// of sixteen numbers, and counts are of these.
+// Products and solutions of small dense matrices, T is double or float. Rows are filled up with zeros
+// to whole multiples of sixteen numbers, and counts are of these.
 #pragma once
 
 #include "vec.h"
@@ -10,66 +10,67 @@
 namespace {
 
 // The sum of the lanes, in pairs.
-INLINE double total(Vec value) {
-  for (int apart = LANES / 2; apart > 0; apart /= 2)
+template <class V> INLINE double total(V value) {
+  for (int apart = sizeof(V) / sizeof(value[0]) / 2; apart > 0; apart /= 2)
     for (int lane = 0; lane < apart; lane++) value[lane] += value[lane + apart];
   return value[0];
 }
 
-// Products of some rows and some others; each number that is read serves several.
-template <int ROWS, int OTHERS>
-INLINE void block_products(const double *const *rows, const double *others, int64_t stride,
-                           int64_t count, double *out, int64_t out_stride) {
-  Vec sums[ROWS][OTHERS] = {};
-  for (int64_t i = 0; i < count; i += LANES)
+// Products of some rows and some others from a number on; each number that is read serves several.
+template <int ROWS, int OTHERS, class T>
+INLINE void block_products(const T *const *rows, const T *others, int64_t stride, int64_t first,
+                           int64_t end, double *out, int64_t out_stride) {
+  decltype(load(others)) sums[ROWS][OTHERS] = {};
+  for (int64_t i = first; i < end; i += sizeof(sums[0][0]) / sizeof(T))
     for (int other = 0; other < OTHERS; other++) {
-      const Vec value = load(others + other * stride + i);
+      const auto value = load(others + other * stride + i);
       for (int row = 0; row < ROWS; row++) sums[row][other] += load(rows[row] + i) * value;
     }
   for (int row = 0; row < ROWS; row++)
-    for (int other = 0; other < OTHERS; other++)
-      out[row * out_stride + other] = total(sums[row][other]);
+    for (int other = 0; other < OTHERS; other++) {
+      double &to = out[row * out_stride + other];
+      to = total(sums[row][other]) + (first ? to : 0.0);
+    }
 }
 
-template <int OTHERS>
-INLINE void row_products(const double *const *rows, int64_t n_rows, const double *others,
-                         int64_t stride, int64_t count, double *out, int64_t out_stride) {
-  int64_t row = 0;
-  for (; row + 4 <= n_rows; row += 4)
-    block_products<4, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
-                              out_stride);
-  if (row + 2 <= n_rows) {
-    block_products<2, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
-                              out_stride);
-    row += 2;
-  }
-  if (row < n_rows)
-    block_products<1, OTHERS>(rows + row, others, stride, count, out + row * out_stride,
-                              out_stride);
+template <int ROWS, int OTHERS, class T>
+INLINE void row_products(const T *const *rows, int64_t n_rows, const T *others, int64_t stride,
+                         int64_t first, int64_t end, double *out, int64_t out_stride) {
+  for (; n_rows >= ROWS; n_rows -= ROWS, rows += ROWS, out += ROWS * out_stride)
+    block_products<ROWS, OTHERS>(rows, others, stride, first, end, out, out_stride);
+  if constexpr (ROWS > 1)
+    row_products<ROWS - 1, OTHERS>(rows, n_rows, others, stride, first, end, out, out_stride);
 }
 
 // Write the scalar product of each row and each of `n_others` rows of a matrix.
-static void multiply_rows(const double *const *rows, int64_t n_rows, const double *others,
-                          int64_t n_others, int64_t stride, int64_t count, double *out,
-                          int64_t out_stride) {
+template <class T>
+void multiply_rows(const T *const *rows, int64_t n_rows, const T *others, int64_t n_others,
+                   int64_t stride, int64_t count, double *out, int64_t out_stride) {
   constexpr int TOGETHER = LANES < 8 ? 2 : 4;  // as many as there are registers for
-  int64_t other = 0;
-  for (; other + TOGETHER <= n_others; other += TOGETHER)
-    row_products<TOGETHER>(rows, n_rows, others + other * stride, stride, count, out + other,
-                           out_stride);
-  for (; other < n_others; other++)
-    row_products<1>(rows, n_rows, others + other * stride, stride, count, out + other, out_stride);
+  // Of so many numbers all rows stay in the nearest cache.
+  constexpr int64_t NEAREST = 4096 / sizeof(T);
+  for (int64_t first = 0; first < count; first += NEAREST) {
+    const int64_t end = first + NEAREST < count ? first + NEAREST : count;
+    int64_t other = 0;
+    for (; other + TOGETHER <= n_others; other += TOGETHER)
+      row_products<5, TOGETHER>(rows, n_rows, others + other * stride, stride, first, end,
+                                out + other, out_stride);
+    for (; other < n_others; other++)
+      row_products<5, 1>(rows, n_rows, others + other * stride, stride, first, end, out + other,
+                         out_stride);
+  }
 }
 
 // Write the product of a matrix of `n_rows` rows and a vector.
-INLINE void multiply(const double *matrix, int64_t n_rows, int64_t stride, const double *vector,
+template <class T>
+INLINE void multiply(const T *matrix, int64_t n_rows, int64_t stride, const T *vector,
                      int64_t count, double *out) {
   multiply_rows(&vector, 1, matrix, n_rows, stride, count, out, 0);
 }
 
 INLINE double dot(const double *a, const double *b, int64_t count) {
   double product;
-  block_products<1, 1>(&a, b, 0, count, &product, 0);
+  block_products<1, 1>(&a, b, 0, 0, count, &product, 0);
   return product;
 }
 
@@ -99,8 +100,8 @@ INLINE void eliminate(double *matrix, int64_t stride, int64_t first, int64_t i) 
 // matrix (n, stride), of which the upper half is read, end in the right-hand sides; rows of
 // `solved` (n_rights, stride) are zero at first; `inverse` (n) is scratch memory. Returns whether
 // the matrix was positive definite.
-static bool solve_positive(double *matrix, int64_t n, int64_t stride, int64_t n_rights,
-                           double *inverse, double *solved) {
+bool solve_positive(double *matrix, int64_t n, int64_t stride, int64_t n_rights, double *inverse,
+                    double *solved) {
   constexpr int64_t TOGETHER = 4;
   for (int64_t first = 0; first < n; first += TOGETHER) {
     const int64_t end = first + TOGETHER < n ? first + TOGETHER : n;

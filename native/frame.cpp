@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 //
-// The work of a frame for one target: SWAY_TARGET is its name, SWAY_FRAME that of its functions.
+// The work of a frame for one target: SWAY_FRAME is the name of its functions.
 #include "frame.h"
 
 #include "limbs.h"
@@ -16,11 +16,11 @@ namespace sway {
 
 extern const Frame SWAY_FRAME;
 #ifdef SWAY_PAGE
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, nullptr, find_keys, place,
-                          nullptr,     nullptr,          nullptr, nullptr};
+const Frame SWAY_FRAME = {step_coordinates, nullptr, find_keys, place,
+                          nullptr,          nullptr, nullptr,   nullptr};
 #else
-const Frame SWAY_FRAME = {SWAY_TARGET, step_coordinates, step_at_pose,  find_keys,    place,
-                          find_place,  load_slopes,      step_branches, rest_branches};
+const Frame SWAY_FRAME = {step_coordinates, step_at_pose, find_keys,     place,
+                          find_place,       load_slopes,  step_branches, rest_branches};
 #endif
 
 }  // namespace sway

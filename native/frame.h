@@ -46,7 +46,7 @@ struct CoupledStep {
 
 // What a limp tree has beside its `State`: none of it is needed to go on from a state.
 struct LimpTree {
-  double *columns;               // J (m, places)
+  float *columns;                // J (m, places)
   double *change;                // inertia less 1 (q, row)
   double *weight;                // force of the weight beyond the linear (row)
   double *last_eta, *last_rate;  // as the last step left them (padded)
@@ -60,11 +60,13 @@ struct LimpTree {
 // Memory of one thread for limp trees.
 struct LimpRoom {
   double *turned, *turning, *keys;            // key rotations, their rates, others (keys)
-  double *here, *ahead, *behind, *trial;      // places
-  double *tangent, *force;                    // of the segments (places)
+  double *here, *ahead, *behind;              // places
+  float *bend;                                // of the motion (places)
+  double *tangent;                            // of the segments (places)
+  float *force;                               // on them (places)
   double *gust;                               // (places)
   double *products;                           // of rows and columns (m + 2, row)
-  const double **rows;                        // (m + 2)
+  const float **rows;                         // (m + 2)
   double *momentum, *across, *along;          // (row)
   double *matrix, *block, *coupled, *solved;  // (q, row), (q, row), (8, row), (3, row)
   double *eta, *rate, *new_force, *by_wind, *wanted, *sloped;  // (padded)
@@ -85,7 +87,7 @@ struct Room {
 };
 
 // A number of coordinates that a state has, 0 to `most`, whatever was written to it.
-inline __attribute__((always_inline)) int64_t count_of(double value, int64_t most) {
+INLINE int64_t count_of(double value, int64_t most) {
   if (!(value > 0.0)) return 0;
   return value < double(most) ? int64_t(value) : most;
 }
@@ -102,7 +104,6 @@ struct Place {
 
 // The work of a frame.
 struct Frame {
-  const char *target;
   // Step a tree in a wind in its own frame; whether it was clamped.
   bool (*step)(const sway_model &model, const double *stiffness, const Step &step, State &state,
                Room &room, const double wind[3]);
@@ -118,7 +119,7 @@ struct Frame {
   void (*find_place)(const sway_model &model, Room &room, const double *keys, double *out,
                      double *tangent);
   // Write the changes of loads along shapes (`sway_load_slopes`).
-  void (*load_slopes)(const sway_branches &tree, const sway_branch_load *loads,
+  void (*load_slopes)(const sway_branches &tree, const double *x, const double *wind,
                       const double *shapes, size_t columns, double *scratch, double *turning,
                       double *damping);
   // Step the model `branch` (`sway_step_branches`).

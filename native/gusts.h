@@ -41,9 +41,7 @@ struct Crown {
 // Numbers of the memory of a crown.
 constexpr int64_t CROWN = sizeof(Crown) / sizeof(double);
 
-inline __attribute__((always_inline)) Crown &crown_of(double *memory) {
-  return *reinterpret_cast<Crown *>(memory);
-}
+INLINE Crown &crown_of(double *memory) { return *reinterpret_cast<Crown *>(memory); }
 
 // Add a step in a wind; `spread` [m] is the longest delay times the wind speed, `coherence` the
 // share of the wind that reaches the whole crown at once. Without a spread the winds of the limbs

@@ -65,7 +65,7 @@ typedef struct sway_branch_load {
   double displacement[3]; /* of the base in the frame of its parent's [m] */
   double arm[3];          /* the base from that of its parent, bent [m] */
   double turn[3];         /* rotation vector of the loaded pieces from the base */
-  double air[3];          /* wind in the frame of the base [m/s] */
+  double flow[3];         /* of the air by the loaded pieces, in their frame [m/s] */
   double own_force[3];    /* of the wind in the frame of the loaded pieces [N] */
   double force[3];        /* the same in the frame of the tree [N] */
   double wrench[6];       /* force and moment on the branch and all it carries, at its base */
@@ -79,11 +79,11 @@ SWAY_API void sway_wind_moments(const sway_branches *tree, const double *x, cons
                                 const double *winds, size_t count, sway_branch_load *loads,
                                 double *moments);
 
-/* Changes of these moments by motion along shapes (N, columns), key rotations by their number:
- * `turning` by the motion, `damping` by its rate, (N, columns) each [N m]. `loads` (b) are those of
- * a still tree; `columns` is a multiple of 8; `scratch` has room for 256 numbers for each branch
- * and 8 more. */
-SWAY_API void sway_load_slopes(const sway_branches *tree, const sway_branch_load *loads,
+/* Changes of these moments on a tree that is still at x (N) in a wind (3) by motion along shapes
+ * (N, columns), key rotations by their number: `turning` by the motion, `damping` by its rate,
+ * (N, columns) each [N m]. `columns` is a multiple of 8; `scratch` has room for 333 numbers for each
+ * branch. */
+SWAY_API void sway_load_slopes(const sway_branches *tree, const double *x, const double *wind,
                                const double *shapes, size_t columns, double *scratch,
                                double *turning, double *damping);
 

@@ -15,8 +15,8 @@
 namespace {
 
 // Write the harmonics of a wind [m/s] times its dynamic pressure.
-static void fill_pressures(const sway_model &model, const Vector<double> &wind,
-                           double per_speed_squared, double out[HARMONICS]) {
+void fill_pressures(const sway_model &model, const Vector<double> &wind, double per_speed_squared,
+                    double out[HARMONICS]) {
   const double speed = most(__builtin_sqrt(dot(wind, wind)), 1e-12);
   const double pressure = least(per_speed_squared * speed * speed, *model.table.most_pressure);
   fill_harmonics({wind.x / speed, wind.y / speed, wind.z / speed}, out);
@@ -24,9 +24,9 @@ static void fill_pressures(const sway_model &model, const Vector<double> &wind,
 }
 
 // Add to a step in a mean wind what the winds of the limbs of each delay do beside it.
-static void add_gusts(const sway_model &model, const double *stiffness, const Step &step,
-                      State &state, Room &room, const Crown &crown, const Vector<double> &wind,
-                      const Vector<double> &mean, double per_speed_squared) {
+void add_gusts(const sway_model &model, const double *stiffness, const Step &step, State &state,
+               Room &room, const Crown &crown, const Vector<double> &wind,
+               const Vector<double> &mean, double per_speed_squared) {
   const int64_t M = model.padded;
   double in_mean[HARMONICS], own[HARMONICS];
   fill_pressures(model, mean, per_speed_squared, in_mean);
@@ -64,8 +64,8 @@ static void add_gusts(const sway_model &model, const double *stiffness, const St
 
 // Step a tree on its table in a wind [m/s] in its own frame, limb by limb where gusts reach them
 // one after another. Returns whether wind or energy were clamped.
-static bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
-                             State &state, Room &room, const double velocity[3]) {
+bool step_coordinates(const sway_model &model, const double *stiffness, const Step &step,
+                      State &state, Room &room, const double velocity[3]) {
   const Vector<double> wind = read(velocity);
   const double per_speed_squared =
       drag_density(model.table.drag_law, __builtin_sqrt(dot(wind, wind)));

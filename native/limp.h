@@ -40,7 +40,7 @@ INLINE int64_t parts_of(double dt, double speed) {
 // The force on a segment of area A is A |u| u with u the velocity of the air across it. Its own
 // velocity is the difference of the places ahead and behind; `per_time` [1/s] is one over the time
 // between them.
-static void find_drag(const Limp &limp, LimpRoom &own, double per_time, const double wind[3]) {
+void find_drag(const Limp &limp, LimpRoom &own, double per_time, const double wind[3]) {
   const int64_t each = limp.each;
   for (int64_t i = 0; i < each; i += LANES) {
     const Vec root = load(limp.root_mass + i), speed = load(limp.speed + i);
@@ -56,13 +56,14 @@ static void find_drag(const Limp &limp, LimpRoom &own, double per_time, const do
       square += air[axis] * air[axis];
     }
     const Vec factor = load(limp.area + i) * ::root(square) / root;
-    for (int axis = 0; axis < 3; axis++) store(own.force + axis * each + i, factor * air[axis]);
+    for (int axis = 0; axis < 3; axis++)
+      store_singles(own.force + axis * each + i, factor * air[axis]);
   }
 }
 
 // Write the gust that reaches each segment beside the wind of the tree.
-static void find_gusts(const sway_model &model, const State &state, const Step &step,
-                       const double wind[3], double *gust) {
+void find_gusts(const sway_model &model, const State &state, const Step &step, const double wind[3],
+                double *gust) {
   const Limp &limp = model.limp;
   memset(gust, 0, limp.places * sizeof(double));
   if (!state.crown || !limp.delay) return;
@@ -75,7 +76,7 @@ static void find_gusts(const sway_model &model, const State &state, const Step &
 
 // Write the work that the forces on the segments do per unit of each coordinate, by their products
 // with the columns of the leading ones.
-static void find_load(const sway_model &model, const LimpTree &tree, LimpRoom &own) {
+void find_load(const sway_model &model, const LimpTree &tree, LimpRoom &own) {
   const Limp &limp = model.limp;
   const int64_t q = limp.leading, rest = model.sizes.coordinates - q;
   for (int64_t i = q - 1; i >= 0; i--) {
@@ -91,8 +92,8 @@ static void find_load(const sway_model &model, const LimpTree &tree, LimpRoom &o
 // Go on to coordinates and rates of the room, where the tree is placed. The rates are scaled so that
 // the tree gains no more energy than the work of the wind [J]; from then on it may have what it has,
 // or has lost before, up to `SLACK`.
-static void end_part(const sway_model &model, const double *stiffness, State &state, LimpTree &tree,
-                     LimpRoom &own) {
+void end_part(const sway_model &model, const double *stiffness, State &state, LimpTree &tree,
+              LimpRoom &own) {
   const int64_t M = model.padded;
   const double kinetic = 0.5 * twice_kinetic_energy(model.limp, tree, M, own.rate, own.momentum);
   double moving = kinetic, allowed = tree.allowed;
@@ -117,9 +118,9 @@ static void end_part(const sway_model &model, const double *stiffness, State &st
 
 // Take a part of a step. Returns whether it would turn a branch too fast: then it goes a share of the
 // way.
-static bool take_part(const sway_model &model, const double *stiffness, const CoupledStep &law,
-                      State &state, LimpTree &tree, Room &room, const double wind[3], double speed,
-                      double per_speed_squared) {
+bool take_part(const sway_model &model, const double *stiffness, const CoupledStep &law,
+               State &state, LimpTree &tree, Room &room, const double wind[3], double speed,
+               double per_speed_squared) {
   const Limp &limp = model.limp;
   const int64_t M = model.padded, m = model.sizes.coordinates;
   LimpRoom &own = room.limp;
@@ -146,12 +147,13 @@ static bool take_part(const sway_model &model, const double *stiffness, const Co
   place_along(model, room, -ahead, own.turning, own.behind);
   find_drag(limp, own, ahead > 0.0 ? 0.5 / ahead : 0.0, wind);
   for (int64_t i = 0; i < limp.places; i += LANES)
-    store(own.ahead + i, load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
+    store_singles(own.bend + i,
+                  load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
   own.rows[0] = own.force;
-  own.rows[1] = own.ahead;
+  own.rows[1] = own.bend;
   const int64_t count = columns_due(m, turned + law.part.dt * fastest, speed);
-  find_columns(model, tree, room, count);
-  renew(model, tree, room, count, room.middle, own.rate);
+  find_columns(model, tree, room, count, room.middle);
+  renew(model, tree, room, count, own.rate);
   // The force.
   find_load(model, tree, own);
   for (int64_t i = 0; i < M; i++) {
@@ -188,8 +190,7 @@ INLINE bool is_at_rest(const State &state, int64_t count) {
 }
 
 // Follow what was set or written between steps.
-static void follow(const sway_model &model, const Tuning &tuning, const State &state,
-                   LimpTree &tree) {
+void follow(const sway_model &model, const Tuning &tuning, const State &state, LimpTree &tree) {
   if (tree.n_set != tuning.n_set)
     for (CoupledStep &law : tree.laws) law.n_parts = 0;
   if (tree.n_tuned != tuning.n_tuned) tree.allowed = __builtin_inf();
@@ -206,8 +207,8 @@ static void follow(const sway_model &model, const Tuning &tuning, const State &s
 
 // Step a limp tree at its pose in a wind [m/s] in its own frame. A long step is taken in parts.
 // Returns whether any of them was bounded.
-static bool step_at_pose(const sway_model &model, const Tuning &tuning, const Step &step,
-                         State &state, LimpTree &tree, Room &room, const double wind[3]) {
+bool step_at_pose(const sway_model &model, const Tuning &tuning, const Step &step, State &state,
+                  LimpTree &tree, Room &room, const double wind[3]) {
   follow(model, tuning, state, tree);
   find_gusts(model, state, step, wind, room.limp.gust);
   const double speed = __builtin_sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define INLINE static inline __attribute__((always_inline, unused))
+
 namespace sway {
 
 // The code of a frame, which is compiled for several targets, takes no memory.

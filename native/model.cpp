@@ -62,8 +62,12 @@ constexpr int64_t WHOLE = 16;
 constexpr int64_t MOST_COORDINATES = 1 << 16, MOST_SEGMENTS = 1 << 26;
 
 int number_of(const char *name) {
-  for (int number = 0; number < N_MEANINGS; number++)
-    if (strncmp(MEANINGS[number].name, name, sizeof(Entry::name)) == 0) return number;
+  for (int number = 0; number < N_MEANINGS; number++) {
+    const char *known = MEANINGS[number].name;
+    size_t i = 0;
+    while (name[i] && name[i] == known[i]) i++;
+    if (name[i] == known[i]) return number;
+  }
   return -1;
 }
 

@@ -67,7 +67,7 @@ struct Segment {
   int64_t n_slots;          // branches that have this segment, in the first slots
 };
 
-inline __attribute__((always_inline)) void raise_to(int64_t &largest, int64_t value) {
+INLINE void raise_to(int64_t &largest, int64_t value) {
   if (value > largest) largest = value;
 }
 
@@ -101,7 +101,6 @@ struct Limp {
   int64_t leading;  // q: coordinates whose inertia is that of the pose
   int64_t row;      // q and three right-hand sides, up to whole vectors
   int64_t each, places, keys;  // up to whole vectors
-  double *shapes;        // (keys / 32, m, 32)
   double *directions;    // key rotations per unit of each coordinate (m, keys)
   double *amount;        // of each coordinate for the difference of its column (m)
   double *columns;       // places per unit of each coordinate, J (m, places)
@@ -147,8 +146,6 @@ constexpr bool ON_TABLES = true;
 constexpr bool ON_TABLES = false;
 #endif
 
-inline __attribute__((always_inline)) bool is_limp(const sway_model &model) {
-  return !ON_TABLES && model.sizes.is_stepped == 2;
-}
+INLINE bool is_limp(const sway_model &model) { return !ON_TABLES && model.sizes.is_stepped == 2; }
 
 }  // namespace sway

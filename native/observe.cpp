@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "library.h"
+#include "turn.h"
 
 namespace {
 
@@ -62,14 +63,6 @@ void move(int64_t n, const double *law, int rows, double *state) {
 }
 
 double limited(double value, double most) { return fmin(fmax(value, -most), most); }
-
-// Turn a vector of the frame of a sensor into that of the tree.
-void turn(const double *matrix, double factor, const double *from, double *to) {
-  for (int i = 0; i < 3; i++) {
-    const double *row = matrix + 3 * i;
-    to[i] = factor * (row[0] * from[0] + row[1] * from[1] + row[2] * from[2]);
-  }
-}
 
 // Note the newest sample of a sensor at the time of a step; whether there is another.
 bool note_lag(sway_sensor &sensor, double time) {
@@ -138,7 +131,7 @@ void miss(sway_sensor &sensor, double time) {
 
 // Read a sensor about a time, keep its sample and the rows of the model, and write what the sample
 // has beyond the model. Whether there is one, and the mounting is known.
-bool read(sway_sensor &sensor, double time, const double *computed, double *beyond) {
+bool read_sensor(sway_sensor &sensor, double time, const double *computed, double *beyond) {
   double sample[9];
   if (!sway_read_samples(sensor.ring, time, sensor.dt, sample)) {
     miss(sensor, time);
@@ -150,9 +143,9 @@ bool read(sway_sensor &sensor, double time, const double *computed, double *beyo
   memcpy(sensor.computed + ROWS * row, computed, ROWS * sizeof(double));
   const double *mounting = sensor.mounting, *bias = mounting + 12;
   double *moved = sensor.moved;
-  turn(mounting, mounting[9], sample, moved);
-  turn(mounting, mounting[10], sample + 3, moved + 3);
-  turn(mounting, 1.0, sample + 6, moved + 6);
+  const double factors[] = {mounting[9], mounting[10], 1.0};
+  for (int k = 0; k < 9; k += 3)
+    write(moved + k, factors[k / 3] * (read_matrix(mounting) * read(sample + k)));
   moved[2] -= mounting[11];
   for (int i = 0; i < 9; i++) beyond[i] = moved[i] - bias[i] - computed[3 + i];
   for (int i = 0; i < 3; i++) {
@@ -194,7 +187,7 @@ int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, do
   for (int64_t i = 0; i < k; i++) {
     sway_sensor &sensor = *by.sensor[i];
     const double when = time - double(by.late) * sensor.dt;
-    by.is_known[i] = read(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
+    by.is_known[i] = read_sensor(sensor, when, computed + ROWS * i, by.beyond + 9 * i);
     if (by.is_known[i]) add_to_series(sensor, by.still + then % SWAY_SLOTS * n, n);
   }
   return then;

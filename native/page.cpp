@@ -10,46 +10,28 @@ using namespace sway;
 
 namespace {
 
-// Memory that is free, in the order of its addresses. Every block begins with such a head, of which
-// `next` counts where it is free.
-struct alignas(16) Free {
-  size_t size;  // with the head
-  Free *next;
+// Memory of one of some sizes, which begins with this; `next` counts where it is free.
+struct alignas(16) Head {
+  Head *next;
+  uint32_t kind;
 };
 
-Free *first_free = nullptr;
+Head *first_free[128];  // by kind
 
-constexpr size_t PAGE = 65536;
+constexpr uint64_t PAGE = 65536;
 
-char *end_of(Free *block) { return reinterpret_cast<char *>(block) + block->size; }
+// The end of the memory that was given, as the browser counts it.
+uint64_t given = 0;
 
-// Join a free block with one that begins where it ends.
-void join(Free *block) {
-  if (!block || !block->next || end_of(block) != reinterpret_cast<char *>(block->next)) return;
-  block->size += block->next->size;
-  block->next = block->next->next;
-}
-
-void put_back(Free *block) {
-  Free *before = nullptr;
-  Free **at = &first_free;
-  for (; *at && *at < block; at = &(*at)->next) before = *at;
-  block->next = *at;
-  *at = block;
-  join(block);
-  join(before);
-}
-
-// Add memory of the browser; false if it has none.
-bool grow(size_t size) {
-  const size_t pages = size / PAGE + 1;
-  const size_t before = __builtin_wasm_memory_grow(0, pages);
-  if (before == SIZE_MAX) return false;
-  Free *block = reinterpret_cast<Free *>(before * PAGE);
-  // The last page of 4 GiB stays out, as its end is address 0.
-  block->size = pages * PAGE - (before + pages == SIZE_MAX / PAGE + 1 ? PAGE : 0);
-  if (block->size) put_back(block);
-  return true;
+// Memory of the browser beyond that; null if it has none. Its last page stays out, as its end is
+// address 0.
+Head *grow(uint64_t size) {
+  const uint64_t pages = __builtin_wasm_memory_size(0), from = given ? given : PAGE * pages;
+  const uint64_t end = from + size, needed = (end + PAGE - 1) / PAGE;
+  if (end > SIZE_MAX - PAGE) return nullptr;
+  if (needed > pages && __builtin_wasm_memory_grow(0, needed - pages) == SIZE_MAX) return nullptr;
+  given = end;
+  return reinterpret_cast<Head *>(from);
 }
 
 }  // namespace
@@ -66,34 +48,26 @@ extern "C" {
 
 void *calloc(size_t count, size_t each) {
   size_t size;
-  if (__builtin_mul_overflow(count, each, &size) || size > SIZE_MAX - 2 * sizeof(Free))
-    return nullptr;
-  size = (size + 2 * sizeof(Free) - 1) / sizeof(Free) * sizeof(Free);
-  do {
-    for (Free **at = &first_free; *at; at = &(*at)->next) {
-      Free *block = *at;
-      if (block->size < size) continue;
-      if (block->size - size < 2 * sizeof(Free)) {
-        *at = block->next;
-      } else {
-        Free *rest = reinterpret_cast<Free *>(reinterpret_cast<char *>(block) + size);
-        *rest = {block->size - size, block->next};
-        *at = rest;
-        block->size = size;
-      }
-      return memset(block + 1, 0, block->size - sizeof(Free));
-    }
-  } while (grow(size));
-  return nullptr;
+  if (__builtin_mul_overflow(count, each, &size) || size > SIZE_MAX - sizeof(Head)) return nullptr;
+  // Five to eight times a power of two, or less of sixteen bytes.
+  uint32_t power = 4;
+  while ((size + sizeof(Head) - 1) >> power >= 8) power++;
+  const uint32_t times = ((size + sizeof(Head) - 1) >> power) + 1, kind = 4 * power + times - 5;
+  Head *own = first_free[kind];
+  if (own)
+    first_free[kind] = own->next;
+  else
+    own = grow(uint64_t(times) << power);
+  if (!own) return nullptr;
+  own->kind = kind;
+  return memset(own + 1, 0, size);
 }
 
 void free(void *memory) {
-  if (memory) put_back(static_cast<Free *>(memory) - 1);
-}
-
-int strncmp(const char *one, const char *other, size_t size) {
-  for (; size && *one && *one == *other; size--) one++, other++;
-  return size ? *one - *other : 0;
+  if (!memory) return;
+  Head *own = static_cast<Head *>(memory) - 1;
+  own->next = first_free[own->kind];
+  first_free[own->kind] = own;
 }
 
 // Make a placer of a model, which must outlive it; null where memory is short.

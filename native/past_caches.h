@@ -8,7 +8,11 @@
 
 #include <stdint.h>
 
-#if defined(__SSE2__)
+#include "memory.h"
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -16,8 +20,23 @@ namespace sway {
 
 #if defined(__SSE2__)
 constexpr bool PASSES_CACHES = true;
+
+// Copy a line of memory.
+INLINE void copy_past(const double *from, double *to) {
+#if defined(__AVX512F__)
+  _mm512_stream_pd(to, _mm512_loadu_pd(from));
+#else
+  for (int i = 0; i < 8; i += 2) _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
+#endif
+}
+
+// Other threads see all lines from here on.
+INLINE void end_of_writes() { _mm_sfence(); }
 #else
 constexpr bool PASSES_CACHES = false;
+
+INLINE void copy_past(const double *, double *) {}
+INLINE void end_of_writes() {}
 #endif
 
 // Whole lines of memory that are still to be copied, of eight numbers each.
@@ -39,12 +58,5 @@ struct Late {
     to = out + before;
   }
 };
-
-// Other threads see all lines from here on.
-inline void end_of_writes() {
-#if defined(__SSE2__)
-  _mm_sfence();
-#endif
-}
 
 }  // namespace sway

@@ -95,7 +95,7 @@ INLINE Vector<Vec> along(const Row *pose, int slot, Vec length) {
 }
 
 // Add the parts across the x axes of points in the frames of poses.
-static void go_aside(const Row *pose, Row *point, double scale, const Row *local, int count) {
+void go_aside(const Row *pose, Row *point, double scale, const Row *local, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
     const Vector<Vec> aside = {Vec{}, load(local[1] + slot), load(local[2] + slot)};
     const Vector<Vec> turned = rotated(orientation_of(pose, slot), aside);
@@ -112,7 +112,7 @@ INLINE void read_keys(const Block &block, Slots &slots, const double *keys, int 
 }
 
 // Put the ground, at the root node and turned about the vertical, in place of a parent.
-static void stand_on_ground(Slots &slots, const Place &place) {
+void stand_on_ground(Slots &slots, const Place &place) {
   for (int slot = 0; slot < WIDTH; slot++) {
     for (int row = 0; row < 8; row++) slots.parent_base[row][slot] = 0.0;
     slots.parent_base[0][slot] = place.cosine;
@@ -233,15 +233,13 @@ INLINE void join(const Segment &segment, Slots &slots, double scale, int slot,
 }
 
 // Segments of branches that bend by their first two key rotations alone.
-template <int TERMS>
 INLINE void bend_plain(const Segment &segment, Slots &slots, double scale, bool has_blend,
                        double bound, int count) {
   for (int slot = 0; slot < count; slot += LANES) {
     Vec slope = load(segment.slope + slot);
     if (has_blend) slope += load(slots.blend + slot) * load(segment.tip_slope + slot);
     const Vec square = slope * slope * load(slots.rotation_square + slot);
-    const HalfAngle<Vec> half =
-        TERMS ? half_angle_series<TERMS ? TERMS : 8>(square) : half_angle(square, bound);
+    const HalfAngle<Vec> half = half_angle(square, bound);
     const Vec sine = slope * half.sinc;
     const Quaternion<Vec> base = load_quaternion(slots.base, slot);
     const Quaternion<Vec> times = load_quaternion(slots.times_half, slot);
@@ -283,12 +281,11 @@ INLINE void write_late(Late &late, int64_t lines) {
   if (lines > late.lines) lines = late.lines;
   late.lines -= lines;
   for (; lines > 0; lines--, late.from += Late::LINE, late.to += Late::LINE)
-    for (int i = 0; i < Late::LINE; i += LANES) store_past(late.to + i, load(late.from + i));
+    copy_past(late.from, late.to);
 }
 
 // Place every segment by the key rotations in the room.
-static void place(const sway_model &model, const Place &where, Room &room, double *poses,
-                  Late &late) {
+void place(const sway_model &model, const Place &where, Room &room, double *poses, Late &late) {
   Slots slots(room.slots, model.rows + 4);
   for (int64_t number = 0; number < model.n_blocks; number++) {
     const Block &block = model.blocks[number];
@@ -307,12 +304,8 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
       const Segment &segment = model.segments[block.first_record + rank];
       if (block.n_rows > 2)
         bend_by_all(segment, slots, where.scale, block.n_rows, bound, count);
-      else if (bound <= NEAR)
-        bend_plain<4>(segment, slots, where.scale, has_blend, bound, count);
-      else if (bound <= FAR)
-        bend_plain<8>(segment, slots, where.scale, has_blend, bound, count);
       else
-        bend_plain<0>(segment, slots, where.scale, has_blend, bound, count);
+        bend_plain(segment, slots, where.scale, has_blend, bound, count);
       if (!block.is_joined) go_aside(slots.pose, slots.start, where.scale, segment.chord, count);
       write_poses(block, slots, rank, segment.n_slots, poses);
       write_late(late, segment.n_slots);
@@ -323,7 +316,7 @@ static void place(const sway_model &model, const Place &where, Room &room, doubl
 
 // Write the key rotations of a state to the room: shapes times what is shown of the coordinates. The
 // shapes of a tree of many branches are its largest table: they are summed in single precision.
-static void find_keys(const sway_model &model, const State &state, Room &room) {
+void find_keys(const sway_model &model, const State &state, Room &room) {
   const int64_t m = model.sizes.coordinates;
   const int64_t n_shown = m - count_of(*state.left_out, m);
   for (int64_t i = 0; i < n_shown; i++) room.shown[i] = float(state.eta[i] - state.hidden[i]);

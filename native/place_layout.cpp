@@ -123,7 +123,7 @@ bool fill_segment(const Arrays &a, int64_t number, Segment &record, int64_t slot
   const int64_t k = a.size[-SIZE_k];
   const double *rest = a.segment_rest + 4 * number;
   const Vector<double> chord =
-      rotated(inverse(read_quaternion(rest)), read(a.segment_chord + 3 * number));
+      rotated({rest[0], -rest[1], -rest[2], -rest[3]}, read(a.segment_chord + 3 * number));
   record.slope[slot] = a.segment_slope[number];
   record.tip_slope[slot] = a.segment_tip_slope[number] - a.segment_slope[number];
   put(*record.chord, slot, &chord.x, 3);

@@ -33,8 +33,8 @@ constexpr double OLDEST = 0.27, OLDEST_IN_STORM = 0.1, STORM = 15.0, MOST_STEPS 
 constexpr double MOTION_TURN = 1e-2;
 
 // Write where the points of the segments are at key rotations; directions of the segments unless null.
-static void find_place(const sway_model &model, Room &room, const double *keys, double *out,
-                       double *tangent) {
+void find_place(const sway_model &model, Room &room, const double *keys, double *out,
+                double *tangent) {
   const Limp &limp = model.limp;
   const int64_t n = model.sizes.segments, each = limp.each;
   const Place at_origin = {1.0, 0.0, 1.0, {0.0, 0.0, 0.0}};
@@ -62,17 +62,17 @@ static void find_place(const sway_model &model, Room &room, const double *keys, 
 }
 
 // Write sums of shapes: key rotations of coordinates, and the rates of both.
-static void turn(const sway_model &model, const double *eta, const double *rate, double *turned,
-                 double *turning) {
+void turn(const sway_model &model, const double *eta, const double *rate, double *turned,
+          double *turning) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates;
   constexpr int PARTS = 4;
   for (int64_t first = 0; first < limp.keys; first += PARTS * LANES) {
-    const double *shapes = limp.shapes + first / 32 * m * 32 + first % 32;
+    const float *shapes = model.shapes + first / 64 * m * 64 + first % 64;
     Vec of_eta[PARTS] = {}, of_rate[PARTS] = {};
     for (int64_t i = 0; i < m; i++)
       for (int part = 0; part < PARTS; part++) {
-        const Vec shape = load(shapes + 32 * i + part * LANES);
+        const Vec shape = load_singles(shapes + 64 * i + part * LANES);
         of_eta[part] += eta[i] * shape;
         of_rate[part] += rate[i] * shape;
       }
@@ -84,9 +84,10 @@ static void turn(const sway_model &model, const double *eta, const double *rate,
 }
 
 // Take the inertia of the tree at rest.
-static void return_to_rest(const sway_model &model, LimpTree &tree) {
+void return_to_rest(const sway_model &model, LimpTree &tree) {
   const Limp &limp = model.limp;
-  memcpy(tree.columns, limp.columns, model.sizes.coordinates * limp.places * sizeof(double));
+  for (int64_t i = 0; i < model.sizes.coordinates * limp.places; i++)
+    tree.columns[i] = float(limp.columns[i]);
   memset(tree.change, 0, limp.leading * limp.row * sizeof(double));
   memset(tree.weight, 0, limp.row * sizeof(double));
   tree.next = 0;
@@ -100,8 +101,8 @@ INLINE int64_t columns_due(int64_t count, double turned, double speed) {
 }
 
 // Twice the kinetic energy [J] of rates; writes the momentum of leading coordinates.
-static double twice_kinetic_energy(const Limp &limp, const LimpTree &tree, int64_t padded,
-                                   const double *rate, double *momentum) {
+double twice_kinetic_energy(const Limp &limp, const LimpTree &tree, int64_t padded,
+                            const double *rate, double *momentum) {
   // Beyond the leading coordinates the matrix is zero.
   multiply(tree.change, limp.leading, limp.row, rate, limp.row < padded ? limp.row : padded,
            momentum);
@@ -114,36 +115,44 @@ static double twice_kinetic_energy(const Limp &limp, const LimpTree &tree, int64
 }
 
 // Write where the segments are at an amount of a direction from here.
-static void place_along(const sway_model &model, Room &room, double amount, const double *direction,
-                        double *out) {
+void place_along(const sway_model &model, Room &room, double amount, const double *direction,
+                 double *out) {
   LimpRoom &own = room.limp;
   for (int64_t i = 0; i < model.limp.keys; i += LANES)
     store(own.keys + i, load(own.turned + i) + amount * load(direction + i));
   find_place(model, room, own.keys, out, nullptr);
 }
 
-// Turn the tree a little from here along each of the next coordinates and take the difference as
-// its column. The rows of the room beyond the first two are these columns.
-static void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t count) {
+// Turn the tree a little from here along each of the next coordinates, and take the difference as
+// its column, and the weight on it, at coordinates `eta`. The rows of the room beyond the first two
+// are these columns.
+void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t count,
+                  const double *eta) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates;
   LimpRoom &own = room.limp;
   for (int64_t k = 0; k < count; k++) {
     const int64_t number = (tree.next + k) % m;
     const double amount = limp.amount[number];
-    place_along(model, room, amount, limp.directions + number * limp.keys, own.trial);
-    double *column = tree.columns + number * limp.places;
-    for (int64_t i = 0; i < limp.places; i += LANES)
-      store(column + i, (load(own.trial + i) - load(own.here + i)) / amount);
+    place_along(model, room, amount, limp.directions + number * limp.keys, own.behind);
+    float *column = tree.columns + number * limp.places;
+    const double per_amount = 1.0 / amount;
+    for (int64_t i = 0; i < limp.places; i += LANES) {
+      const Vec moved = per_amount * (load(own.behind + i) - load(own.here + i));
+      store(own.behind + i, moved);
+      store_singles(column + i, moved);
+    }
     own.rows[2 + k] = column;
+    if (number >= limp.leading) continue;
+    const double linear =
+        limp.weight[number] + dot(limp.slopes + number * model.padded, eta, model.padded);
+    tree.weight[number] = dot(own.behind + 2 * limp.each, limp.gravity, limp.each) - linear;
   }
 }
 
-// Take inertia and weight of the new columns at a pose of the coordinates `eta`; the products of the
-// first two rows with all columns are those of the pose too. Rates are scaled to the kinetic energy
-// that they had before.
-static void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t count,
-                  const double *eta, double *rate) {
+// Take the inertia of the new columns; the products of the first two rows with all columns are those
+// of the pose too. Rates are scaled to the kinetic energy that they had before.
+void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t count, double *rate) {
   const Limp &limp = model.limp;
   const int64_t m = model.sizes.coordinates, M = model.padded, q = limp.leading;
   LimpRoom &own = room.limp;
@@ -156,9 +165,6 @@ static void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t c
     const double *inertia = own.products + (2 + k) * limp.row;
     for (int64_t j = 0; j < q; j++)
       tree.change[row * limp.row + j] = tree.change[j * limp.row + row] = inertia[j];
-    const double linear = limp.weight[row] + dot(limp.slopes + row * M, eta, M);
-    const double *height = own.rows[2 + k] + 2 * limp.each;
-    tree.weight[row] = dot(height, limp.gravity, limp.each) - linear;
   }
   for (int64_t k = 0; k < count; k++) {
     const int64_t row = (tree.next + k) % m;
@@ -174,8 +180,8 @@ static void renew(const sway_model &model, LimpTree &tree, Room &room, int64_t c
 // Find the centrifugal force from products of the bend of the motion but for what does work on the
 // motion, and the momentum over twice the kinetic energy. `ahead` is the time [s] to the place
 // ahead.
-static void find_centrifugal_force(const sway_model &model, const LimpTree &tree, LimpRoom &own,
-                                   const double *bend, const double *rate, double ahead) {
+void find_centrifugal_force(const sway_model &model, const LimpTree &tree, LimpRoom &own,
+                            const double *bend, const double *rate, double ahead) {
   const Limp &limp = model.limp;
   const double energy = twice_kinetic_energy(limp, tree, model.padded, rate, own.along);
   const bool moves = ahead > 0.0 && energy > 0.0;
@@ -189,8 +195,8 @@ static void find_centrifugal_force(const sway_model &model, const LimpTree &tree
 }
 
 // Energy [J] of the weight beyond that which the stiffness has, at coordinates, at a place.
-static double weight_potential(const sway_model &model, LimpRoom &own, const double *eta,
-                               const double *place) {
+double weight_potential(const sway_model &model, LimpRoom &own, const double *eta,
+                        const double *place) {
   const Limp &limp = model.limp;
   const int64_t M = model.padded;
   multiply(limp.all_slopes, model.sizes.coordinates, M, eta, M, own.sloped);

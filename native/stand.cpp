@@ -316,8 +316,6 @@ size_t rooms_for(const sway_model *const *models, size_t n_models, size_t n_tree
 
 extern "C" {
 
-const char *sway_target(void) { return frame_of_machine().target; }
-
 sway_stand *sway_stand_open(const sway_model *const *models, size_t n_models,
                             const sway_tree *trees, size_t n_trees, size_t rooms, char *error,
                             size_t room) {

@@ -67,9 +67,6 @@ enum { SWAY_OK = 0, SWAY_CLAMPED = 2, SWAY_RESTARTED = 4 };
 /* The version of the library, to be compared with SWAY_VERSION. */
 SWAY_API int sway_version(void);
 
-/* The instructions in use, such as "x86-64-v3". */
-SWAY_API const char *sway_target(void);
-
 /* Read and check a model: every array, its type, shape, range and indices. Returns NULL if the
  * bytes are no model; then `error` (of `room` bytes, may be NULL) names the array. The bytes are
  * copied. */

@@ -42,7 +42,7 @@ struct Wind {
 
 // Real spherical harmonics of degree 1, 3 and 5 at a unit vector, as harmonic polynomials; those of
 // a degree n are 2 n + 1 numbers about a centre, by sines before it and by cosines behind.
-static void fill_harmonics(const Vector<double> &at, double *out) {
+void fill_harmonics(const Vector<double> &at, double *out) {
   // Cosine and sine of m times the azimuth, times the m-th power of the horizontal part.
   double cosine[6] = {1.0}, sine[6] = {0.0};
   for (int m = 1; m < 6; m++) {
@@ -83,8 +83,8 @@ struct Corners {
 };
 
 // `level_winds` is the share of the slopes of winds that are not steep.
-static Corners find_corners(const sway_model &model, const Wind &wind, const double *eta,
-                            double level_winds) {
+Corners find_corners(const sway_model &model, const Wind &wind, const double *eta,
+                     double level_winds) {
   const Arrays &table = model.table;
   const int64_t M = model.padded;
   const double position =
@@ -133,7 +133,7 @@ INLINE Vec between(const double *values, int64_t M, const Corners &corners, int6
 
 // How far the tree is from the equilibria at the corners, times their weights. Half of the way to
 // each is taken, so that loads between levels are cubic.
-static void find_distances(const sway_model &model, const Corners &corners, Room &room) {
+void find_distances(const sway_model &model, const Corners &corners, Room &room) {
   const int64_t M = model.padded;
   const double *equilibrium = model.table.equilibrium;
   const double above = corners.by_level[1];
@@ -154,10 +154,10 @@ static void find_distances(const sway_model &model, const Corners &corners, Room
   }
 }
 
-// Add the load by the distances from the corners, and the damping by the rates. The coordinate that
-// moves is the outer loop: the table is read in order.
-static void add_slopes(const sway_model &model, const Corners &corners, double slant,
-                       double level_winds, Room &room, int64_t n_coupled) {
+// Add the load by the distances from the corners, and the damping by the rates, and write the damping
+// by the own rate of each. The coordinate that moves is the outer loop: the table is read in order.
+void add_slopes(const sway_model &model, const Corners &corners, double slant, double level_winds,
+                double drag, double *diagonal, Room &room, int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
   const Arrays &table = model.table;
   const float *turning[4], *damping[4];
@@ -173,8 +173,13 @@ static void add_slopes(const sway_model &model, const Corners &corners, double s
     lean[side] = table.lean + corners.azimuth[side] * m * M;
     slants[side] = float(level_winds * corners.by_azimuth[side] * slant);
   }
-  for (int64_t moving = 0; moving < n_coupled; moving++) {
+  for (int64_t moving = 0; moving < m; moving++) {
     const int64_t row = moving * M;
+    double own = 0.0;
+    for (int corner = 0; corner < 4; corner++)
+      own += corners.weight[corner] * double(damping[corner][row + moving]);
+    diagonal[moving] = drag * own;
+    if (moving >= n_coupled) continue;
     const float moved = float(room.middle[moving]);
     const float rate = room.single_rate[moving];
     float away[4], rates[4];
@@ -197,8 +202,8 @@ static void add_slopes(const sway_model &model, const Corners &corners, double s
 }
 
 // Add the slopes in winds straight up or down, by the share that the wind has of them.
-static void add_steep_slopes(const sway_model &model, bool is_upwards, double steepness,
-                             double drag, State &state, Room &room, int64_t n_coupled) {
+void add_steep_slopes(const sway_model &model, bool is_upwards, double steepness, double drag,
+                      State &state, Room &room, int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
   const float *turning = model.table.steep_turning + (is_upwards ? m * M : 0);
   const float *damping = model.table.steep_damping + (is_upwards ? m * M : 0);
@@ -216,8 +221,8 @@ static void add_steep_slopes(const sway_model &model, bool is_upwards, double st
 // The force of a wind on the coordinates in the middle of the step, `wanted`, and its derivative by
 // the own rate of each, `diagonal`, with all others at equal rates. Of the coordinates from
 // `n_coupled` on each damps only itself.
-static void find_wind_force(const sway_model &model, const Wind &wind, State &state, Room &room,
-                            int64_t n_coupled) {
+void find_wind_force(const sway_model &model, const Wind &wind, State &state, Room &room,
+                     int64_t n_coupled) {
   const int64_t m = model.sizes.coordinates, M = model.padded;
   const Arrays &table = model.table;
   double harmonics[HARMONICS];
@@ -239,15 +244,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
     store(state.wanted + i, force);
   }
   find_distances(model, corners, room);
-  add_slopes(model, corners, least(most(wind.direction.z, -STEEP), STEEP), 1.0 - steepness, room,
-             n_coupled);
-  for (int64_t i = 0; i < m; i++) {
-    double slope = 0.0;
-    for (int corner = 0; corner < 4; corner++)
-      slope +=
-          corners.weight[corner] * double(table.damping[(corners.number[corner] * m + i) * M + i]);
-    state.diagonal[i] = drag * slope;
-  }
+  add_slopes(model, corners, least(most(wind.direction.z, -STEEP), STEEP), 1.0 - steepness, drag,
+             state.diagonal, room, n_coupled);
   for (int64_t i = m; i < M; i++) state.diagonal[i] = 0.0;
   if (steepness > 0.0)
     add_steep_slopes(model, wind.direction.z > 0.0, steepness, drag, state, room, n_coupled);
@@ -266,8 +264,8 @@ static void find_wind_force(const sway_model &model, const Wind &wind, State &st
 }
 
 // Move M coordinates of some rates by rows of coefficients under a force.
-static void move(const double *c, int64_t M, const double *from, const double *at_rate,
-                 const double *force, double *eta, double *rate) {
+void move(const double *c, int64_t M, const double *from, const double *at_rate,
+          const double *force, double *eta, double *rate) {
   for (int64_t i = 0; i < M; i += LANES) {
     const Vec q = load(from + i), v = load(at_rate + i), f = load(force + i);
     store(eta + i, load(c + i) * q + load(c + M + i) * v + load(c + 2 * M + i) * f);
@@ -276,13 +274,12 @@ static void move(const double *c, int64_t M, const double *from, const double *a
 }
 
 // Write the state at the middle of the step.
-static void move_to_middle(const sway_model &model, const Step &step, const State &state,
-                           Room &room) {
+void move_to_middle(const sway_model &model, const Step &step, const State &state, Room &room) {
   move(step.half, model.padded, state.eta, state.rate, state.force, room.middle, room.middle_rate);
 }
 
 // Twice the energy of strain and motion [J].
-static double twice_energy(const sway_model &model, const double *stiffness, const State &state) {
+double twice_energy(const sway_model &model, const double *stiffness, const State &state) {
   Vec energy = {};
   for (int64_t i = 0; i < model.padded; i += LANES) {
     const Vec q = load(state.eta + i), v = load(state.rate + i);
@@ -294,7 +291,7 @@ static double twice_energy(const sway_model &model, const double *stiffness, con
 // Find the force by that of the wind, implicit in all damping with equal rates of the other
 // coordinates: stable in any wind and for any step. Returns by how many times at most the drag on a
 // coordinate stops it within half a step.
-static double find_force(const sway_model &model, const Step &step, State &state, Room &room) {
+double find_force(const sway_model &model, const Step &step, State &state, Room &room) {
   const double *per_force = step.half + 5 * model.padded;
   Vec stiffest = {};
   for (int64_t i = 0; i < model.padded; i += LANES) {
@@ -309,7 +306,7 @@ static double find_force(const sway_model &model, const Step &step, State &state
 }
 
 // Change the force towards that of the wind in the motion which it makes itself.
-static void change_force(const sway_model &model, const Step &step, State &state, Room &room) {
+void change_force(const sway_model &model, const Step &step, State &state, Room &room) {
   const double *per_force = step.half + 5 * model.padded;
   for (int64_t i = 0; i < model.padded; i += LANES) {
     const Vec bound = 1.0 - load(state.diagonal + i) * load(per_force + i);
@@ -328,9 +325,8 @@ INLINE void keep_at_rest(const sway_model &model, State &state) {
 
 // Step a tree in a uniform wind [m/s] in its own frame, of a drag density [kg/m^3]. Returns whether
 // wind or energy were clamped.
-static bool step_table(const sway_model &model, const double *stiffness, const Step &step,
-                       State &state, Room &room, const Vector<double> &velocity,
-                       double per_speed_squared) {
+bool step_table(const sway_model &model, const double *stiffness, const Step &step, State &state,
+                Room &room, const Vector<double> &velocity, double per_speed_squared) {
   const Arrays &table = model.table;
   const double speed = __builtin_sqrt(dot(velocity, velocity));
   const double pressure = per_speed_squared * speed * speed;

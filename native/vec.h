@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "memory.h"
+
 #if defined(__AVX512F__)
 #include <immintrin.h>
 #define SWAY_LANES 8
@@ -18,12 +20,7 @@
 #define SWAY_LANES 4
 #else
 #define SWAY_LANES 2
-#if defined(__SSE2__)
-#include <emmintrin.h>
 #endif
-#endif
-
-#define INLINE static inline __attribute__((always_inline, unused))
 
 namespace {
 
@@ -45,18 +42,6 @@ typedef double FourAt __attribute__((vector_size(32), aligned(8), may_alias));
 
 INLINE Vec load(const double *from) { return *reinterpret_cast<const VecAt *>(from); }
 INLINE void store(double *to, Vec value) { *reinterpret_cast<VecAt *>(to) = value; }
-// Store past the caches, to a whole vector of memory.
-INLINE void store_past(double *to, Vec value) {
-#if defined(__AVX512F__)
-  _mm512_stream_pd(to, reinterpret_cast<__m512d>(value));
-#elif defined(__AVX2__)
-  _mm256_stream_pd(to, reinterpret_cast<__m256d>(value));
-#elif defined(__SSE2__)
-  _mm_stream_pd(to, reinterpret_cast<__m128d>(value));
-#else
-  store(to, value);
-#endif
-}
 INLINE Singles load(const float *from) { return *reinterpret_cast<const SinglesAt *>(from); }
 INLINE void store(float *to, Singles value) { *reinterpret_cast<SinglesAt *>(to) = value; }
 
@@ -68,6 +53,10 @@ INLINE Vec load_singles(const float *from) {
 #else
   return __builtin_convertvector(singles, Vec);
 #endif
+}
+
+INLINE void store_singles(float *to, Vec value) {
+  *reinterpret_cast<HalfSinglesAt *>(to) = __builtin_convertvector(value, HalfSingles);
 }
 
 INLINE Vec all(double value) { return value - Vec{}; }
@@ -171,11 +160,11 @@ template <class V> INLINE Vector<V> operator+(const Vector<V> &a, const Vector<V
 
 template <class V> INLINE void operator+=(Vector<V> &a, const Vector<V> &b) { a = a + b; }
 
-template <class V, class S> INLINE Vector<V> operator*(S scale, const Vector<V> &a) {
-  return {scale * a.x, scale * a.y, scale * a.z};
+template <class V, class S> INLINE auto operator*(const S &scale, const Vector<V> &a) {
+  return Vector<decltype(scale * a.x)>{scale * a.x, scale * a.y, scale * a.z};
 }
 
-template <class V> INLINE V dot(const Vector<V> &a, const Vector<V> &b) {
+template <class A, class B> INLINE auto dot(const Vector<A> &a, const Vector<B> &b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -193,32 +182,30 @@ INLINE Quaternion<V> quaternion_of(const HalfAngle<V> &by, const Vector<V> &half
 // The largest squared half angles [rad^2] of the short and the long series: 0.2 and 1.5 rad.
 constexpr double NEAR = 0.04, FAR = 2.25;
 
-// Series of cos(sqrt t) and sin(sqrt t) / sqrt t; the error is below 3e-14 up to NEAR with 4 terms
-// and below 3e-13 up to FAR with 8.
+// Coefficients of the series of cos(sqrt t) and sin(sqrt t) / sqrt t.
+struct Coefficients {
+  double cosine[9] = {}, sinc[9] = {};
+
+  constexpr Coefficients() {
+    double factor = 1.0;
+    for (int term = 0; term < 9; term++) {
+      cosine[term] = 1.0 / factor;
+      factor *= 2 * term + 1;
+      sinc[term] = 1.0 / factor;
+      factor *= -(2 * term + 2);
+    }
+  }
+};
+
+constexpr Coefficients BY = {};
+
+// The error is below 3e-14 up to NEAR with 4 terms and below 3e-13 up to FAR with 8.
 template <int TERMS, class V> INLINE HalfAngle<V> half_angle_series(V square) {
-  constexpr double COSINE[] = {1.0,
-                               -1.0 / 2.0,
-                               1.0 / 24.0,
-                               -1.0 / 720.0,
-                               1.0 / 40320.0,
-                               -1.0 / 3628800.0,
-                               1.0 / 479001600.0,
-                               -1.0 / 87178291200.0,
-                               1.0 / 20922789888000.0};
-  constexpr double SINC[] = {1.0,
-                             -1.0 / 6.0,
-                             1.0 / 120.0,
-                             -1.0 / 5040.0,
-                             1.0 / 362880.0,
-                             -1.0 / 39916800.0,
-                             1.0 / 6227020800.0,
-                             -1.0 / 1307674368000.0,
-                             1.0 / 355687428096000.0};
-  V cosine = COSINE[TERMS] * square + COSINE[TERMS - 1];
-  V sinc = SINC[TERMS] * square + SINC[TERMS - 1];
+  V cosine = BY.cosine[TERMS] * square + BY.cosine[TERMS - 1];
+  V sinc = BY.sinc[TERMS] * square + BY.sinc[TERMS - 1];
   for (int term = TERMS - 2; term >= 0; term--) {
-    cosine = cosine * square + COSINE[term];
-    sinc = sinc * square + SINC[term];
+    cosine = cosine * square + BY.cosine[term];
+    sinc = sinc * square + BY.sinc[term];
   }
   return {cosine, sinc};
 }
@@ -229,20 +216,14 @@ INLINE HalfAngle<double> half_angle(double square) {
   return {__builtin_cos(angle), __builtin_sin(angle) / angle};
 }
 
-// The half angles of all lanes, whose squares are at most `bound`.
+// The half angles of all lanes, whose squares are at most `bound`: of a part of a large one, doubled.
 INLINE HalfAngle<Vec> half_angle(Vec square, double bound) {
   if (bound <= NEAR) return half_angle_series<4>(square);
-  if (bound <= FAR) return half_angle_series<8>(square);
-  if (bound <= 4.0 * FAR) {  // twice the angle of the series
-    const HalfAngle<Vec> half = half_angle_series<8>(0.25 * square);
-    return {2.0 * half.cosine * half.cosine - 1.0, half.cosine * half.sinc};
-  }
-  HalfAngle<Vec> found{};
-  for (int lane = 0; lane < LANES; lane++) {
-    const HalfAngle<double> one = half_angle(double(square[lane]));
-    found.cosine[lane] = one.cosine;
-    found.sinc[lane] = one.sinc;
-  }
+  int doubled = 0;
+  for (; bound > FAR && doubled < 512; doubled++, bound *= 0.25) square *= 0.25;
+  HalfAngle<Vec> found = half_angle_series<8>(square);
+  for (; doubled > 0; doubled--)
+    found = {2.0 * found.cosine * found.cosine - 1.0, found.cosine * found.sinc};
   return found;
 }
 

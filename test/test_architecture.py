@@ -30,15 +30,16 @@ PACKAGES = {
 STOREYS = {
     'errors': 0, 'faces': 0, 'tables': 0, 'drawn': 0, 'by_name': 26, 'extras': 1, 'cache': 1,
     'worker': 1, 'newest': 1, '__main__': 40,
-    'doorkeeper': 1, 'installed_models': 2, 'commands': 19, 'core': 20, 'growth': 21, 'twin': 21,
-    'fidelity': 21,
+    'doorkeeper': 1, 'installed_models': 2, 'commands': 19, 'core': 20, 'growth': 21,
+    'identification': 21, 'twin': 21, 'fidelity': 21,
     'simulation': 22, 'files': 23, 'parameters': 23, 'live': 24, 'stream': 24, 'page': 25,
     'pictures': 25, 'forest': 25,
     'core.arrays': 3, 'core.rotation': 4, 'core.checks': 4, 'core.random_source': 4,
     'core.native': 4, 'core.drag': 5, 'core.species': 5, 'core.tree': 6, 'core.wind': 7,
     'core.oscillators': 7, 'core.leaves': 8, 'core.settings': 8, 'core.tree_state': 7,
     'core.model': 9, 'core.setup': 10, 'core.run': 11, 'core.scene': 13,
-    'files.commands': 30, 'growth.commands': 31, 'live.commands': 31, 'page.commands': 32,
+    'files.commands': 30, 'growth.commands': 31, 'identification.commands': 31,
+    'live.commands': 31, 'page.commands': 32,
     'twin.commands': 33, 'simulation.commands': 34, 'pictures.commands': 35, 'forest.commands': 35,
 }  # fmt: skip
 #: Rooms with a face of their own.

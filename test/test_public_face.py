@@ -93,3 +93,13 @@ def test_one_default_model_behind_every_door() -> None:
     for command, *more in (['demo'], ['show'], ['plot', '-o', 'a.png']):
         parser = _parser(command, _table('')[0], '')
         assert parser.parse_args([command, 'goldcrest', *more]).model == default
+
+
+def test_a_tree_of_other_units_or_axes_is_refused_or_told() -> None:
+    def stem(end: list[float], diameter: float) -> tree_sway.Tree:
+        return tree_sway.tree_from_segments([[0.0, 0.0, 0.0]], [end], [diameter])
+
+    with pytest.raises(tree_sway.TreeSwayError, match='give metres'):
+        tree_sway.simulate(stem([0.0, 0.0, 4000.0], 100.0), np.ones((2, 3)), model=2)
+    with pytest.warns(UserWarning, match='a lean of 90 degrees'):
+        tree_sway.simulate(stem([0.0, 4.0, 0.0], 0.1), np.ones((2, 3)), model=2)

@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from tree_sway.files.trees import open_tree as open_tree
     from tree_sway.files.wind import read_wind as read_wind
     from tree_sway.growth import grow as grow
+    from tree_sway.identification import calibrate as calibrate
     from tree_sway.simulation import SwayRecord as SwayRecord
     from tree_sway.stream import StreamClient as StreamClient
-    from tree_sway.twin import calibrate as calibrate
 else:
     __getattr__, __dir__, __all__ = face(__name__)
     __all__ = sorted((*__all__, '__version__'))

@@ -6,11 +6,12 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+import warnings
 
 from numpy.typing import ArrayLike
 
 from tree_sway.core.species import species_keys
-from tree_sway.core.tree import GrownTree, Tree
+from tree_sway.core.tree import GrownTree, oddities, refuse_implausible, Tree, tree_and_species
 from tree_sway.files.trees import open_tree
 from tree_sway.files.wind import read_wind
 from tree_sway.growth import BUILTIN_TREES, grow
@@ -50,6 +51,11 @@ def simulate(
         tree = grow(tree, HEIGHT, name=f'{tree} of {HEIGHT:g} m')
     elif isinstance(tree, str | Path):
         tree = open_tree(tree)
+    elif isinstance(tree, Tree):
+        wood = tree_and_species(tree)
+        refuse_implausible(*wood)
+        for each in oddities(*wood):
+            warnings.warn(each, stacklevel=2)
     if isinstance(wind, str | Path):
         wind = read_wind(wind)
     return simulate_tree(tree, wind, **options)

@@ -42,6 +42,11 @@ COMMANDS: dict[str, Command] = {
         'fuzz --minutes 0.1 --only "Modbus TCP"',
         'tree_sway_lab.fuzz.command',
     ),
+    'hours': Command(
+        'whether a tree with a sensor drifts or raises false alarms in hours of weather',
+        'hours --hours 0.1',
+        'tree_sway_lab.twin.hours_command',
+    ),
     'paper': Command(
         'the experiment of Kanda & Ohya as it is written, and what ours does instead',
         'paper',

@@ -83,7 +83,7 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
             ['grow', 'oak', '--height', '0,45', '-o', 'a.yaml'],
             "--height: '0,45' is no number; give it in m, with a point",
         ),
-        (['info', 'benjamina', '--seed', 'one'], "--seed: 'one' is no number; give it with"),
+        (['info', 'benjamina', '--seed', '1.5'], "'1.5' is no whole number; give it as 12"),
         (
             ['info', 'oak'],
             "it is a species: tree-sway grow oak --height 10 -o oak.yaml, or grow('oak', 10)",
@@ -100,6 +100,7 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
         (['info', 'benjamina', '--density', 'inf'], '--density: inf is not a finite number'),
         (['info', 'benjamina', '--count', '0'], '--count: 0 is out of range; use 1 to'),
         (['info', 'benjamina', '--seed', '-1'], 'seed: -1 is out of range'),
+        (['show', '--seconds', '-5'], '--seconds: -5.0 is out of range'),
         (['plot', '--seconds', '0', '-o', 'a.png'], '--seconds: 0.0 is out of range'),
         (['plot', '--wind', '/no/such.csv', '-o', 'a.png'], '/no/such.csv: no such file'),
         (

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from tree_sway.core.settings import MODELS, Settings, USUAL
+from tree_sway.core.wind import simulate_turbulence, WindProfile
 from tree_sway.errors import ParameterError
+from tree_sway.simulation import simulate
 
 
 def test_the_defaults_stand():
@@ -56,6 +58,29 @@ def test_what_is_out_of_range_is_refused(given, message):
 
 def test_a_number_may_be_given_as_text():
     assert Settings(model='20') == Settings(model=20)
+
+
+@pytest.mark.parametrize(
+    'whole',
+    [
+        {'gravity': 0},
+        {'root_stiffness': 10**9},
+        {'damping_ratio': 1},
+        {'max_wind': 40},
+        {'anemometer_distance': 12, 'anemometer_bearing': 1},
+        {'profile': WindProfile('power', 2)},
+    ],
+    ids=str,
+)
+def test_a_whole_number_is_a_number(fork, whole):
+    simulate(fork(), np.ones((2, 3)), model=2, **whole)
+
+
+def test_a_bearing_in_degrees_is_refused():
+    with pytest.raises(ParameterError, match=r'anemometer_bearing: 270 is out of range.* rad'):
+        Settings(anemometer_bearing=270)
+    with pytest.raises(ParameterError, match=r'bearing_to: 270 is out of range.* rad'):
+        simulate_turbulence(5.0, duration=1.0, bearing_to=270)
 
 
 def test_settings_are_equal_if_their_arrays_are():

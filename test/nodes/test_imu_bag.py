@@ -37,7 +37,7 @@ from tree_sway_ros.wire.wind_messages import (  # noqa: E402
 )
 
 PERIOD = 16_666_667
-DT, SECONDS = PERIOD * 1e-9, 40
+DT, SECONDS = PERIOD * 1e-9, 34
 DELAY = 0.5
 """Delay of the wind in [s]: samples are there before, also on a busy machine."""
 START = 102_000_000_000 * PERIOD

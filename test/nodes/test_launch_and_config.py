@@ -142,6 +142,24 @@ def test_a_misspelled_argument_is_told(launch_file):
     typed = {'wind_sorce': 'player', 'ros_namespace': '/elm', 'other_package': 'x'}
     _, warnings = launch_file.arguments_given(typed)
     assert warnings == ["no launch argument 'wind_sorce'; did you mean 'wind_source'?"]
+    _, warnings = launch_file.arguments_given({'speed': '12'})
+    assert warnings == ["no launch argument 'speed'; did you mean 'mean_speed'?"]
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'source'),
+    [
+        ('wind_file', 'storm.csv', 'player'),
+        ('sensor_address', 'udp://:10110', 'sensor'),
+        ('wind_topic', '/mast/wind', 'topic'),
+        ('mean_speed', '12', 'simulated'),
+    ],
+)
+def test_an_argument_of_a_source_that_is_not_started_is_told(launch_file, name, value, source):
+    for chosen in launch_file.SOURCES:
+        _, warnings = launch_file.arguments_given({name: value, 'wind_source': chosen})
+        said = f"'{name}' has no effect with wind_source:={chosen}; give {source}"
+        assert warnings == ([] if chosen == source else [f'launch argument {said}'])
 
 
 @pytest.mark.parametrize(
@@ -205,18 +223,6 @@ def test_a_parameter_file_of_any_namespace_is_used(launch_file, tmp_path):
     for heading in ('solver:', '/**:', '/park:\n solver:'):
         path.write_text(f'{heading}\n  ros__parameters:\n    rate: 30.0\n')
         launch_file.refuse_params_file(str(path))
-
-
-def test_former_names_of_arguments_work_and_name_their_successors(launch_file):
-    typed = {'source': 'elsewhere', 'shards': '3', 'here': '1', 'tree': 'oak'}
-    given, warnings = launch_file.arguments_given(typed)
-    wanted = {'wind_source': 'remote', 'shard_count': '3', 'local_shards': '1', 'tree': 'oak'}
-    assert {name: given[name] for name in wanted} == wanted
-    assert given['wind_topic'] == 'wind'
-    assert len(warnings) == 4
-    assert "launch argument 'here' is now called 'local_shards'" in warnings
-    assert launch_file.arguments_given({'wind_source': 'topic'})[1] == []
-    assert set(launch_file.FORMER_ARGUMENTS.values()) <= set(given)
 
 
 def test_a_source_that_does_not_exist_is_refused(launch_file):

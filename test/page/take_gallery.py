@@ -120,9 +120,9 @@ VIEWS = (
         for size in ((390, 844), (844, 390), (768, 1024))
         for name, script in (('', _CLOSED), ('_open', _OPEN))
     ),
-    View('stand', str(STAND), script='treeSway.scene.camera.set([-0.9, 0.13, 120, 190, 40, 10])'),
+    View('stand', str(STAND)),
     View('stand_software', str(STAND), is_full=False),
-    View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.7)'),
+    View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.86)'),
 )
 
 

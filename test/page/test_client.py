@@ -120,6 +120,16 @@ def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
         until(lambda: 'out of range' in client.problem)
 
 
+def test_the_address_of_the_stream_is_that_of_the_page(server: PageServer) -> None:
+    with StreamClient(f'{server.url}stream') as client:
+        client.wait(DEADLINE)
+
+
+def test_a_client_that_was_not_entered_says_so(server: PageServer) -> None:
+    with pytest.raises(TransportError, match='not connected; with StreamClient'):
+        StreamClient(server.url).wait(DEADLINE)
+
+
 def test_a_change_without_a_connection_is_refused(server: PageServer) -> None:
     client = StreamClient(server.url)
     with pytest.raises(TransportError, match=r"'mean_speed' is not changed: .* connecting"):

@@ -33,6 +33,12 @@ def test_the_figure_of_a_wind_has_its_speed_and_where_it_comes_from() -> None:
     assert lines['comes from'][0] == pytest.approx(270.0)
 
 
+def test_a_calm_comes_from_nowhere() -> None:
+    calm = WindRecord(SECONDS, np.where(SECONDS < 1.0, 0.0, 1.0)[:, None] * TURNING, 'calm.csv')
+    shown = np.isfinite(lines_of(calm.plot())['comes from'])
+    assert (shown == (SECONDS >= 1.0)).all()
+
+
 def test_the_figure_of_a_motion_has_what_was_measured_alone() -> None:
     figure = MotionRecord(SECONDS, TURNING, None, None, 'imu.csv').plot()
     assert len(figure.axes) == 1

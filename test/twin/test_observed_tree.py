@@ -32,7 +32,6 @@ from tree_sway.twin import later_work
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.sensor_place import place_on
 from tree_sway.twin.sensor_report import sensor_reports
-from tree_sway.twin.smoothed_motion import LATE_STEPS
 from tree_sway.twin.tree_fit import TreeFit
 
 DT, SECONDS = 1.0 / 60.0, 70
@@ -42,12 +41,12 @@ TREE, SPECIES = grow('spruce', 5.0, rng=np.random.default_rng(8)), species_named
 AT = f'{TREE.branch_names[0]}:0.6'
 BANDED = list(range(0, TREE.n_branches, 12))
 """Branches whose bands are looked at."""
-SCORED = slice(40 * 60, None)
-"""The mounting is found from the first 20 s and then better."""
+FIRST = 40 * 60
+"""Step from which motion is kept: the mounting is found from the first 20 s and then better."""
 
 
 class Truth(NamedTuple):
-    """Wind (n, 3), tips (n, b, 3), and poses of the place of the sensor, (n, 7)."""
+    """Wind (n, 3), tips from FIRST on (m, b, 3), and poses of the place of the sensor (n, 7)."""
 
     wind: Floats
     tips: Floats
@@ -65,14 +64,15 @@ def truth() -> Truth:
     wind = simulate_turbulence(6.0, rate=60.0, duration=SECONDS, rng=rng)
     place = place_on(TREE, AT)
     away = place.along * TREE.length[place.segment]
-    poses, tips = np.empty((len(wind), 7)), np.empty((len(wind), TREE.n_branches, 3))
+    poses, tips = np.empty((len(wind), 7)), np.empty((len(wind) - FIRST, TREE.n_branches, 3))
     block = np.empty((TREE.n_segments, 7))
     for k, each in enumerate(wind):
         sim.step(each, DT)
         sim.place(block)
         poses[k] = block[place.segment]
         poses[k, :3] = ends_of_poses(block[place.segment : place.segment + 1], [away])[1][0]
-        tips[k] = tips_of_poses(TREE, block)
+        if k >= FIRST:
+            tips[k - FIRST] = tips_of_poses(TREE, block)
     return Truth(wind, tips, poses)
 
 
@@ -86,27 +86,28 @@ def measured(gravity: bool = True) -> SensedMotion:
 
 class Replay(NamedTuple):
     """
-    A tree after a record.
+    A tree after a record, and from FIRST on what it showed.
 
-    Its tips, its late, smoothed tips, (n, b, 3), its band, and that of the highest tip's distance.
+    Its tips, (m, b, 3), its band, and that of the highest tip's distance.
     """
 
     twin: ObservedTree
     tips: Floats
-    late: Floats
     band: Floats
     sway_band: Floats
 
 
-def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
+def replayed(
+    motion: SensedMotion | None, *, learns: bool = False, seconds: int = SECONDS
+) -> Replay:
     twin = ObservedTree(
-        TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns,
-        has_band=True,
-    )  # fmt: skip
-    wind, block = truth().wind, np.empty((TREE.n_segments, 7))
-    tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
-    band = np.empty((len(wind), 2, len(BANDED), 3))
-    sway_band = np.empty((len(wind), 2))
+        TREE, SPECIES, in_leaf=False, at={'phone': AT}, learns=learns, has_band=True
+    )
+    wind, block = truth().wind[: seconds * 60], np.empty((TREE.n_segments, 7))
+    kept = len(wind) - FIRST
+    tips = np.empty((kept, TREE.n_branches, 3))
+    band = np.empty((kept, 2, len(BANDED), 3))
+    sway_band = np.empty((kept, 2))
     first = 0
     for k, each in enumerate(wind):
         while motion is not None and first < len(motion.time):
@@ -118,18 +119,18 @@ def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
             )  # fmt: skip
             first += 1
         twin.step(each, DT)
-        tips[k] = tips_of_poses(TREE, twin.place(block))
-        late[k] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
-        band[k] = twin.band(BANDED)
-        sway_band[k] = twin.sway_band()
-    return Replay(twin, tips, late, band, sway_band)
+        if (row := k - FIRST) < 0:
+            continue
+        tips[row] = tips_of_poses(TREE, twin.place(block))
+        band[row] = twin.band(BANDED)
+        sway_band[row] = twin.sway_band()
+    return Replay(twin, tips, band, sway_band)
 
 
-def dynamic_error(tips: Floats, late: int = 0) -> float:
+def dynamic_error(tips: Floats) -> float:
     """Return the error of the motion about its mean, over the true motion."""
-    rows = SCORED.start
-    true = truth().tips[rows - late : len(tips) - late]
-    motion, wrong = true - true.mean(axis=0), tips[rows:] - true
+    true = truth().tips[: len(tips)]
+    motion, wrong = true - true.mean(axis=0), tips - true
     wrong = wrong - wrong.mean(axis=0)
     return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
 
@@ -150,23 +151,18 @@ def alone() -> Replay:
 
 
 def test_a_sensor_takes_most_of_the_error_away() -> None:
-    twin, tips, late, *_ = good()
+    twin, tips, *_ = good()
     error, without = dynamic_error(tips), dynamic_error(alone().tips)
-    smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
     assert error < 0.6 * without
-    assert smoothed < error
     assert not twin.problems
     counts = twin.sensors['phone'].counts
     assert counts.accepted == len(truth().wind)
     assert counts.refused == counts.disagreed == counts.clamped == 0
 
 
-def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
-    _twin, tips, late, *_ = good()
-    true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
-    rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
-    assert np.sqrt(rough[1]) < 1.5
-    assert np.sqrt(rough[0]) < 2.5
+def test_the_motion_is_hardly_rougher_than_the_true_one() -> None:
+    rough = [np.square(np.diff(each, 2, axis=0)).sum() for each in (good().tips, truth().tips)]
+    assert np.sqrt(rough[0] / rough[1]) < 2.5
 
 
 def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
@@ -185,11 +181,31 @@ def test_a_silent_sensor_is_counted_and_its_correction_fades() -> None:
     motion = measured()
     kept = motion.time < 50.0
     short = SensedMotion(*(each[kept] for each in motion))
-    twin, tips, *_ = replayed(short)
+    twin, tips, *_ = replayed(short, seconds=60)
     assert twin.sensors['phone'].counts.silent == 1
     assert 'silent' in twin.problems[0]
-    after = slice(round(54.0 / DT), None)
+    after = slice(54 * 60 - FIRST, len(tips))
     np.testing.assert_allclose(tips[after], alone().tips[after], atol=1e-3)
+
+
+def test_in_a_calm_a_tree_does_not_follow_the_noise_of_its_sensor() -> None:
+    twin = ObservedTree(TREE, SPECIES, model=30, in_leaf=False, at={'phone': AT})
+    motion, rng, moved = measured(), np.random.default_rng(19), list[Floats]()
+    still = motion.acceleration.mean(axis=0)
+    block = np.empty((TREE.n_segments, 7))
+    for k in range(105 * 60):
+        is_calm = k >= 35 * 60
+        felt = still + 0.03 * rng.normal(size=3) if is_calm else motion.acceleration[k]
+        turning = 0.004 * rng.normal(size=3) if is_calm else motion.rate[k]
+        twin.offer('phone', (k + 1) * DT, acceleration=felt, rate=turning)
+        twin.step((0.4, 0.0, 0.0) if is_calm else truth().wind[k], DT)
+        if k == 35 * 60:
+            assert twin.observer.trust.any()
+        moved.append(tips_of_poses(TREE, twin.place(block))[0])
+    gusty, calm = (
+        np.std(moved[rows], axis=0).max() for rows in (slice(1500, 2100), slice(-600, None))
+    )
+    assert calm < 0.025 * gusty
 
 
 def test_a_sensor_that_comes_loose_is_refused() -> None:
@@ -197,10 +213,10 @@ def test_a_sensor_that_comes_loose_is_refused() -> None:
     turned = motion.acceleration.copy()
     loose = motion.time > 50.0
     turned[loose] = turned[loose][:, [1, 2, 0]]
-    twin, tips, *_ = replayed(motion._replace(acceleration=turned))
+    twin, tips, *_ = replayed(motion._replace(acceleration=turned), seconds=62)
     assert twin.sensors['phone'].counts.disagreed >= 1
     assert twin.problems
-    after = slice(round(56.0 / DT), None)
+    after = slice(56 * 60 - FIRST, len(tips))
     np.testing.assert_allclose(tips[after], alone().tips[after], atol=5e-3)
 
 
@@ -223,7 +239,7 @@ def test_a_hostile_sensor_does_not_move_the_tree_beyond_its_storms(size: float) 
     shaken[hostile] += size * np.sign(rng.normal(size=(int(hostile.sum()), 3)))
     sway = size * np.sin(2.0 * np.pi * motion.time[hostile])
     shaken[hostile, 0] += sway
-    twin, tips, *_ = replayed(motion._replace(acceleration=shaken))
+    twin, tips, *_ = replayed(motion._replace(acceleration=shaken), seconds=60)
     storm = make_simulator(TREE, SPECIES, in_leaf=False)
     for _ in range(600):
         storm.step((36.0, 0.0, 0.0), DT)
@@ -255,9 +271,8 @@ def test_the_motion_does_not_depend_on_when_work_beside_the_steps_is_done(
 ) -> None:
     """As late as can be, by the steps themselves: then it would read what they have changed."""
     monkeypatch.setattr(later_work, 'submit_beside', Postponed)
-    _twin, tips, late, band, _ = replayed(measured(), learns=True)
+    _twin, tips, band, _ = replayed(measured(), learns=True)
     np.testing.assert_array_equal(tips, learning().tips)
-    np.testing.assert_array_equal(late, learning().late)
     np.testing.assert_array_equal(band, learning().band)
 
 
@@ -314,8 +329,8 @@ def test_models_without_coordinates_are_refused() -> None:
 def test_the_band_holds_the_real_tree_and_a_sensor_narrows_it() -> None:
     widths = []
     for each in (alone(), good()):
-        beyond = (truth().tips - each.tips)[SCORED][:, BANDED, :2]
-        low, high = np.moveaxis(each.band[SCORED, ..., :2], 1, 0)
+        beyond = (truth().tips - each.tips)[:, BANDED, :2]
+        low, high = np.moveaxis(each.band[..., :2], 1, 0)
         held = float(((low <= beyond) & (beyond <= high)).mean())
         # More than 80 %: the drag of this tree is that of the model, and its wood near it.
         assert held > 0.75
@@ -334,10 +349,9 @@ def test_the_band_of_the_sway_holds_that_of_the_real_tree() -> None:
     widths = []
     for each in (alone(), good()):
         true, found = (
-            np.linalg.norm(tips[SCORED, highest] - rest, axis=1)
-            for tips in (truth().tips, each.tips)
+            np.linalg.norm(tips[:, highest] - rest, axis=1) for tips in (truth().tips, each.tips)
         )
-        low, high = each.sway_band[SCORED].T
+        low, high = each.sway_band.T
         assert np.mean((low <= true - found) & (true - found <= high)) > 0.75
         widths.append(np.median(high - low))
     assert widths[1] < widths[0]
@@ -381,7 +395,7 @@ def test_a_step_with_a_sensor_makes_no_arrays(tmp_path: Path) -> None:
 
 def print_memory_of_steps(wind: Floats, *motion: Floats) -> None:
     """Print the peak of 198 steps over the memory before them, and what they keep [B]."""
-    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True)
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
     winds = [tuple(each) for each in wind.tolist()]
     samples = list(zip(*(each.tolist() for each in motion), strict=True))
 

@@ -51,6 +51,12 @@ def test_a_late_or_early_sensor_is_told_with_its_lag(late: float) -> None:
     assert ('after' if late > 0.0 else 'before') in str(found)
 
 
+@pytest.mark.parametrize(('error', 'is_sure'), [(0.7, False), (0.4, True)])
+def test_a_lag_of_two_deviations_is_none(error: float, is_sure: bool) -> None:
+    found = SensorLag(-1.5, error, evidence=30.0, over_none=7.0, n_lines=60)
+    assert found.is_sure == is_sure
+
+
 def test_the_delay_of_the_expected_wind_is_not_that_of_the_sensor() -> None:
     def later(hertz: Floats) -> Complexes:
         return np.exp(-2j * np.pi * (1.0 - 2.0 * hertz) * hertz)

@@ -100,11 +100,37 @@ def test_a_sensor_is_silent_after_a_second_and_counted_once() -> None:
         of.read(step * DT, step, step - 1)
         if step * DT < 0.9:
             assert track.in_use
+        assert 'clock' not in track.problem
     track.heed()
     assert track.is_silent
     assert not track.in_use
     assert track.sensor.counts.silent == 1
     assert 'silent for 3 s' in track.problem
+
+
+@pytest.mark.parametrize(('seen', 'left'), [(0.0, 20), (12.5, 8), (19.8, 1), (20.0, 1), (21.0, 1)])
+def test_a_mounting_is_promised_in_a_second_or_more(seen: float, left: int) -> None:
+    track = track_of(readings(1)[0])
+    track.sensor.offer(0.0, acceleration=REST)
+    track.native.count = round(seen / DT)
+    assert f'found within {left} s of sway' in track.problem
+
+
+def test_the_mean_difference_from_the_model_is_that_of_the_last_ten_minutes() -> None:
+    track, rng = track_of(readings(1)[0]), np.random.default_rng(2)
+    turn = Rotation.random(random_state=3).as_matrix()
+    found = Alignment(turn, np.array([1.0, 1.0]), True, 0.9, np.full(3, 0.1))
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    track.take(FoundMounting(found, np.zeros(9)))
+    sample = rng.normal(size=9)
+    track._sensed[:], track._computed[:] = sample, 0.0
+    for minutes, left in ((10, np.exp(-1.0)), (30, np.exp(-4.0))):
+        for _ in range(minutes * 60):
+            track.native.count += 60
+            track.heed()
+        missed = found.motion(sample) - track.bias
+        np.testing.assert_allclose(missed, left * found.motion(sample), rtol=0.15)
 
 
 def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:

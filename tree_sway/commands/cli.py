@@ -30,7 +30,7 @@ from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
-_NO_NUMBER = re.compile(r"argument (\S+): invalid (?:float|int) value: '(.*)'")
+_NO_NUMBER = re.compile(r"argument (\S+): invalid (float|int) value: '(.*)'")
 _UNIT = re.compile(r'\[([^]%]+)\]')
 _UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
 
@@ -49,8 +49,11 @@ class _OneLineParser(argparse.ArgumentParser):
             names = (name.lstrip('-') for name in (self.chosen or self)._option_string_actions)
             guess = nearest(wrong[1].lstrip('-'), names).replace("'", "'--", 1)
         elif wrong := _NO_NUMBER.search(message):
-            message = f"argument {wrong[1]}: '{wrong[2]}' is no number"
-            guess = f'give it {self._unit_of(wrong[1])}with a point, as 12 or 0.45'
+            what, form = ('number', 'with a point, as 12 or 0.45')
+            if wrong[2] == 'int':
+                what, form = ('whole number', 'as 12')
+            message = f"argument {wrong[1]}: '{wrong[3]}' is no {what}"
+            guess = f'give it {self._unit_of(wrong[1])}{form}'
         if not guess and message.startswith('unrecognized') and self.chosen:
             guess = str(self.chosen.epilog)
         where = (self.chosen or self).prog

@@ -94,6 +94,14 @@ def refuse_other_kind(name: str, value: object, kind: type, cure: str) -> None:
         raise ParameterError(what, where=name, cure=cure)
 
 
+def refuse_named_columns(name: str, values: object) -> None:
+    """Refuse a data frame: which of its columns is which would be guessed by their order."""
+    if (columns := getattr(values, 'columns', None)) is not None:
+        names = ', '.join(map(str, columns))
+        cure = 'give numbers, such as frame[["x", "y", "z"]].to_numpy(), in SI units'
+        raise ParameterError(f'a table of {names:.80}', where=name, cure=cure)
+
+
 def one_of(name: str, value: object, known: Collection[object]) -> None:
     """Refuse a value that is not known; a `ParameterError` names those that are."""
     if value not in known:

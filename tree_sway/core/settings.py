@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import one_of, refuse_other_kind, within
+from tree_sway.core.checks import one_of, refuse_other_kind, whole, within
 from tree_sway.core.wind import FASTEST_WIND, WindProfile
 from tree_sway.errors import nearest, ParameterError
 
@@ -48,8 +48,7 @@ _RANGES = {
     'gravity': (0.0, 1e3, 'm/s^2', False),
     'crown_coherence': (0.0, 1.0, '', False),
     'anemometer_distance': (0.0, 1000.0, 'm', False),
-    'anemometer_bearing': (-1e3, 1e3, 'rad', False),
-    'gust_seed': (0, MOST_SEED, '', False),
+    'anemometer_bearing': (-6.3, 6.3, 'rad', False),
     'root_stiffness': (0.0, math.inf, 'N m/rad', True),
     'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
 }
@@ -133,7 +132,9 @@ class Settings:
         for name, (low, high, unit, above) in _RANGES.items():
             value = getattr(self, name)
             if value is not None or known[name].default is not None:
-                within(name, value, low, high, unit, above=above)
+                number = within(name, value, low, high, unit, above=above)
+                object.__setattr__(self, name, number)
+        object.__setattr__(self, 'gust_seed', whole('gust_seed', self.gust_seed, 0, MOST_SEED))
         one_of('enrich', self.enrich, _ENRICHED)
         one_of('gusts', self.gusts, GUSTS)
         one_of('in_leaf', self.in_leaf, (True, False, None))

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from tree_sway.pictures.animation import animate_poses as animate_poses
     from tree_sway.pictures.animation import write_pictures as write_pictures
     from tree_sway.pictures.pictures import figure_in_wind as figure_in_wind
-    from tree_sway.pictures.plotting import checked_picture as checked_picture
     from tree_sway.pictures.plotting import new_figure as new_figure
     from tree_sway.pictures.plotting import save_figure as save_figure
     from tree_sway.pictures.tree_drawing import draw_trees as draw_trees

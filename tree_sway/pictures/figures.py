@@ -40,11 +40,13 @@ def of_wind(record: WindRecord) -> Figure:
     figure = new_figure(*_SIZE)
     speed, bearing = figure.subplots(2, 1, sharex=True)
     east, north, _ = record.velocity.T
-    speed.plot(record.time, np.hypot(east, north), label='speed')
+    horizontal = np.hypot(east, north)
+    speed.plot(record.time, horizontal, label='speed')
     if record.gust is not None:
         speed.plot(record.time, record.gust, label='gust')
     speed.set(ylabel='wind [m/s]', ylim=(0.0, None))
     comes_from = np.degrees(np.arctan2(-east, -north)) % 360.0
+    comes_from[horizontal == 0.0] = np.nan  # calm
     bearing.plot(record.time, comes_from, '.', ms=2.0, label='comes from')
     bearing.set(xlabel='time [s]', ylabel='from north [deg]', ylim=(0.0, 360.0))
     return labelled(figure, Path(record.source).name)

@@ -15,7 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.checks import LONGEST_STEP, refuse_other_kind, within
+from tree_sway.core.checks import (
+    LONGEST_STEP,
+    refuse_named_columns,
+    refuse_other_kind,
+    within,
+)
 from tree_sway.core.model import ModelCache, PREPARED
 from tree_sway.core.run import Counts, SwaySimulator
 from tree_sway.core.scene import Run, simulator_of, solved
@@ -131,6 +136,7 @@ def simulate(
         A tree that buckles.
 
     """
+    wind = _checked(tree_and_species(tree)[0], wind, rate, seconds, branches)
     rig = Rig(tree, settings, motion=motion, film=film, band=band, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches, progress=progress)
 
@@ -197,7 +203,8 @@ class Rig:
         tree = self.tree
         simulator = self.simulator
         observed = self.observed
-        chosen = _chosen(self.tree, branches)
+        wind = _checked(tree, wind, rate, seconds, branches)
+        chosen = _chosen(tree, branches)
         if observed is not None:
             observed.set_rate(rate)
             for each in self.motion:
@@ -231,11 +238,9 @@ class Rig:
                 load = observed.load_band(per_rotation)
                 bands.append((tips + observed.band(chosen.tolist()), moment + load))
 
-        steps_per_second = within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz')
-        count, steps = _steps(simulator, wind, steps_per_second, measure)
+        count, steps = _steps(simulator, wind, rate, measure)
         short = ''
         if seconds is not None:
-            within('seconds', seconds, 0.0, 1e9, 's', above=True)
             short = shorter_than(count / rate, seconds)
             count = min(count, max(round(seconds * rate), 1))
         refuse_too_many_steps(count, rate)
@@ -342,6 +347,12 @@ def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
     now = simulator.counts
     found = [bank.doubt for bank in simulator.banks if bank.doubt]
+    n_steps = now.steps - before.steps
+    if refused := now.refused - before.refused:
+        found.append(
+            f'the wind of {refused} of {n_steps} steps was refused, faster than '
+            f'{simulator.settings.max_wind:g} m/s: the last one before was held'
+        )
     if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     solved, slash, asked = simulator.model.partition('/')
@@ -353,7 +364,6 @@ def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
             f"{simulator.banks[0].n_shown} moved at the end; compare with model 'full'"
         )
     elif now.clamped > before.clamped:
-        n_steps = now.steps - before.steps
         found.append(
             f'{now.clamped - before.clamped} loads in {n_steps} steps were clamped to the limit '
             'of the model'
@@ -390,40 +400,58 @@ def refuse_too_many_steps(count: float, rate: float) -> None:
         )
 
 
-def _steps(
-    simulator: SwaySimulator, wind: WindSamples | ArrayLike, rate: float,
-    measure: Callable[[int, Floats], None],
-) -> tuple[int, Iterator[None]]:  # fmt: skip
-    """Return the number of steps in a wind, and an iterator over them."""
+def _checked(
+    tree: Tree, wind: WindSamples | ArrayLike, rate: float, seconds: float | None,
+    branches: Sequence[int] | None,
+) -> WindSamples | Floats:  # fmt: skip
+    """Return a wind, the means of steps as numbers; refuse what `Rig.run` cannot simulate."""
+    within('rate', rate, 1.0 / LONGEST_STEP, 10_000.0, 'Hz')
+    if seconds is not None:
+        within('seconds', seconds, 0.0, 1e9, 's', above=True)
+    _chosen(tree, branches)
     if isinstance(wind, WindSamples):
-        duration = float(wind.time[-1]) - float(wind.time[0]) if len(wind.time) else 0.0
-        count = int(min(duration * rate + 1e-6, 1e15))
+        duration = _duration(wind)
+        if duration * rate + 1e-6 >= 1.0:
+            return wind
         what = f'a wind record of {duration:g} s'
-        steps = _through_record(simulator, wind, rate, measure)
     else:
+        refuse_named_columns('wind', wind)
         try:
-            means = np.asarray(wind, dtype=np.float64)
+            means = np.atleast_1d(np.asarray(wind, dtype=np.float64))
         except (TypeError, ValueError, OverflowError):
             text = ' '.join(repr(wind).split())[:80]
             cure = 'open a file by read_wind, or give the mean of each step, (t, 3)'
             raise ParameterError(f'{text} is no wind', where='wind', cure=cure) from None
-        means = np.atleast_1d(means)
-        is_long = means.ndim == 2 and means.shape[1] == 3
-        count = len(means) if is_long else 0
         what = f'wind of shape {means.shape}'
         if not np.isfinite(means).all():
-            count = 0
             what = 'wind that is not finite'
-        run = Run(simulator, rate, stepped=measure)
-        steps = map(run.step, means)
-    if not count:
-        cure = (
-            'give a record of one step at least, as by read_wind or simulate_turbulence, or the '
-            'mean of each step, (t, 3): np.full((3600, 3), (8, 0, 0)) is a minute of 8 m/s to the '
-            'east at 60 Hz'
-        )
-        raise ParameterError(what, where='wind', cure=cure)
-    return count, steps
+        elif means.ndim == 2 and len(means) and means.shape[1] == 3:
+            fastest = float(np.linalg.norm(means, axis=1).max())
+            if fastest <= FASTEST_WIND:
+                return means
+            what = f'wind of {fastest:.4g} m/s, above {FASTEST_WIND:g}'
+    cure = (
+        'give a record of one step at least, as by read_wind or simulate_turbulence, or the '
+        'mean of each step, (t, 3): np.full((3600, 3), (8, 0, 0)) is a minute of 8 m/s to the '
+        'east at 60 Hz'
+    )
+    raise ParameterError(what, where='wind', cure=cure)
+
+
+def _duration(wind: WindSamples) -> float:
+    """Return the time of a record in [s]."""
+    return float(wind.time[-1]) - float(wind.time[0]) if len(wind.time) else 0.0
+
+
+def _steps(
+    simulator: SwaySimulator, wind: WindSamples | Floats, rate: float,
+    measure: Callable[[int, Floats], None],
+) -> tuple[int, Iterator[None]]:  # fmt: skip
+    """Return the number of steps in a wind, and an iterator over them."""
+    if isinstance(wind, WindSamples):
+        count = int(min(_duration(wind) * rate + 1e-6, 1e15))
+        return count, _through_record(simulator, wind, rate, measure)
+    return len(wind), map(Run(simulator, rate, stepped=measure).step, wind)
 
 
 def _through_record(

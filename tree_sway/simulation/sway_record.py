@@ -112,6 +112,10 @@ class SwayRecord(Drawn):
         return '\n'.join([head, *(','.join(f'{x:.9g}' for x in row) for row in rows), ''])
 
     def __repr__(self) -> str:
+        """Say what `str` does, and each note on a line of its own."""
+        return '\n'.join([str(self), *(f'note: {each}' for each in self.notes)])
+
+    def __str__(self) -> str:
         """Name tree, model, length, wind and the largest motion of the first tip on one line."""
         speed = float(np.linalg.norm(self.wind, axis=1).mean())
         said = (

@@ -78,7 +78,8 @@ class StreamClient:
     Parameters
     ----------
     url
-        Address of the page, with its token if it has one: ``http://127.0.0.1:8765/``.
+        Address of the page or of its stream, with its token if it has one:
+        ``http://127.0.0.1:8765/``.
     rate
         Requested frames per second [Hz].
     delay
@@ -133,7 +134,7 @@ class StreamClient:
         within('rate', rate, 0.1, 1000.0, 'Hz')
         if delay is not None:
             within('delay', delay, 0.0, 60.0, 's')
-        path = parts.path.rstrip('/') + '/stream'
+        path = parts.path.rstrip('/').removesuffix('/stream') + '/stream'
         self.url = urlunsplit((_SCHEMES[parts.scheme], parts.netloc, path, '', ''))
         """Address of the stream; its token is sent separately, so that no message shows it."""
         token = parse_qs(parts.query).get('token')
@@ -209,9 +210,13 @@ class StreamClient:
         Raises
         ------
         TransportError
-            The server refuses the token, or its certificate is not trusted.
+            The server refuses the token, its certificate is not trusted, or the client was not
+            entered.
 
         """
+        if self._thread is None:
+            cure = 'with StreamClient(...) as client'
+            raise TransportError('not connected', where=self.url, cure=cure)
         with self._more:
             self._more.wait_for(lambda: self.received >= frames or self._refusal, seconds)
             if self.received < frames and self._refusal is not None:

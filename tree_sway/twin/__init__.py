@@ -8,8 +8,7 @@ how the sensor is mounted, `sensor_readings` is what it measures beyond the mode
 steady-state Kalman filter (`unknown_motion`, `gain_design`, `steady_filter`, `observer`) moves the
 coordinates. `ObservedTree` is the simulator in which this happens, `observed_scene` makes it from
 a scene, `members` says how sure it is (the band). `tree_fit` and `running_fit` learn stiffness and
-damping, `sway_watch` tells when a tree sways differently than it did. `identification` has the
-same for a record: free decay, spectra, `calibrate`.
+damping, `sway_watch` tells when a tree sways differently than it did.
 
 ``doc/motion_sensors.md`` says what is promised, and what it was measured on.
 """
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
     from tree_sway.twin.alignment import align as align
     from tree_sway.twin.alignment import Alignment as Alignment
     from tree_sway.twin.alignment import GRAVITY as GRAVITY
-    from tree_sway.twin.identification.calibration import calibrate as calibrate
-    from tree_sway.twin.identification.measured_sway import estimate_sway as estimate_sway
     from tree_sway.twin.learned_tree import LearnedTree as LearnedTree
     from tree_sway.twin.members import uncertainty_of as uncertainty_of
     from tree_sway.twin.members import uncorrelated_draws as uncorrelated_draws
@@ -36,7 +33,6 @@ if TYPE_CHECKING:
     from tree_sway.twin.sensor_place import SensorPlace as SensorPlace
     from tree_sway.twin.sensor_place import strain_of as strain_of
     from tree_sway.twin.sensor_report import sensor_reports as sensor_reports
-    from tree_sway.twin.smoothed_motion import LATE_STEPS as LATE_STEPS
     from tree_sway.twin.tree_fit import TreeFit as TreeFit
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.rotation import cross_matrix, quaternion_rotated
+from tree_sway.core.rotation import about_up, cross_matrix, quaternion_rotated
 
 GRAVITY = 9.80665
 """Standard gravity in [m/s^2]."""
@@ -119,7 +119,7 @@ class Alignment:
 
     def turned(self, angle: float, error: float) -> Alignment:
         """Return it turned from east to north by an angle of an error, both in [rad]."""
-        return replace(self, turn=_about_up(angle) @ self.turn, azimuth_error=error)
+        return replace(self, turn=about_up(angle) @ self.turn, azimuth_error=error)
 
 
 def align(
@@ -218,7 +218,7 @@ def align(
             f'its motion resembles that of the tree by {likeness:.2f} only, too little to know '
             'which way it faces: wait for more wind or tell it, check place and clock'
         )
-    noise = noise_of(found.motion(raw))
+    noise = _noise_of(found.motion(raw))
     return replace(
         found, has_gravity=has_gravity, likeness=likeness, noise=noise, azimuth_error=error,
         problem=problem, notes=tuple(notes),
@@ -258,23 +258,19 @@ def _mounted(
     scaled = sensed.copy()
     scaled[:, :3] *= scale[0]
     scaled[:, 3:6] *= scale[1]
+
+    def turned(upright: Floats) -> Floats:
+        if facing is None:
+            return _azimuth(scaled, model, upright, measures) @ upright
+        return about_up(facing - _faced(upright)) @ upright
+
     turns = [np.eye(3)]
     if measures[2] and reference is not None:
         level = matrix_of(reference)
-        turns = [
-            _azimuth(scaled, model, each, measures) @ each
-            for each in (level, _UPSIDE_DOWN @ level)
-        ]
-        if facing is not None:
-            both = level, _UPSIDE_DOWN @ level
-            turns = [_about_up(facing - _faced(each)) @ each for each in both]
+        turns = [turned(level), turned(_UPSIDE_DOWN @ level)]
     elif measures[0] and has_gravity:
         felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
-        upright = turn_onto(scaled[:, :3].mean(axis=0), felt)
-        if facing is None:
-            turns = [_azimuth(scaled, model, upright, measures) @ upright]
-        else:
-            turns = [_about_up(facing - _faced(upright)) @ upright]
+        turns = [turned(turn_onto(scaled[:, :3].mean(axis=0), felt))]
     elif measures[:2].any():
         turns = [_whole_turn(scaled, model, measures[:2])]
     found = [Alignment(turn, scale, has_gravity, 0.0, np.zeros(3)) for turn in turns]
@@ -287,12 +283,6 @@ def _faced(turn: Floats) -> float:
     """Azimuth to which the z axis of a turned sensor points, or its y axis, in [rad]."""
     axis = turn[:, 2] if abs(turn[2, 2]) < _UPRIGHT else turn[:, 1]
     return math.atan2(axis[1], axis[0])
-
-
-def _about_up(angle: float) -> Floats:
-    """Rotation about the vertical, (3, 3)."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def averaged(rows: Floats, window: int) -> Floats:
@@ -315,21 +305,17 @@ def _gravity_of(acceleration: Floats, notes: list[str]) -> tuple[float, bool, st
     if steady < _NO_GRAVITY:
         notes.append(_WITHOUT)
         return 1.0, False, ''
-    return (
-        1.0,
-        True,
-        (
-            f'a mean acceleration of {steady:.3g} is neither gravity in m/s^2 nor in g, nor '
-            'without it: check the unit, and that the sensor was fixed all the time'
-        ),
+    problem = (
+        f'a mean acceleration of {steady:.3g} is neither gravity in m/s^2 nor in g, nor without '
+        'it: check the unit, and that the sensor was fixed all the time'
     )
+    return 1.0, True, problem
 
 
 def _rate_unit(rate: Floats, model: Floats, notes: list[str]) -> float:
     """Factor to [rad/s]: rates in degrees are 57 times those of the model."""
-    sizes = [float(np.sqrt(np.square(each - each.mean(axis=0)).sum())) for each in (rate, model)]
-    ratio = sizes[0] / max(sizes[1], 1e-12)
-    if ratio > math.sqrt(1.0 / _PER_DEGREE):  # halfway between both units
+    own, wanted = (float(np.linalg.norm(each - each.mean(axis=0))) for each in (rate, model))
+    if own > max(wanted, 1e-12) * math.sqrt(1.0 / _PER_DEGREE):  # halfway between both units
         notes.append('angular rate in degrees per second')
         return _PER_DEGREE
     return 1.0
@@ -340,7 +326,8 @@ def _pairs(
 ) -> Iterator[tuple[Floats, Floats, float]]:
     """Yield each quantity (n, 3) about its mean, that of the model, and the size of this one."""
     for first in (3 * np.flatnonzero(measures)).tolist():
-        own, wanted = (_centred(each[:, first : first + 3]) for each in (moved, model))
+        own, wanted = (each[:, first : first + 3] for each in (moved, model))
+        own, wanted = own - own.mean(axis=0), wanted - wanted.mean(axis=0)
         yield own, wanted, max(float(np.square(wanted).sum()), 1e-300)
 
 
@@ -352,7 +339,7 @@ def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.b
         along += float((own[:, :2] * wanted[:, :2]).sum()) / size
         turned = own[:, 0] * wanted[:, 1] - own[:, 1] * wanted[:, 0]
         across += float(turned.sum()) / size
-    return _about_up(math.atan2(across, along))
+    return about_up(math.atan2(across, along))
 
 
 def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:
@@ -379,11 +366,7 @@ def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> 
     return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
 
 
-def _centred(rows: Floats) -> Floats:
-    return np.asarray(rows - rows.mean(axis=0))
-
-
-def noise_of(moved: Floats) -> Floats:
+def _noise_of(moved: Floats) -> Floats:
     """
     Estimate the deviation of the noise of each quantity, (3,), from motion at equal steps, (n, 9).
 

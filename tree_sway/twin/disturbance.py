@@ -24,7 +24,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.drag import drag_density
 from tree_sway.core.setup import base_motion, own_motion
-from tree_sway.core.wind.gusts import DECAY, N_DELAYS, parts_of
+from tree_sway.core.wind.gusts import DECAY, limbs_of, N_DELAYS, parts_of
 
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
@@ -74,11 +74,6 @@ class Disturbance:
     reach: Floats
 
 
-def time_constant(speed: float) -> float:
-    """Time in [s] after which an unknown force has decayed to 1/e in a mean wind [m/s]."""
-    return 0.31 * _LENGTH / speed
-
-
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
     branches = simulator.banks[0].branches
@@ -88,7 +83,8 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     air_damping = np.diag(drag)[:count].copy()
     slope = all_slopes[:, :, :count]
 
-    limb = _limbs(simulator)[simulator.tree.branch_of_segment[branches['first']]]
+    tree = simulator.tree
+    limb = limbs_of(tree.branch_parent)[tree.branch_of_segment[branches['first']]]
     n_limbs = int(limb.max()) + 1
     area = branches['area'][:, None]
     by_limb, load, moment = (
@@ -106,7 +102,7 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
     return Disturbance(
-        covariance, apart, time_constant(speed), air_damping, speed, drag, by_limb, reach
+        covariance, apart, 0.31 * _LENGTH / speed, air_damping, speed, drag, by_limb, reach
     )  # fmt: skip
 
 
@@ -148,14 +144,3 @@ def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[
     area = _SLOPE * per_speed * branches['speed'] * branches['area']
     moved = at + own_motion(branches, 'damping_mode', shapes)
     return area[:, None, None] * (projector @ pushed), moved
-
-
-def _limbs(simulator: SwaySimulator) -> Ints:
-    """Find the number of the limb of each branch of the tree, 0 for the stem, (b,)."""
-    parent = simulator.tree.branch_parent
-    on_stem = parent == 0
-    limb = np.where(on_stem, np.cumsum(on_stem), 0)
-    for branch, below in enumerate(parent.tolist()):
-        if below > 0:
-            limb[branch] = limb[below]
-    return limb

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Ints
 from tree_sway.core.native import address, LIBRARY, NativeFilter, NativeReadings
 from tree_sway.twin.steady_filter import SteadyFilter
 
 
 class Estimate:
     """
-    A filter, its state, and the innovations of the last steps.
+    A filter and its state.
 
     Parameters
     ----------
@@ -34,21 +34,17 @@ class Estimate:
 
     def __init__(self, gains: SteadyFilter, rows: Ints, old: Estimate | None = None) -> None:
         self.gains = gains
-        m, (p, lag) = len(gains.backward), (len(rows), max(gains.backward.shape[1], 1))
+        m = gains.law.step.shape[2]
         self.state, self.calm = np.zeros((2, 3, m))
         """Displacement, rate and disturbance of each coordinate, as told and calm, (3, m)."""
         self.calm_at = address(self.calm)
         if old is not None:
             self.state[:], self.calm[:] = old.state, old.calm
-        self.innovations = np.zeros((lag, p))
-        """What the last steps had beyond what was expected, limited, the oldest first, (l, p)."""
-        self._backward = gains.backward.reshape(m, -1)
-        self._past = np.zeros(m)
         self._native = NativeFilter(
-            coordinates=m, measurements=p, lag=lag,
+            coordinates=m, measurements=len(rows), lag=1,
             law=np.ascontiguousarray(gains.law.step), sensed=gains.sensed.T.copy(),
             gain=gains.gain.T.copy(), deviation=gains.deviation, row=rows, state=self.state,
-            calm=self.calm, innovations=self.innovations,
+            calm=self.calm, innovations=np.zeros((1, len(rows))),
         )  # fmt: skip
 
     def advance(self, readings: NativeReadings, n_periods: int) -> None:
@@ -65,11 +61,3 @@ class Estimate:
         """Scale the motion by a share."""
         self.state *= share
         self.calm *= share
-
-    def past_change(self) -> Floats:
-        """
-        Find what the innovations since tell about the displacements of the lag ago, (m,).
-
-        The array is reused.
-        """
-        return np.dot(self._backward, self.innovations.reshape(-1), out=self._past)

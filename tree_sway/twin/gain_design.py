@@ -61,8 +61,6 @@ class GainDesign:
         Law of the unknown motion.
     tracks, places
         Sensors, and how each is moved by the coordinates of the model.
-    lag
-        Steps by which the smoothed motion is late.
 
     """
 
@@ -71,10 +69,8 @@ class GainDesign:
         unknown: UnknownMotion,
         tracks: Sequence[SensorTrack],
         places: Sequence[PlaceMotion],
-        lag: int,
     ) -> None:
         self._unknown, self._tracks, self._places = unknown, tracks, places
-        self._lag = lag
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self.used: tuple[int, ...] = ()
@@ -106,7 +102,7 @@ class GainDesign:
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        return LaterWork(partial(_gains, used, law, apart, sensed, noise, self._lag), _DUE)
+        return LaterWork(partial(_gains, used, law, apart, sensed, noise), _DUE)
 
     def felt(self, which: int) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -120,10 +116,10 @@ class GainDesign:
 
 
 def _gains(
-    used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats, lag: int
+    used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats
 ) -> Gains:
     """Find the gains of some sensors, judged by gusts of each limb."""
-    found = steady_filter(law, sensed, NOISE * noise, lag)
+    found = steady_filter(law, sensed, NOISE * noise)
     told = told_shares(found, apart, NOISE * noise)
     trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
     return Gains(used, noise, found, trust)

@@ -50,10 +50,10 @@ if TYPE_CHECKING:
     from tree_sway.twin.disturbance import Disturbance
     from tree_sway.twin.observer import Observer
 
-N_MEMBERS = 64
+_N_MEMBERS = 64
 """Number of members."""
 
-WOOD_SPREAD, DAMPING_SPREAD = 0.22, 0.5
+_WOOD_SPREAD, _DAMPING_SPREAD = 0.22, 0.5
 """Log-deviations of Young's modulus within a species, and of damping among trees."""
 
 _LEAST_FAST = 0.04
@@ -74,8 +74,8 @@ _BIAS_TIME = 60.0
 class Uncertainty(NamedTuple):
     """Log-deviations of a tree's stiffness, damping and drag area over the model's."""
 
-    stiffness: float = WOOD_SPREAD
-    damping: float = DAMPING_SPREAD
+    stiffness: float = _WOOD_SPREAD
+    damping: float = _DAMPING_SPREAD
     drag: float = DRAG
 
 
@@ -106,7 +106,7 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
 def most_of(found: Floats) -> Floats:
     """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
     ordered = np.sort(found, axis=-1)
-    rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
+    rank = 0.5 * (1.0 - SHARE_WITHIN) * (_N_MEMBERS + 1) - 1.0
     low = int(rank)
     share = rank - int(rank)
     from_below = (1.0 - share) * ordered[..., low] + share * ordered[..., low + 1]
@@ -139,27 +139,27 @@ class Members:
         far: tuple[FarWind, SwaySimulator] | None = None,
     ) -> None:
         self._far = far
-        self._offsets = SAMPLES // N_MEMBERS * np.arange(N_MEMBERS)
+        self._offsets = SAMPLES // _N_MEMBERS * np.arange(_N_MEMBERS)
         self._observer, self._dt = observer, dt
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
-        self._drawn = uncorrelated_draws(N_MEMBERS, len(spreads), self._rng)
-        self._limb_draws = np.zeros((0, N_MEMBERS))
-        self._per_delay = np.zeros((n * N_MEMBERS, 3 * N_DELAYS))
-        self._late = np.zeros((n, N_MEMBERS))
-        self.motion = np.zeros((2, n, N_MEMBERS))
+        self._drawn = uncorrelated_draws(_N_MEMBERS, len(spreads), self._rng)
+        self._limb_draws = np.zeros((0, _N_MEMBERS))
+        self._per_delay = np.zeros((n * _N_MEMBERS, 3 * N_DELAYS))
+        self._late = np.zeros((n, _N_MEMBERS))
+        self.motion = np.zeros((2, n, _N_MEMBERS))
         """Displacement and rate of each, (2, n, e)."""
-        self._gust, self._force = np.zeros((2, n, N_MEMBERS))
-        self._estimate = np.zeros((3, n, N_MEMBERS))
-        self._bias = np.zeros((0, N_MEMBERS))
+        self._gust, self._force = np.zeros((2, n, _N_MEMBERS))
+        self._estimate = np.zeros((3, n, _N_MEMBERS))
+        self._bias = np.zeros((0, _N_MEMBERS))
         self._slow = np.zeros(2)
         self._fast = 0.0
         self._steps = self._measured = 0
         self._filled_for: tuple[object, object, object] = (None, None, None)
-        self.stiffness = np.ones(N_MEMBERS)
+        self.stiffness = np.ones(_N_MEMBERS)
         """Stiffness of each over the model's, (e,)."""
-        self.errors = np.zeros((n, N_MEMBERS))
+        self.errors = np.zeros((n, _N_MEMBERS))
         """Displacement of each member less the filter's estimate of it, (n, e)."""
 
     def _fill(self) -> None:
@@ -173,7 +173,7 @@ class Members:
         self._damp = np.outer(unknown.all_damping[:n], loss * np.sqrt(self.stiffness))
         self._damp += self._air * self._drag
         step = held_propagator(self._damp.ravel(), self._stiff.ravel(), self._dt)
-        self._step = step.reshape(2, 3, n, N_MEMBERS)
+        self._step = step.reshape(2, 3, n, _N_MEMBERS)
         values, vectors = np.linalg.eigh(forces.covariance)
         kept = values > 1e-4 * values[-1]
         self._decay = math.exp(-self._dt / forces.time_constant)
@@ -193,16 +193,16 @@ class Members:
     def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
         """Find the force on each member per wind of each delay, summed over its limbs."""
         if len(self._limb_draws) != len(reach):
-            self._limb_draws = self._rng.random((len(reach), N_MEMBERS))
+            self._limb_draws = self._rng.random((len(reach), _N_MEMBERS))
         drawn_reach = self._limb_draws * reach[:, None]
         delays = np.rint(drawn_reach * (N_DELAYS - 1)).astype(np.intp)
         n = self._count
-        by_member = np.zeros((N_MEMBERS, N_DELAYS, 3, n))
+        by_member = np.zeros((_N_MEMBERS, N_DELAYS, 3, n))
         for forces, of_limb in zip(by_member, delays.T, strict=True):
             np.add.at(forces, of_limb, slopes)
         by_member *= self._drag[:, None, None, None]
         by_coordinate = by_member.transpose(3, 0, 2, 1)
-        self._per_delay = by_coordinate.reshape(n * N_MEMBERS, -1).copy()
+        self._per_delay = by_coordinate.reshape(n * _N_MEMBERS, -1).copy()
 
     def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
@@ -231,7 +231,7 @@ class Members:
             return
         if self._far is not None:
             winds = self._far[0].others(self._offsets, _ALONG, _ACROSS)
-            self._late = (self._per_part @ winds.reshape(N_MEMBERS, -1).T) * self._drag
+            self._late = (self._per_part @ winds.reshape(_N_MEMBERS, -1).T) * self._drag
         else:
             self._blow(np.array(wind))
             self._reach_limbs(apart)
@@ -254,7 +254,7 @@ class Members:
         missing = (_LEAST_FAST * math.hypot(*self._slow)) ** 2 - self._fast
         if missing > 0.0:
             size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
-            drawn = self._rng.standard_normal((self._gusts.shape[1], N_MEMBERS))
+            drawn = self._rng.standard_normal((self._gusts.shape[1], _N_MEMBERS))
             self._gust += size * (self._gusts @ drawn)
 
     def _reach_limbs(self, apart: Floats) -> None:

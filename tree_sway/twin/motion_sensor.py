@@ -22,7 +22,7 @@ from tree_sway.twin.alignment import matrix_of
 from tree_sway.twin.sample_ring import SampleRing
 from tree_sway.twin.sensor_place import SensorPlace, turn_between
 
-QUANTITIES = ('acceleration', 'rate', 'orientation')
+_QUANTITIES = ('acceleration', 'rate', 'orientation')
 """Quantities of a sample: [m/s^2], [rad/s], and a quaternion x y z w."""
 
 _MANY = 100
@@ -108,7 +108,8 @@ class MotionSensor:
         self._sample = np.full(9, nan)
         self.ring = SampleRing(self._sample)
         """Its last samples."""
-        self._reference: Floats | None = None
+        self.reference: Floats | None = None
+        """First orientation, x y z w; None without orientations."""
         self._first_turn: Floats = np.eye(3)
         self._unit = np.zeros(4)
         self._began = -inf
@@ -205,22 +206,20 @@ class MotionSensor:
             self._began = arrival
             self._soonest_before, self._latest_before = self._soonest, self._latest
             self._soonest, self._latest = inf, -inf
-        if late < self._soonest:
-            self._soonest = late
-        if late > self._latest:
-            self._latest = late
+        self._soonest = min(self._soonest, late)
+        self._latest = max(self._latest, late)
         return self._latest < -_AHEAD and self._latest_before < -_AHEAD
 
     def _begin(self) -> None:
         """Begin anew with the quantities of the sample that is offered."""
         is_given = np.isfinite(self._sample.reshape(3, 3)).all(axis=1).tolist()
-        before, pairs = self.quantities, zip(QUANTITIES, is_given, strict=True)
+        before, pairs = self.quantities, zip(_QUANTITIES, is_given, strict=True)
         self.quantities = tuple([name for name, is_there in pairs if is_there])
         if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
         self.ring.ask_for(is_given)
         if is_given[2]:
-            self._reference = None
+            self.reference = None
             self._sample[6:9] = self._turn(self._unit)
 
     def _turn(self, quaternion: Floats) -> Floats:
@@ -233,12 +232,7 @@ class MotionSensor:
         if quaternion.shape != (4,) or not 0.5 < length < 2.0:
             return np.full(3, np.nan)
         unit = self._unit = quaternion / length
-        if self._reference is None:
-            self._reference = unit
+        if self.reference is None:
+            self.reference = unit
             self._first_turn = matrix_of(unit)
-        return np.asarray(turn_between(self._reference, unit) @ self._first_turn)
-
-    @property
-    def reference(self) -> Floats | None:
-        """First orientation, x y z w; None without orientations."""
-        return self._reference
+        return np.asarray(turn_between(self.reference, unit) @ self._first_turn)

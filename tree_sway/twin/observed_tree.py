@@ -96,8 +96,6 @@ class ObservedTree(SwaySimulator):
         Place of each sensor by its name, as `place_on` takes it.
     rate
         Steps per second in [Hz].
-    is_smoothed
-        Whether the smoothed state is kept too (`smoothed`).
     learns
         Whether stiffness and damping follow the sensors.
     has_band
@@ -127,7 +125,6 @@ class ObservedTree(SwaySimulator):
         *,
         at: Mapping[str, str | float],
         rate: float = 60.0,
-        is_smoothed: bool = False,
         learns: bool = True,
         has_band: bool = False,
         upwind: float = 0.0,
@@ -152,7 +149,7 @@ class ObservedTree(SwaySimulator):
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
         self._explained = ExplainedMotion()
-        self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
+        self._has_band, self._rate = has_band, 0.0
         self._as_made = self.check_tuning()
         self._tuned: tuple[Tuning, ...] = ()
         tunable = self._bank.oscillators.tunable
@@ -188,7 +185,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
-        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = (0.0, 0.0, 0.0)
         self._learned = np.zeros(2)
         self._followed = 0.0
         self._tips: Floats | None = None
@@ -220,12 +217,7 @@ class ObservedTree(SwaySimulator):
             for each in self.sensors.values()
         ]
         self.observer: Observer = Observer(
-            self,
-            tracks,
-            1.0 / rate,
-            before=before,
-            wind=self.late_wind,
-            is_smoothed=self._is_smoothed,
+            self, tracks, 1.0 / rate, before=before, wind=self.late_wind
         )
         """What the sensors tell."""
         self._dragged = DraggedMotion(self.observer, 1.0 / rate)
@@ -321,8 +313,7 @@ class ObservedTree(SwaySimulator):
             self.counts.refused += 1
             x, y, z = self._held_wind
         self._held_wind = x, y, z
-        x, y, z = self.late_wind.push(x, y, z, dt)
-        self._last_wind = x, y, z
+        late = x, y, z = self.late_wind.push(x, y, z, dt)
         whole = self._whole
         if self._far_crown is not None:
             whole[:] = self._far_crown.push(x, y, z, dt)
@@ -330,7 +321,7 @@ class ObservedTree(SwaySimulator):
             by_delay = self._crown.push(x, y, z, dt)
             np.dot(self._share, by_delay, out=whole)
             np.dot(self._about_mean, by_delay, out=self._apart)
-            whole += self._last_wind
+            whole += late
         status = super().step(whole, dt)
         if refused:
             status |= Outcome.WIND_REFUSED
@@ -343,12 +334,11 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        correction = self.observer.step(self.now, self._last_wind, n_periods)
+        correction = self.observer.step(self.now, late, n_periods)
         self._bound(correction)
         self._dragged.step(correction, n_periods, added)
-        self.observer.note_dragged(self._dragged.motion[0])
         if self.members is not None:
-            self.members.step(swing, self._last_wind[:2], self._apart)
+            self.members.step(swing, late[:2], self._apart)
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
@@ -441,7 +431,7 @@ class ObservedTree(SwaySimulator):
         if self.members is not None:
             self.members.reset()
         self.now, self._given = 0.0, None
-        self._held_wind = self._last_wind = (0.0, 0.0, 0.0)
+        self._held_wind = (0.0, 0.0, 0.0)
         for record in self._records.values():
             record.next = 0
 
@@ -451,11 +441,6 @@ class ObservedTree(SwaySimulator):
         if is_changed:
             self.observer.refresh()
         return is_changed
-
-    @property
-    def smoothed(self) -> Floats:
-        """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
-        return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
     def band(self, branches: Sequence[int] | None = None) -> Floats:
         """

@@ -8,8 +8,7 @@ of a model. At each step the difference moves by its own law, and what the senso
 the model corrects it (`estimate`). Sensors that are late are read at an earlier step, and the
 difference is moved on to the present. Without a usable sensor the difference fades.
 
-The motion of the present is the calm one of `Estimate`; the smoothed one is that of
-`smoothed_motion`.
+The motion of the present is the calm one of `Estimate`.
 """
 
 from __future__ import annotations
@@ -30,7 +29,6 @@ from tree_sway.twin.running_fit import RunningFit
 from tree_sway.twin.sensor_place import place_motion
 from tree_sway.twin.sensor_readings import LATEST, SensorReadings
 from tree_sway.twin.sensor_track import SensorTrack
-from tree_sway.twin.smoothed_motion import SMOOTHED_LAG, SmoothedMotion
 from tree_sway.twin.steady_filter import SteadyFilter
 from tree_sway.twin.sway_watch import SwayChange
 from tree_sway.twin.tree_fit import TreeFit
@@ -65,8 +63,6 @@ class Observer:
         The observer before, whose fit goes on; None for a model that is as it was made.
     wind
         Wind of the tree, which is made as late as the sensors tell.
-    is_smoothed
-        Whether the smoothed state is kept too.
 
     """
 
@@ -78,13 +74,11 @@ class Observer:
         *,
         before: Observer | None = None,
         wind: LateWind | None = None,
-        is_smoothed: bool = False,
     ) -> None:
         self.tracks, self._dt = list(tracks), dt
         oscillators: Any = simulator.banks[0].oscillators
-        swing = self._swing = oscillators.swing
-        m = oscillators.shapes.shape[1]
-        n = self.count = min(MOST_COORDINATES, m)
+        swing = oscillators.swing
+        n = self.count = min(MOST_COORDINATES, oscillators.shapes.shape[1])
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
         frequency = float(simulator.frequencies(1)[0])
@@ -97,9 +91,7 @@ class Observer:
         self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt)
         if before is not None:
             self._fit.follow(before._fit)
-        lag = SMOOTHED_LAG if is_smoothed else 0
-        self._design = GainDesign(self.unknown, self.tracks, places, lag)
-        self._smoothed = SmoothedMotion(m, n) if is_smoothed else None
+        self._design = GainDesign(self.unknown, self.tracks, places)
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None
         self.trust = np.zeros(n)
@@ -192,24 +184,19 @@ class Observer:
         """
         self._step += 1
         self.unknown.note_wind(math.hypot(*wind))
-        if self._smoothed is not None:
-            self._smoothed.note_computed(self._step, self._swing[0])
         at = self._readings.read(time, self._step, self._done)
         if at >= 0:
             self._fit.note(wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:
             self._take(gains)
-        if self._estimate is None:
-            self._smooth_unmeasured()
-        elif not self.is_active:
+        if self._estimate is not None:
             self._judge_refused(self._estimate)
-            self._fade(self._estimate, n_periods)
-            self._smooth_unmeasured()
-        else:
-            self._judge_refused(self._estimate)
-            self._fit.advance(self._design.used)
-            self._correct(self._estimate, at, n_periods)
+            if self.is_active:
+                self._fit.advance(self._design.used)
+                self._correct(self._estimate, at, n_periods)
+            else:
+                self._fade(self._estimate, n_periods)
         return self._moved
 
     def _take(self, gains: Gains) -> None:
@@ -231,10 +218,6 @@ class Observer:
             n_periods *= min(at - self._done, LATEST)
             estimate.advance(self._readings.native, n_periods)
             share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
-            if self._smoothed is not None:
-                first = max(self._done + 1, at - LATEST)
-                self._smoothed.note_estimated(first, at, estimate.state[0])
-                self._smoothed.smooth(at, self.trust, estimate.past_change())
             self._done = at
         self._carry(estimate, self._readings.native.late, share)
 
@@ -257,25 +240,6 @@ class Observer:
             squares = np.square(missed) / (expected + np.square(NOISE * noise))
             track.judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
-    def _smooth_unmeasured(self) -> None:
-        """Smooth without a measurement: the motion is the one that was estimated then."""
-        if self._smoothed is None:
-            return
-        at, present = self._step - self.late, self._estimate
-        self._smoothed.note_estimated(at, at, 0.0 if present is None else present.state[0])
-        self._smoothed.smooth(at, self.trust, None)
-
-    @property
-    def smoothed(self) -> Floats:
-        """Displacements of `LATE_STEPS` ago by what was measured since, (m,), reused."""
-        assert self._smoothed is not None
-        return self._smoothed.displacements
-
-    def note_dragged(self, displacements: Floats) -> None:
-        """Note what the correction has moved by drag at this step, (m,)."""
-        if self._smoothed is not None:
-            self._smoothed.add_computed(self._step, displacements)
-
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""
         if self._estimate is not None:
@@ -289,8 +253,6 @@ class Observer:
         self._design.stop()
         for each in (self.trust, self._moved, self.energies):
             each[:] = 0.0
-        if self._smoothed is not None:
-            self._smoothed.reset()
 
     def _fade(self, estimate: Estimate, n_periods: int) -> None:
         estimate.move(n_periods)

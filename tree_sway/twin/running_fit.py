@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
@@ -59,6 +61,8 @@ class RunningFit:
         """Whether the tree still sways as it did, by each sensor."""
         self._uses: list[tuple[int, ...]] = [()] * len(tracks)
         self._stiffness, self._damping = unknown.all_stiffness[:n], unknown.all_damping[:n]
+        self._noted, self._powers = [0] * len(tracks), [0.0] * len(tracks)
+        self._weight, self._air, self._forces = 0.0, np.zeros(n), np.zeros((n, n))
         self._east = self._north = 0.0
         self._n_winds = 0
         self._work: LaterWork[TreeFit] | None = None
@@ -80,6 +84,8 @@ class RunningFit:
             if track.uses != self._uses[k]:
                 self._begin(k)
             if self._spectra[k].advance():
+                if self._spectra[k].count != self._noted[k]:
+                    self._note_air(k)
                 watch = self.watches[k]
                 if watch.is_due:
                     winds = self._east, self._north, self._n_winds
@@ -87,10 +93,27 @@ class RunningFit:
             elif track.is_silent:
                 self._spectra[k].skip()
 
+    def _note_air(self, which: int) -> None:
+        """
+        Note by which air a stretch was damped, and which forces moved it.
+
+        A spectrum is that of hours: with the air of a calm that came last, the wood would seem to
+        damp as the wind before did.
+        """
+        spectrum, forces = self._spectra[which], self._unknown.forces
+        added = spectrum.power - self._powers[which]
+        self._noted[which], self._powers[which] = spectrum.count, spectrum.power
+        if forces is None:
+            return
+        self._weight += added
+        self._air += added * self._unknown.mean_speed / forces.speed * forces.air_damping
+        self._forces += added / max(np.trace(forces.covariance), 1e-300) * forces.covariance
+
     def _begin(self, which: int) -> None:
         """Begin the spectrum of a sensor whose quantities have changed anew."""
         track = self._tracks[which]
         self._uses[which] = track.uses
+        self._noted[which], self._powers[which] = 0, 0.0
         first, second = 3 * track.fitted, 3 * track.uses[0]
         n = len(self._stiffness)
         spectrum = SensorSpectrum(self._frequency, self._dt, n, first, second)
@@ -110,8 +133,7 @@ class RunningFit:
             return
         measured = [k for k in used if self._spectra[k].count]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
-        forces = self._unknown.forces
-        if seconds < self._fit_after or forces is None:
+        if seconds < self._fit_after or not self._weight:
             return
         spectra = [self._spectra[k] for k in used]
         if any(not each.count and each.until_first < _SOON for each in spectra):
@@ -122,8 +144,8 @@ class RunningFit:
             [self._spectrum(k) for k in measured],
             self._stiffness,
             self._damping,
-            forces.air_damping,
-            forces.covariance,
+            self._air / self._weight,
+            self._forces / self._weight,
             1.0 if self.found is None else self.found.drag,
         )
         self._work = LaterWork(find, N_CANDIDATES * len(measured) + 1)

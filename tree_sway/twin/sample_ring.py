@@ -22,7 +22,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY
 from tree_sway.twin.alignment import LEAST_NOISE
 
-OUTCOMES = (
+_OUTCOMES = (
     'accepted', 'restarted', 'not_finite', 'too_large', 'saturated', 'out_of_order', 'stuck',
     'spikes', 'others',
 )  # fmt: skip
@@ -86,7 +86,7 @@ class SampleRing:
 
     def keep(self, time: float) -> str:
         """Check the next sample, of a time in [s], and keep it; return what became of it."""
-        return OUTCOMES[LIBRARY.sway_keep_sample(self._at, time, self._next_at)]
+        return _OUTCOMES[LIBRARY.sway_keep_sample(self._at, time, self._next_at)]
 
     def read(self, time: float, dt: float) -> Floats | None:
         """

@@ -9,7 +9,7 @@ points, the back of a phone's being the tree, may follow: ``3.2 facing 120``.
 
 A pair of strain gauges, on the north and the east side of the wood, is a sensor too: ``1.3
 strain``. What it measures, curvature times radius, is passed on as the rotation of a place, a
-strain of 1 as one by `PER_STRAIN`; ``facing`` is then the bearing of the side of the first gauge.
+strain of 1 as one by `_PER_STRAIN`; ``facing`` is then the bearing of the side of the first gauge.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tree_sway.errors import nearest, ParameterError
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
-PER_STRAIN = 400.0
+_PER_STRAIN = 400.0
 """Rotation [rad] in place of a strain: the least noise of a rotation is a strain of 5e-6."""
 
 _TURN = 1e-4
@@ -212,7 +212,7 @@ def _joint(tree: Tree, place: SensorPlace) -> int:
 
 def bend_at(tree: Tree, poses: Floats, place: SensorPlace) -> Floats:
     """
-    Return curvature times radius at a place by the poses of segments (n, 7), times `PER_STRAIN`.
+    Return curvature times radius at a place by the poses of segments (n, 7), times `_PER_STRAIN`.
 
     It is a vector about which the wood is bent, in the frame of the tree, (3,), by the turn from
     segment to segment at the nearest joint; from there on the moment is taken to be the same.
@@ -223,17 +223,19 @@ def bend_at(tree: Tree, poses: Floats, place: SensorPlace) -> Floats:
     low, high = (float(each[place.segment]) for each in (tree.base_diameter, tree.tip_diameter))
     here = low + place.along * (high - low)
     joint = 0.5 * float(tree.tip_diameter[below] + tree.base_diameter[below + 1])
-    return np.asarray(PER_STRAIN * 0.5 * here * (joint / here) ** 4 * turn / span)
+    return np.asarray(_PER_STRAIN * 0.5 * here * (joint / here) ** 4 * turn / span)
 
 
 def strain_of(bent: Floats) -> Floats:
     """Strain on the north and the east side [-], (..., 2), by `bend_at`; tension is positive."""
-    return np.stack([bent[..., 0], -bent[..., 1]], axis=-1) / PER_STRAIN
+    return np.stack([bent[..., 0], -bent[..., 1]], axis=-1) / _PER_STRAIN
 
 
 def as_orientation(strain: Floats) -> Floats:
     """Return strains on the north and east side (n, 2) as orientations x y z w, (n, 4)."""
-    half = 0.5 * PER_STRAIN * np.column_stack([strain[:, 0], -strain[:, 1], np.zeros(len(strain))])
+    half = (
+        0.5 * _PER_STRAIN * np.column_stack([strain[:, 0], -strain[:, 1], np.zeros(len(strain))])
+    )
     size = np.linalg.norm(half, axis=1)
     return np.column_stack([half * np.sinc(size / np.pi)[:, None], np.cos(size)])
 

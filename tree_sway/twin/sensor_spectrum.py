@@ -145,6 +145,11 @@ class SensorSpectrum:
             self.count += 1
 
     @property
+    def power(self) -> float:
+        """Power of east and north at all frequencies, a sum over the stretches."""
+        return float(self._products[:, (0, 1), (0, 1)].real.sum())
+
+    @property
     def block_seconds(self) -> float:
         """Length of the motion of the present block in [s]."""
         return self.seconds - self._block.seconds

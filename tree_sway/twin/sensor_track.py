@@ -3,9 +3,9 @@
 """
 One sensor over time: first its mounting is found, then it is in use while it agrees.
 
-Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
-the model has in the wind alone. From then on its mounting is found again after 1.2 times as long,
-and so on, from all motion of the last ten minutes.
+Until a sensor has seen the tree sway for 20 s, its samples are compared with the motion that the
+model has in the wind alone. From then on its mounting is found again after 1.2 times as long, and
+so on, from all motion of the last ten minutes.
 """
 
 from __future__ import annotations
@@ -35,11 +35,16 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sway_lever import other_lever
 from tree_sway.twin.wind_lag import find_lag
 
-LEARNING = 20.0
+_LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.2, 600.0
 _ABSENT_AFTER = 1.0
+_MEAN_EVERY = 30.0
+"""
+Time in [s] after which the mean difference from the model is found again: with that of another
+wind, or of a battery that was warmer, the tree would lean for an hour as it does not.
+"""
 _KNOCKED = 5.0
 _COMPARED, _LEAST_COMPARED = 8.0, 3.0
 """
@@ -190,7 +195,7 @@ def _mounting(
         if is_of_wind and abs(steps) >= lags.least:
             lag, left = steps, SensorLag()
     if lag:
-        later, earlier = lagging(lag, len(sensed))
+        later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
         found = align(sensed, upright, free, *known, sign)
     is_free = found.has_gravity and sensor.place.facing is None and not found.problem
@@ -322,7 +327,7 @@ def _lag(
     return found.steps if found.is_sure and abs(found.steps) >= lags.least else 0
 
 
-def lagging(lag: int, count: int) -> tuple[slice, slice]:
+def _lagging(lag: int, count: int) -> tuple[slice, slice]:
     """Rows of a sensor, and those of a model by a lag before, of a number of rows each."""
     return slice(max(lag, 0), count + min(lag, 0)), slice(max(-lag, 0), count + min(-lag, 0))
 
@@ -368,7 +373,8 @@ class SensorTrack:
         period = 1.0 / frequency
         compared = max(_COMPARED, _LEAST_COMPARED * period)
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
-        self._next_fit = round(LEARNING / dt)
+        self._next_fit = round(_LEARNING / dt)
+        self._next_mean = 0
         self._quantities = sensor.quantities
         self._left_for: float | None = None
         self.late = 0.0
@@ -435,13 +441,14 @@ class SensorTrack:
             return f'{name}: no sample yet'
         if self.is_silent and self.sensor.trouble:
             return f'{name}: refused for {native.absent:.0f} s: {self.sensor.trouble}'
-        if self.is_silent and native.unheard <= _ABSENT_AFTER:
+        is_heard = native.unheard <= _ABSENT_AFTER < native.absent - native.unheard
+        if self.is_silent and is_heard:
             return f'{name}: its times are {native.apart:+.1f} s from the steps: check its clock'
         if self.is_silent:
             return f'{name}: silent for {native.absent:.0f} s: check its battery and connection'
         if self.alignment is None:
-            left = (self._next_fit - native.count) * self._dt
-            return f'{name}: its mounting is found within {left:.0f} s of sway'
+            left = max(math.ceil((self._next_fit - native.count) * self._dt - 1e-9), 1)
+            return f'{name}: its mounting is found within {left} s of sway'
         if self.alignment.problem:
             return f'{name}: {self.alignment.problem}'
         if native.is_refused:
@@ -460,12 +467,14 @@ class SensorTrack:
         Returns whether it measures other quantities, of which no mounting is known.
         """
         native, counts = self.native, self.sensor.counts
+        if native.in_use and native.count >= self._next_mean:
+            self._follow_mean()
         counts.silent = native.silences
         if native.disagreements != counts.disagreed:
             counts.disagreed = native.disagreements
             # A knock may have moved it: its mounting is found from what comes after.
             native.count = -round(_KNOCKED / self._dt)
-            self._next_fit = round(LEARNING / self._dt)
+            self._next_fit = round(_LEARNING / self._dt)
         if (given := self.sensor.quantities) == self._quantities:
             return False
         self._quantities = given
@@ -473,8 +482,20 @@ class SensorTrack:
         native.in_use = native.is_mounted = native.is_refused = native.count = 0
         native.is_awaited = 1
         native.excess = native.usual = 1.0
-        self._next_fit = round(LEARNING / self._dt)
+        self._next_fit = round(_LEARNING / self._dt)
         return True
+
+    def _follow_mean(self) -> None:
+        """Let the mean difference from the model be that of the last minutes."""
+        every = round(_MEAN_EVERY / self._dt)
+        count = self.native.count
+        self._next_mean = count + every
+        alignment = self.alignment
+        assert alignment is not None
+        rows = np.arange(max(count - every, 0), count) % len(self._sensed)
+        model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
+        missed = (alignment.motion(self._sensed[rows]) - model).mean(axis=0) - self.bias
+        self.bias += len(rows) / len(self._sensed) * missed
 
     @property
     def is_due(self) -> bool:
@@ -525,7 +546,7 @@ class SensorTrack:
     def delay_model(self, lag: int) -> None:
         """Remember the model as if its wind had been later by a number of steps."""
         sensed, computed = self._remembered()
-        later, earlier = lagging(lag, len(sensed))
+        later, earlier = _lagging(lag, len(sensed))
         kept = max(len(sensed) - abs(lag), 0)
         self._sensed[:kept], self._computed[:kept] = sensed[later], computed[earlier]
         gone = self.native.count - kept
@@ -554,6 +575,7 @@ class SensorTrack:
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
+        self._next_mean = native.count + round(_MEAN_EVERY / self._dt)
 
     def judge(self, size: float) -> None:
         """Judge it by the mean square of its innovations over that expected."""

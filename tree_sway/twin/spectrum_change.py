@@ -180,9 +180,7 @@ class SpectrumChange:
 
     def _covariance(self, one: Block, other: Block) -> Floats:
         """Covariance of the logarithms of two blocks, (2 k, 2 k)."""
-        turned = math.sin(one.direction - other.direction) / _LIKE_DIRECTION
-        faster = (one.speed - other.speed) / _LIKE_SPEED
-        alike = math.exp(-0.5 * (turned**2 + faster**2))
+        alike = math.exp(-0.5 * _unlike(one, other))
         found = self._same + one.speed * other.speed * self._by_speed + alike * self._alike
         if one is other:
             found = found + self._by_chance + np.diag(one.variance)
@@ -190,14 +188,17 @@ class SpectrumChange:
 
     def _change(self, n_past: int, recent: Sequence[Block]) -> BandChange:
         """Compare the mean of some blocks with those of the first blocks in like winds."""
-        past = sorted(self._blocks[:n_past], key=lambda each: _unlike(each, recent))[:_MOST_PAST]
+        blocks = self._blocks[:n_past]
+        blocks.sort(key=lambda each: min(_unlike(each, other) for other in recent))
+        past = blocks[:_MOST_PAST]
         with one_thread():
             before = np.block([[self._covariance(a, b) for b in past] for a in past])
-            shared = np.vstack([_mean([self._covariance(a, b) for b in recent]) for a in past])
-            own = _mean([self._covariance(a, b) for a in recent for b in recent])
+            means = [np.mean([self._covariance(a, b) for b in recent], axis=0) for a in past]
+            shared = np.vstack(means)
+            own = np.mean([self._covariance(a, b) for a in recent for b in recent], axis=0)
             by_past = np.linalg.solve(before, shared).T
             told = np.concatenate([each.power - _POWER_BY_SPEED * each.speed for each in past])
-            now = _mean([each.power - _POWER_BY_SPEED * each.speed for each in recent])
+            now = np.mean([each.power - _POWER_BY_SPEED * each.speed for each in recent], axis=0)
             beyond = now - by_past @ told
             covariance = own - by_past @ shared
             weighted = np.linalg.solve(covariance, self._windows.T)
@@ -211,18 +212,11 @@ class SpectrumChange:
         return BandChange(power, low, high, abs(float(sizes[which])))
 
 
-def _unlike(block: Block, recent: Sequence[Block]) -> float:
-    """How unlike the wind of a block is to that of any of the recent ones."""
-    return min(
-        (math.sin(block.direction - each.direction) / _LIKE_DIRECTION) ** 2
-        + ((block.speed - each.speed) / _LIKE_SPEED) ** 2
-        for each in recent
-    )
-
-
-def _mean(arrays: Sequence[Floats]) -> Floats:
-    """Mean of arrays."""
-    return np.asarray(sum(arrays) / len(arrays))
+def _unlike(one: Block, other: Block) -> float:
+    """How unlike the winds of two blocks are."""
+    turned = math.sin(one.direction - other.direction) / _LIKE_DIRECTION
+    faster = (one.speed - other.speed) / _LIKE_SPEED
+    return turned**2 + faster**2
 
 
 def _laws(n_bands: int) -> tuple[NDArray[Any], ...]:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Steady-state Kalman filter of what a model's motion lacks, and its fixed-lag smoother.
+Steady-state Kalman filter of what a model's motion lacks.
 
 The state is the difference between the real and the computed motion: displacement eta and rate v
 of each coordinate, and a disturbance d of its force, a first-order process. Over a step it moves
@@ -11,8 +11,7 @@ by the exact propagator of the coordinates::
 
 The covariance P of the prediction solves the discrete algebraic Riccati equation. It is found by
 the structure-preserving doubling algorithm (Chu, Fan, Lin & Wang 2004, International Journal of
-Control 77, 767-788), some ten products of matrices. The smoother adds to an estimate of l steps
-ago what each later innovation tells about it (Anderson & Moore 1979, *Optimal Filtering*, 7.3).
+Control 77, 767-788), some ten products of matrices.
 
 Symbols: H measurements by the state, R their noise, S their predicted covariance, L gain.
 """
@@ -101,9 +100,6 @@ class SteadyFilter:
         Correction of the state by the innovations, L, (3 m, p).
     deviation
         Standard deviation of each innovation, (p,).
-    backward
-        Correction of the displacements of l steps ago by the innovations of each step since, the
-        oldest first, (m, l, p).
     covariance
         Covariance of the state after the correction, (3 m, 3 m).
 
@@ -113,11 +109,10 @@ class SteadyFilter:
     sensed: Floats
     gain: Floats
     deviation: Floats
-    backward: Floats
     covariance: Floats
 
 
-def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> SteadyFilter:
+def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats) -> SteadyFilter:
     """
     Find the steady gains.
 
@@ -129,15 +124,12 @@ def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> 
         Measurements by the state, (p, 3 m).
     noise
         Standard deviation of the noise of each measurement, (p,).
-    lag
-        Number of steps by which the smoothed displacements are late.
 
     """
     step = law.matrix
     m = law.step.shape[2]
     driven = np.zeros_like(step)
     driven[2 * m :, 2 * m :] = law.driven
-    backward = np.zeros((m, lag, len(sensed)))
     with one_thread():
         predicted = predicted_covariance(step, sensed, driven, noise)
         cross = predicted @ sensed.T
@@ -145,13 +137,8 @@ def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> 
         gain = np.linalg.solve(innovation, cross.T).T
         left = np.eye(3 * m) - gain @ sensed
         corrected = left @ predicted
-        closed = step @ left
-        onward = predicted
-        for k in range(lag):
-            onward = onward @ closed.T
-            backward[:, k] = np.linalg.solve(innovation, (onward[:m] @ sensed.T).T).T
     deviation = np.sqrt(np.diag(innovation))
-    return SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
+    return SteadyFilter(law, sensed, gain, deviation, 0.5 * (corrected + corrected.T))
 
 
 def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Floats) -> Floats:

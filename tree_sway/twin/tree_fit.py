@@ -32,7 +32,7 @@ from tree_sway.core.drag import DRAG
 from tree_sway.core.setup import one_thread
 from tree_sway.twin.sensor_spectrum import Waves
 
-STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
+_STIFFNESS_SPREAD, _DAMPING_SPREAD = 0.2, 0.5
 """Standard deviations of the logarithms of stiffness and damping, before any measurement."""
 
 _ODD, _UNSURE = 3.0, 1.5
@@ -85,10 +85,10 @@ class TreeFit(NamedTuple):
     def is_odd(self) -> bool:
         """Whether no tree of the species sways so: as the one of another sensor's tree."""
         beyond = math.hypot(
-            math.log(self.stiffness) / STIFFNESS_SPREAD, math.log(self.damping) / DAMPING_SPREAD
+            math.log(self.stiffness) / _STIFFNESS_SPREAD, math.log(self.damping) / _DAMPING_SPREAD
         )
         # Less is known than before where two tell of different trees, such as place and frequency.
-        return beyond > _ODD or self.stiffness_error > _UNSURE * STIFFNESS_SPREAD
+        return beyond > _ODD or self.stiffness_error > _UNSURE * _STIFFNESS_SPREAD
 
     def __str__(self) -> str:
         stiffer = f'{self.stiffness:.2g} times (+- {self.stiffness_error:.2g}) as stiff'
@@ -147,8 +147,8 @@ def fit_of(
                 table[i, j] += misfit
                 told[0, i, j] += known
                 told[1, i, j] += known * np.log(np.maximum(drags, _LEAST_DRAG))
-            prior = (math.log(stiff) / STIFFNESS_SPREAD) ** 2
-            table[i, j] += 0.5 * (prior + (math.log(damped) / DAMPING_SPREAD) ** 2)
+            prior = (math.log(stiff) / _STIFFNESS_SPREAD) ** 2
+            table[i, j] += 0.5 * (prior + (math.log(damped) / _DAMPING_SPREAD) ** 2)
     weight_of_slope = np.exp(table.min() - table)
     weight_of_slope /= weight_of_slope.sum()
     weight = weight_of_slope.sum(axis=2)

@@ -18,8 +18,11 @@ if TYPE_CHECKING:
 _RECENT = 30.0
 """Time constant of the mean wind in [s]."""
 
-_SLOWEST_WIND = 2.0
-"""Least mean wind in [m/s] for which a law is found."""
+_SLOWEST_WIND = 0.5
+"""
+Least mean wind in [m/s] for which a law is found: by that of a stronger wind, a tree in a calm
+follows the noise of its sensors.
+"""
 
 _OTHER_WIND = 1.6
 """Ratio of mean winds from which another law is found."""

@@ -12,7 +12,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.species.species import Species
-from tree_sway.twin.identification.free_decay import free_decay
+from tree_sway.identification.free_decay import free_decay
 
 WOOD = Species('example', 'example', 8.0e9, 900.0)
 DT = 1.0 / 60.0

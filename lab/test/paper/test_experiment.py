@@ -31,10 +31,12 @@ def experiment(fork):
         return run_experiment(fork(), species_named('broadleaf'), speed, 2e4, 200.0)
 
 
+@pytest.mark.long  # each form compiles kernels of its own
 def test_every_part_of_it_shows_how_far_it_is(experiment):
     assert SHOWN == [*FORMS, 'the default model']
 
 
+@pytest.mark.long
 def test_multipliers_and_the_reduced_form_agree(experiment):
     found = experiment.solutions
     reduced = found['reduced']
@@ -48,6 +50,7 @@ def test_multipliers_and_the_reduced_form_agree(experiment):
     assert set(found) == set(FORMS)
 
 
+@pytest.mark.long
 def test_followers_keep_lengths_and_joints(experiment):
     tree = experiment.tree
     start, end = followed(tree, experiment.keys, experiment.solutions['reduced'].angle[-1])
@@ -57,6 +60,7 @@ def test_followers_keep_lengths_and_joints(experiment):
     assert still == pytest.approx(tree.start, abs=1e-12)
 
 
+@pytest.mark.long
 def test_a_wind_from_the_right_bends_the_plant_to_the_west(experiment):
     path = tip_path(experiment, experiment.solutions['reduced'].angle[-1:])
     assert path[0, 0] < 0.0
@@ -67,6 +71,7 @@ def test_the_command_refuses_what_the_paper_has_not(capsys):
     assert 'benjamina or goldcrest' in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_an_unstable_form_is_named(fork):
     speed = wind_from_the_right(4.0, 0.5)
     with pytest.raises(ParameterError, match="'baumgarte' is unstable at 240 steps per second"):

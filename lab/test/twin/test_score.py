@@ -120,7 +120,7 @@ def make_strains(folder: Path) -> None:
     softer = replace(species, modulus=0.8 * species.modulus)
     sim = make_simulator(tree, softer, model=60, crown_coherence=0.3)
     rng = np.random.default_rng(8)
-    wind = simulate_turbulence(7.0, rate=60.0, duration=120.0, rng=rng)
+    wind = simulate_turbulence(7.0, rate=60.0, duration=90.0, rng=rng)
     places = [place_on(tree, f'{height} strain') for height in HEIGHTS]
     found = np.empty((len(wind), 2 * len(places) + 2))
     for k, each in enumerate(wind):

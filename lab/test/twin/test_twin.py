@@ -28,18 +28,17 @@ TIPS = np.stack([np.sin(TIME), np.cos(1.3 * TIME), 0.0 * TIME], axis=1)[:, None]
 
 
 def test_the_truth_has_no_error() -> None:
-    assert _compared(TIPS, TIPS, 0) == pytest.approx((0.0, 1.0, 1.0))
+    assert _compared(TIPS, TIPS) == pytest.approx((0.0, 1.0, 1.0))
 
 
 def test_error_is_of_the_motion_and_not_of_its_mean() -> None:
-    error, rough, stem = _compared(0.9 * TIPS + 5.0, TIPS, 0)
+    error, rough, stem = _compared(0.9 * TIPS + 5.0, TIPS)
     assert (error, rough, stem) == pytest.approx((0.1, 0.9, 1.0), abs=1e-9)
 
 
-def test_a_smoothed_motion_is_compared_with_the_truth_of_its_time() -> None:
+def test_a_late_motion_has_an_error() -> None:
     late = np.roll(TIPS, 6, axis=0)
-    assert _compared(late, TIPS, 6)[0] == pytest.approx(0.0)
-    assert _compared(late, TIPS, 0)[0] > 0.05
+    assert _compared(late, TIPS)[0] > 0.05
 
 
 def test_a_band_holds_its_share_of_normal_errors() -> None:

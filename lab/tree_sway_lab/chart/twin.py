@@ -26,7 +26,7 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import Tree
 from tree_sway.extras import refuse_missing
 from tree_sway.pictures import draw_trees, limits_around, new_figure, write_pictures
-from tree_sway.twin import LATE_STEPS, ObservedTree, place_on
+from tree_sway.twin import ObservedTree, place_on
 from tree_sway.twin.camera import FilmedTree
 from tree_sway_lab.twin.film_command import followed
 from tree_sway_lab.twin.film_truth import camera_before, FilmedTruth, FRAMES, set_up
@@ -81,9 +81,7 @@ def four_motions() -> Motions:
     Sway the four trees.
 
     The sensor is an accelerometer with a gyroscope at 0.6 of the stem, whose axes are not told.
-    The tree that follows it is shown as a page plays it out: smoothed, and moved back by as many
-    steps as that state is late. The camera is set up as in ``tree-sway lab film``; its tree is
-    shown as it is now.
+    The camera is set up as in ``tree-sway lab film``.
     """
     refuse_missing(['cv2'], 'lab chart twin')
     cv2 = import_module('cv2')
@@ -100,7 +98,7 @@ def four_motions() -> Motions:
     }
     alone = make_simulator(tree, species, gusts='expected', **apart)
     name = sensor_places(tree, 1)[0]
-    twin = ObservedTree(tree, species, at={name: name}, is_smoothed=True, **apart)
+    twin = ObservedTree(tree, species, at={name: name}, **apart)
     motion = SimulatedSensor(mount=Rotation.random(rng=rng)).measured(at_sensor, DT, rng)
     twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     camera = camera_before(tree, rng)
@@ -112,7 +110,7 @@ def four_motions() -> Motions:
     seen, _ = followed(tree, truth, camera, found, rng, only_points=False)
     for picture in seen:
         filmed.film(*picture)
-    models = _shown(alone, winds), _played(twin, winds), _shown(filmed, winds)
+    models = [_shown(each, winds) for each in (alone, twin, filmed)]
     return Motions(tree, winds[-SHOWN:], (poses[-SHOWN:], *models))
 
 
@@ -136,18 +134,6 @@ def _shown(sim: SwaySimulator, winds: Floats) -> Floats:
         sim.step(wind, DT)
         if step >= 0:
             sim.place(poses[step])
-    return poses
-
-
-def _played(twin: ObservedTree, winds: Floats) -> Floats:
-    """Poses of the last steps, smoothed: of states that are there so many steps later."""
-    poses = np.empty((SHOWN, twin.tree.n_segments, 7))
-    late = LATE_STEPS + twin.observer.late
-    later = np.concatenate([winds, np.tile(winds[-1], (late, 1))])
-    for step, wind in enumerate(later, SHOWN - len(later)):
-        twin.step(wind, DT)
-        if step >= 0:
-            twin.place_rotations(twin.smoothed, poses[step])
     return poses
 
 

@@ -9,10 +9,10 @@ damping and drag drawn by the seed (`gusty_truth`). Without a tree there are six
 half, and gusts that reach limb after limb with a copy of the measured wind: kinder than a tree
 outdoors, as what shakes the crown is in the measured wind.
 
-Each row has one number of sensors: dynamic error of all tips and roughness, at once and smoothed,
-the correlation of the stem's tip, the share of
-the time that the band of 80 % holds the tips, the time of a step, median and 99th percentile,
-and the time per step of the thread that finds gains, mountings and fits beside the steps.
+Each row has one number of sensors: dynamic error of all tips and roughness, the correlation of the
+stem's tip, the share of the time that the band of 80 % holds the tips, the time of a step, median
+and 99th percentile, and the time per step of the thread that finds gains, mountings and fits
+beside the steps.
 ``sensor r`` is the correlation at the first sensor, then follow the times at which it was first
 in use, and first out of use after that. ``--fault`` adds faults of the sensors (`sensor_faults`),
 those that begin later from 90 s on; ``late`` is a record of a wrong clock, ``live`` one that comes
@@ -38,6 +38,7 @@ of several true trees from the spreads that the band assumes; the rows are means
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import product
 import sys
@@ -46,7 +47,10 @@ from typing import Any
 import numpy as np
 
 from tree_sway.commands import Ending
+from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
+from tree_sway.core.species import Species
+from tree_sway.core.tree import Tree
 from tree_sway.twin import advised_places
 from tree_sway_lab.twin.gusty_truth import (
     gusty_motion,
@@ -74,6 +78,7 @@ from tree_sway_lab.twin.true_tree import (
     sensor_places,
     tree_called,
     true_motion,
+    TrueMotion,
 )
 
 _HEAD = (
@@ -81,8 +86,6 @@ _HEAD = (
     'sensors',
     'error',
     'rough',
-    'smoothed',
-    'smoothed rough',
     'stem r',
     'held',
     'us/step',
@@ -141,6 +144,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='the model knows --upwind where it has no sensor',
     )
+    add('--only-sensors', action='store_true', help='without the rows beside them')
     add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz, askew')
     add(
         '--fault',
@@ -233,27 +237,15 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
             ).drawn(tree)
             each = replace(each, wood=outside.wood, damping=outside.damping, drag=outside.drag)
             true = gusty_motion(tree, species, places, outside, in_leaf=in_leaf)
-            passed = [squared_score(true, share * frequency) for share in CUTOFFS]
-            best = min(passed, key=lambda score: score.error)
-            scores.setdefault('U^2', []).append(best)
-            known.reset()
-            model, _ = swayed(known, true.wind)
-            passed = [squared_score(true, share * frequency, model) for share in CUTOFFS]
-            best = min(passed, key=lambda score: score.error)
-            scores.setdefault('U^2 (gains of the model)', []).append(best)
             distance, bearing = mast_of(outside)
             apart |= {'anemometer_distance': distance, 'anemometer_bearing': bearing}
-            for gusts in ('expected', 'sample'):
-                far = make_simulator(tree, species, in_leaf=in_leaf, gusts=gusts, **apart)
-                scores.setdefault(gusts, []).append(plain_score(far, true))
-            true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
-            told = true._replace(wind=told_wind(tree, outside, true.wind))
-            scores.setdefault('bound', []).append(plain_score(true_one, told))
-            for gusts in ('expected', 'sample'):
-                far = known_tree(tree, species, outside, in_leaf=in_leaf, gusts=gusts, **apart)
-                scores.setdefault(f'{gusts} (known tree)', []).append(plain_score(far, true))
-        known.reset()
-        scores.setdefault('model', []).append(plain_score(known, true))
+            if not arguments.only_sensors:
+                beside = _scored_beside(tree, species, true, outside, known, apart)
+                for row, score in beside.items():
+                    scores.setdefault(row, []).append(score)
+        if not arguments.only_sensors:
+            known.reset()
+            scores.setdefault('model', []).append(plain_score(known, true))
         for count, fault in product(arguments.sensors, arguments.fault):
             score = twin_score(
                 tree,
@@ -274,11 +266,37 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
         _print(name, sensors, mean_score(found))
 
 
+def _scored_beside(
+    tree: Tree,
+    species: Species,
+    true: TrueMotion,
+    outside: Outside,
+    known: SwaySimulator,
+    apart: Mapping[str, Any],
+) -> dict[str, Score]:
+    """Score what needs no sensor on a tree outside, by its rows."""
+    in_leaf = bool(known.settings.in_leaf)
+    frequency = float(known.frequencies(1)[0])
+    known.reset()
+    model, _ = swayed(known, true.wind)
+    found: dict[str, Score] = {}
+    for row, like in (('U^2', None), ('U^2 (gains of the model)', model)):
+        passed = [squared_score(true, share * frequency, like) for share in CUTOFFS]
+        found[row] = min(passed, key=lambda score: score.error)
+    for gusts in ('expected', 'sample'):
+        far = make_simulator(tree, species, in_leaf=in_leaf, gusts=gusts, **apart)
+        found[gusts] = plain_score(far, true)
+    true_one = known_tree(tree, species, outside, in_leaf=in_leaf)
+    told = true._replace(wind=told_wind(tree, outside, true.wind))
+    found['bound'] = plain_score(true_one, told)
+    for gusts in ('expected', 'sample'):
+        far = known_tree(tree, species, outside, in_leaf=in_leaf, gusts=gusts, **apart)
+        found[f'{gusts} (known tree)'] = plain_score(far, true)
+    return found
+
+
 def _print(name: str, sensors: str, score: Score) -> None:
-    figures = (
-        score.error, score.roughness, score.late_error, score.late_roughness, score.stem,
-        score.held,
-    )  # fmt: skip
+    figures = score.error, score.roughness, score.stem, score.held
     row = [
         name,
         sensors,

@@ -41,7 +41,7 @@ With 12, 48 and 144 of them the second difference of the tips of a crooked tree 
 _WOOD, _BRANCH, _DAMPING, _DRAG = 0.22, 0.15, 0.5, 0.25
 """Log-deviations of wood among trees, and of branches within one, of damping and of drag."""
 
-_SUBSTEPS = 4
+SUBSTEPS = 4
 _TWIST = 1.0 / 7.0
 
 KINDS = ('limbs2', 'poplar 10', 'crooked', 'crooked', 'leaning', 'oak 9')
@@ -156,11 +156,12 @@ def top_of(tree: Tree) -> Floats:
 
 
 def outside_tree(
-    tree: Tree, species: Species, outside: Outside, *, in_leaf: bool
+    tree: Tree, species: Species, outside: Outside, *, in_leaf: bool, water: float = 0.0
 ) -> ArticulatedTree:
-    """Make the tree outside, at rest."""
+    """Make the tree outside, at rest; with water on its leaves, over their mass [-]."""
     known = TreeReductions(tree, species, Settings(in_leaf=in_leaf))
     law, leaves = known.drag_law, known.settings
+    heavy = None if leaves.leaf_mass is None else (1.0 + water) * leaves.leaf_mass
     moduli = outside.wood * species.modulus * np.broadcast_to(outside.branches, tree.n_branches)
     return ArticulatedTree(
         tree,
@@ -172,7 +173,7 @@ def outside_tree(
         steady_drag=outside.drag * law.steady,
         gravity=leaves.gravity,
         twist_ratio=_TWIST,
-        leaf_mass=leaves.leaf_mass,
+        leaf_mass=heavy,
         leaf_area=known.leaf_load_area,
     )
 
@@ -191,8 +192,8 @@ def swayed_outside(
     block = np.empty((tree.n_segments, 7))
     felt = np.zeros_like(near) if outside.is_uniform else near
     for wind in gusts:
-        for _ in range(_SUBSTEPS):
-            true.step(wind[felt], DT / _SUBSTEPS)
+        for _ in range(SUBSTEPS):
+            true.step(wind[felt], DT / SUBSTEPS)
         yield wind[0], true.place(block)
 
 

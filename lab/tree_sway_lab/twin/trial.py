@@ -18,7 +18,7 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
-from tree_sway.twin import LATE_STEPS, ObservedTree, sensor_reports
+from tree_sway.twin import ObservedTree, sensor_reports
 from tree_sway_lab.twin.sensor_faults import FAULTS, FIRST, LIVE, WAY
 from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
@@ -51,9 +51,9 @@ class Score:
 
     Parameters
     ----------
-    error, late_error
-        Dynamic error of all tips over their dynamic motion [-], now and smoothed.
-    roughness, late_roughness
+    error
+        Dynamic error of all tips over their dynamic motion [-].
+    roughness
         Second difference of the tips over that of the true ones [-].
     stem
         Correlation of the stem's tip with the true one, the smaller of both axes [-].
@@ -78,8 +78,6 @@ class Score:
 
     error: float
     roughness: float
-    late_error: float
-    late_roughness: float
     stem: float
     held: float
     cost: float
@@ -104,13 +102,11 @@ def mean_score(scores: Sequence[Score]) -> Score:
 def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
     """Score a simulator as it is without sensors."""
     tips, spent = swayed(sim, true.wind)
-    error, roughness, stem = _compared(tips, true.tips, 0)
+    error, roughness, stem = _compared(tips, true.tips)
     first = round(_TRUSTED * len(tips))
     found, wanted = (each[first:].reshape(len(tips) - first, -1) for each in (tips, true.tips))
     bands = compare_sway(found, wanted, 1.0 / DT, float(sim.frequencies(1)[0])).bands
-    return Score(
-        error, roughness, error, roughness, stem, np.nan, *_costs(spent), bands=bands
-    )  # fmt: skip
+    return Score(error, roughness, stem, np.nan, *_costs(spent), bands=bands)
 
 
 def swayed(sim: SwaySimulator, winds: Floats) -> tuple[Floats, Floats]:
@@ -146,8 +142,8 @@ def squared_score(true: TrueMotion, frequency: float, like: Floats | None = None
     first = round(_TRUSTED * len(passed))
     gains = np.linalg.lstsq(inputs[first:], flat[first:], rcond=None)[0]
     tips = (inputs @ gains).reshape(true.tips.shape)
-    error, roughness, stem = _compared(tips, true.tips, 0)
-    return Score(error, roughness, error, roughness, stem, np.nan, 0.0, 0.0)
+    error, roughness, stem = _compared(tips, true.tips)
+    return Score(error, roughness, stem, np.nan, 0.0, 0.0)
 
 
 def twin_score(
@@ -183,7 +179,6 @@ def twin_score(
         learns=known is None,
         damping_ratio=damping_ratio,
         at={each: each for each in places},
-        is_smoothed=True,
         has_band=has_band,
         upwind=upwind,
         **changes,
@@ -204,7 +199,7 @@ def twin_score(
         else:
             twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
-    tips, smoothed = np.empty_like(true.tips), np.empty_like(true.tips)
+    tips = np.empty_like(true.tips)
     bands = np.full((len(tips), 2, *tips.shape[1:]), np.nan)
     spent = np.empty(len(tips))
     first = next(iter(places), '')
@@ -220,15 +215,10 @@ def twin_score(
         if first:
             in_use[k] = twin.observer.tracks[0].in_use
             place[k] = pose_at(tree, block, twin.sensors[first].place)[:3]
-        smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         if has_band:
             bands[k] = twin.band()
     beside = 1e-3 * (time.process_time_ns() - time.thread_time_ns() - both) / len(tips)
-    error, roughness, stem = _compared(tips, true.tips, 0)
-    late_error, late_roughness = error, roughness
-    if places:
-        late = LATE_STEPS + twin.observer.late
-        late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
+    error, roughness, stem = _compared(tips, true.tips)
     notes = [*twin.problems]
     at, found, told = np.nan, np.nan, np.nan
     if first:
@@ -248,7 +238,7 @@ def twin_score(
         )
     held = _held(tips, true.tips, bands) if has_band else np.nan
     return Score(
-        error, roughness, late_error, late_roughness, stem, held, *_costs(spent), beside,
+        error, roughness, stem, held, *_costs(spent), beside,
         at, found, told, tuple(notes),
     )  # fmt: skip
 
@@ -262,11 +252,10 @@ def _offer_new(
         twin.offer(name, motion.time[k], acceleration=motion.acceleration[k], rate=motion.rate[k])
 
 
-def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, float]:
+def _compared(tips: Floats, true: Floats) -> tuple[float, float, float]:
     """Error, roughness and the stem's correlation of the later part of a record."""
     first = round(_TRUSTED * len(tips))
-    found = tips[first:]
-    wanted = true[first - late : len(true) - late]
+    found, wanted = tips[first:], true[first:]
     wrong = found - wanted
     wrong = wrong - wrong.mean(axis=0)
     motion = wanted - wanted.mean(axis=0)

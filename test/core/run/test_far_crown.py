@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+from drawn_trees import crown
 import numpy as np
 import pytest
 
@@ -19,11 +20,11 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
-from tree_sway.growth.builtin import builtin_tree
 
 DT = 1.0 / 60.0
-TREE = builtin_tree('goldcrest')
-WIND = simulate_turbulence(7.0, rate=60.0, duration=25.0, rng=2)
+TREE = crown((4, 2), 4)
+SETTLED = 5 * 60
+WIND = simulate_turbulence(7.0, rate=60.0, duration=15.0, rng=2)
 
 
 def tips(sim: SwaySimulator) -> Floats:
@@ -32,7 +33,7 @@ def tips(sim: SwaySimulator) -> Floats:
     for wind in WIND:
         sim.step(wind, DT)
         found.append(tips_of_poses(sim.tree, sim.place()))
-    return np.array(found)[600:]
+    return np.array(found)[SETTLED:]
 
 
 @cache
@@ -93,7 +94,7 @@ def test_each_tree_of_a_forest_stands_apart_from_the_anemometer_by_its_own_way()
     for wind in WIND:
         sim.step(wind, DT)
         moved.append([each.tip_displacement for each in sim.simulators])
-    first, second = np.array(moved)[600:, :, 0].T
+    first, second = np.array(moved)[SETTLED:, :, 0].T
     assert abs(np.corrcoef(np.diff(first), np.diff(second))[0, 1]) < 0.5
     again = forest(2).simulator(**west)
     for wind in WIND:

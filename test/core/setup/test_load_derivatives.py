@@ -48,8 +48,8 @@ def test_slopes_are_those_of_the_load(bent, wind):
         swung[k] = (load(x, step * shape, wind) - load(x, -step * shape, wind)) @ (
             shapes / (2.0 * step)
         )
-    assert turning == pytest.approx(moved, abs=1e-3 * np.abs(moved).max())
-    assert damping == pytest.approx(swung, abs=1e-5 * np.abs(swung).max())
+    assert turning == pytest.approx(moved, abs=1e-6 * np.abs(moved).max())
+    assert damping == pytest.approx(swung, abs=1e-7 * np.abs(swung).max())
 
 
 def test_the_damping_of_a_branch_alone_is_that_of_its_points():

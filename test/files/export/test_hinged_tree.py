@@ -93,7 +93,8 @@ NAMES = {'null': 'a\0b', 'escape': 'a\x1b[1mb', 'markup': 'a"<&>b', 'umlaut': 'B
 
 
 @pytest.mark.parametrize('name', NAMES.values(), ids=NAMES)
-def test_a_name_of_any_characters_is_readable(simulator, name, monkeypatch):
+def test_a_name_of_any_characters_is_readable(fork, name, monkeypatch):
+    simulator = make_simulator(fork(), model=4)
     monkeypatch.setattr(simulator, 'tree', replace(simulator.tree, name=name))
     assert simulator.tree.name == name
     plain = re.sub('[\0\x1b\ud800\uffff]', '_', name)

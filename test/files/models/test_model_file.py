@@ -187,7 +187,7 @@ def test_the_newest_models_of_files_are_kept(fork):
 def test_a_file_with_any_damaged_byte_is_refused_or_the_same(file):
     whole = file.read_bytes()
     rest = make_simulator(read_model(file)).place()
-    for position in range(0, len(whole), len(whole) // 400):
+    for position in range(0, len(whole), len(whole) // 120):
         damaged = bytearray(whole)
         damaged[position] ^= 1 << (position % 8)
         file.write_bytes(damaged)

@@ -18,6 +18,7 @@ from tree_sway.twin.learned_tree import LearnedTree
 from tree_sway.twin.observed_tree import ObservedTree
 from tree_sway.twin.tree_fit import TreeFit
 
+SEEDLING = Path(__file__).parents[1] / 'data' / 'seedling.yaml'
 ONCE = LearnedTree(
     frequency=1.0, stiffness=0.8, stiffness_error=0.03, damping=1.5, damping_error=0.2,
     drag=0.9, drag_error=0.2, hours=1.0,
@@ -53,7 +54,7 @@ def learned_by(twin: ObservedTree, monkeypatch: pytest.MonkeyPatch, stiffness: f
 def test_a_second_run_goes_on_from_the_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    opened, path = open_tree('goldcrest'), str(tmp_path / 'own.twin.yaml')
+    opened, path = open_tree(SEEDLING), str(tmp_path / 'own.twin.yaml')
     for run, modulus in ((1, 0.8), (2, 0.8 * 0.9**0.5)):
         file = LearnedFile(path, opened, in_leaf=False)
         twin = ObservedTree(file.opened, in_leaf=False, at={'phone': 'segment:3'})
@@ -72,7 +73,7 @@ def test_a_second_run_goes_on_from_the_first(
 
 
 def test_a_change_of_the_sway_is_in_the_file(tmp_path: Path) -> None:
-    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    opened, path = open_tree(SEEDLING), tmp_path / 'own.yaml'
     LearnedFile(str(path), opened).write(replace(ONCE, change='it sways differently: +9 %'))
     again = open_tree(str(path))
     assert again.notes[-1].endswith('; it sways differently: +9 %')
@@ -81,7 +82,7 @@ def test_a_change_of_the_sway_is_in_the_file(tmp_path: Path) -> None:
 
 
 def test_a_file_that_would_be_lost_is_refused(tmp_path: Path) -> None:
-    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    opened, path = open_tree(SEEDLING), tmp_path / 'own.yaml'
     LearnedFile(str(path), opened).write(ONCE)
     with pytest.raises(FormatError, match='of another tree than'):
         LearnedFile(str(path), open_tree('broadleaf'))
@@ -100,7 +101,7 @@ def test_a_file_that_would_be_lost_is_refused(tmp_path: Path) -> None:
 
 
 def test_what_another_program_learned_meanwhile_stays(tmp_path: Path) -> None:
-    opened, path = open_tree('goldcrest'), tmp_path / 'own.yaml'
+    opened, path = open_tree(SEEDLING), tmp_path / 'own.yaml'
     ours, theirs = LearnedFile(str(path), opened), LearnedFile(str(path), opened)
     theirs.write(replace(ONCE, hours=9.0))
     kept = path.read_text(encoding='utf-8')
@@ -115,7 +116,7 @@ def test_what_another_program_learned_meanwhile_stays(tmp_path: Path) -> None:
 
 def test_what_was_learned_outlives_a_conversion(tmp_path: Path) -> None:
     path, again = str(tmp_path / 'own.yaml'), str(tmp_path / 'again.yaml')
-    LearnedFile(path, open_tree('goldcrest')).write(ONCE)
+    LearnedFile(path, open_tree(SEEDLING)).write(ONCE)
     assert main(['convert', path, '-o', again, '-q']) == 0
     assert open_tree(again).learned == open_tree(path).learned
     write_tree(again, open_tree(path))
@@ -143,7 +144,7 @@ def test_what_was_learned_outlives_a_conversion(tmp_path: Path) -> None:
 def test_a_damaged_file_is_refused_by_its_name_with_a_cure(
     tmp_path: Path, old: bytes, new: bytes
 ) -> None:
-    opened = open_tree('goldcrest')
+    opened = open_tree(SEEDLING)
     path = tmp_path / 'own.twin.yaml'
     LearnedFile(str(path), opened).write(ONCE)
     content = path.read_bytes()
@@ -160,4 +161,4 @@ def test_a_huge_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
     with path.open('wb') as file:
         file.truncate(2**33)
     with pytest.raises(FormatError, match=r'own\.twin\.yaml: larger than'):
-        LearnedFile(str(path), open_tree('goldcrest'))
+        LearnedFile(str(path), open_tree(SEEDLING))

@@ -18,8 +18,8 @@ import pytest
 from tree_sway.commands import cli
 from tree_sway.errors import FormatError, TransportError
 from tree_sway.files.wind.phone import read_phone_sway
-from tree_sway.twin.commands import calibrate
-from tree_sway.twin.identification.measured_sway import estimate_sway
+from tree_sway.identification.commands import calibrate
+from tree_sway.identification.measured_sway import estimate_sway
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / 'examples' / 'data'

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.files.wind.sway_table import read_csv_sway
-from tree_sway.twin.identification.measured_sway import estimate_sway
+from tree_sway.identification.measured_sway import estimate_sway
 
 TIME = np.arange(0.0, 40.0, 0.05)
 PULL = 0.8 * np.exp(-0.05 * 2.0 * np.pi * 0.5 * TIME) * np.cos(2.0 * np.pi * 0.5 * TIME)

@@ -256,6 +256,7 @@ def test_what_is_odd_is_reported(
     assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']
 
 
+@pytest.mark.usefixtures('short_storms')
 @pytest.mark.parametrize(('exposure', 'said'), [('open', 'outside'), ('stand', 'within')])
 def test_the_published_moment_of_a_spruce_is_within_the_band_or_said_to_be_outside(
     exposure: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

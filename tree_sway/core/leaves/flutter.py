@@ -25,13 +25,13 @@ from tree_sway.core.leaves.foliage import LeafClusters
 AIR_VISCOSITY = 1.48e-5
 """Kinematic viscosity of air at 15 degrees C in [m^2/s]."""
 
-FLUTTER_GAIN = float(np.sqrt(2.0) / (740.0**2 * AIR_VISCOSITY * np.pi))
+_FLUTTER_GAIN = float(np.sqrt(2.0) / (740.0**2 * AIR_VISCOSITY * np.pi))
 """Amplitude times frequency over the square of the wind speed in [rad Hz s^2/m^2]."""
 
 LARGEST_ANGLE = 0.7
 """Amplitude at which flutter levels off in [rad]."""
 
-FLUTTER = {'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+FLUTTER = {'gain': _FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
 """The two constants of the law, for whoever draws leaves."""
 
 
@@ -39,7 +39,7 @@ def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
     """Amplitude of the flutter [rad] in air at a speed [m/s], for a stalk's frequency [Hz]."""
     speeds = np.asarray(speed, dtype=np.float64)
     frequencies = np.asarray(frequency, dtype=np.float64)
-    unlimited = FLUTTER_GAIN * speeds * speeds / frequencies
+    unlimited = _FLUTTER_GAIN * speeds * speeds / frequencies
     return np.asarray(LARGEST_ANGLE * np.tanh(unlimited / LARGEST_ANGLE))
 
 

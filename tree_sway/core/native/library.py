@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x15D70E2B
+INTERFACE = 0xB5F4D4D1
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -34,7 +34,6 @@ _whole, _status = ctypes.c_int64, ctypes.c_int
 SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_version': (_status, ()),
     'sway_interface': (ctypes.c_uint32, ()),
-    'sway_target': (ctypes.c_char_p, ()),
     'sway_model_open': (_pointer, (_pointer, _size, _pointer, _size)),
     'sway_model_close': (None, (_pointer,)),
     'sway_model_sizes': (None, (_pointer, _pointer)),
@@ -86,7 +85,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     ),
     'sway_load_slopes': (
         None,
-        (_pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
+        (_pointer, _pointer, _pointer, _pointer, _size, _pointer, _pointer, _pointer),
     ),
     'sway_step_branches': (
         _whole,

@@ -46,8 +46,7 @@ class LoadSlopes:
         The first axis is the shape that moves, the second the one that is loaded; the tree is at
         x, (N,), without motion, in a wind [m/s], (3,), of 1 kg/m^3.
         """
-        self._moments.at_poses(x[None], wind[None])
-        self._moments.find_slopes(self._padded, self._turning, self._damping)
+        self._moments.find_slopes(x, wind, self._padded, self._turning, self._damping)
         m = self._shapes.shape[1]
         turning, damping = (
             each[:, :m].T @ self._shapes for each in (self._turning, self._damping)

@@ -3,7 +3,7 @@
 """
 Loads of uniform winds on a tree that bends and moves, by the native core.
 
-``native/branch_loads.cpp`` has the law. A load is a moment on each key rotation; by virtual work,
+``native/branch_loads.h`` has the law. A load is a moment on each key rotation; by virtual work,
 the load on a shape of motion is the power of these moments on it.
 """
 
@@ -28,7 +28,7 @@ class BranchLoad:
     displacement: Annotated[Floats, 3]
     arm: Annotated[Floats, 3]
     turn: Annotated[Floats, 3]
-    air: Annotated[Floats, 3]
+    flow: Annotated[Floats, 3]
     own_force: Annotated[Floats, 3]
     force: Annotated[Floats, 3]
     wrench: Annotated[Floats, 6]
@@ -70,7 +70,7 @@ class WindMoments:
         at = {name: address(array) for name, array in own.items()}
         self.n_branches, keys = own['twist'].shape[:2]
         self._branches = Branches(branches=self.n_branches, keys=keys, **at)
-        self._scratch = np.empty(256 * self.n_branches + 8)
+        self._scratch = np.empty(333 * self.n_branches)
         self.n = int(own['n_coordinates'].sum())
         """Number of key rotations, N."""
         self.loads: Records = np.zeros(self.n_branches, BRANCH_LOAD)
@@ -107,16 +107,19 @@ class WindMoments:
         self(x, v, wind)
         return np.asarray(self.loads['force'])
 
-    def find_slopes(self, shapes: Floats, turning: Floats, damping: Floats) -> None:
+    def find_slopes(
+        self, x: Floats, wind: Floats, shapes: Floats, turning: Floats, damping: Floats
+    ) -> None:
         """
-        Find the changes of the last moments by motion along shapes, and by its rates.
+        Find the changes of moments on a still tree by motion along shapes, and by its rates.
 
-        The tree was still; shapes are (N, c), c a multiple of 8, and so are the changes, which are
-        written. Memory is the caller's: to take it anew takes as long as to fill it.
+        The tree is at x, (N,), in a wind, (3,); shapes are (N, c), c a multiple of 8, and so are
+        the changes, which are written. Memory is the caller's: to take it anew takes as long as
+        to fill it.
         """
         shape = self.n, shapes.shape[1]
         LIBRARY.sway_load_slopes(
-            ctypes.byref(self._branches), address(self.loads), contiguous(shapes, shape),
-            shapes.shape[1], address(self._scratch), contiguous(turning, shape),
-            contiguous(damping, shape),
+            ctypes.byref(self._branches), contiguous(x, (self.n,)), contiguous(wind, (3,)),
+            contiguous(shapes, shape), shapes.shape[1], address(self._scratch),
+            contiguous(turning, shape), contiguous(damping, shape),
         )  # fmt: skip

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.checks import refuse_named_columns
 from tree_sway.core.tree.parents_first import chain_starts, checked_order, first_of_each
 from tree_sway.core.tree.tree import Tree, tree_in_order
 from tree_sway.errors import TreeError
@@ -130,6 +131,7 @@ def _renumbered(parents: Ints, order: Ints) -> Ints:
 
 def _numbers(what: str, values: ArrayLike) -> Floats:
     """Return a copy of values as an array; a `TreeError` if they are no array of numbers."""
+    refuse_named_columns(what, values)
     try:
         numbers = np.array(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -215,7 +215,7 @@ def simulate_turbulence(
     turbulence = Turbulence(mean_speed, height, intensity)
     within('rate', rate, 0.0, 1000.0, 'Hz', above=True)
     within('duration', duration, 0.0, 1e6, 's', above=True)
-    within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
+    within('bearing_to', bearing_to, -6.3, 6.3, 'rad')
     n_samples = max(round(rate * duration), 1)
     n_period = max(n_samples, int(np.ceil(rate * SHORTEST_PERIOD)), 4)
     wind = turbulence.record(n_period, rate, generator_of(rng))[:n_samples]

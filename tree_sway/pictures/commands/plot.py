@@ -32,13 +32,14 @@ from tree_sway.files.commands import (
     simulated_speed,
 )
 from tree_sway.parameters import SWAY
-from tree_sway.pictures import checked_picture, figure_in_wind, save_figure
+from tree_sway.pictures import figure_in_wind, save_figure
 from tree_sway.pictures.plots import (
     strength_over_wind,
     STUDY_COLUMNS,
     study_over_wind,
     wind_and_tip,
 )
+from tree_sway.pictures.plotting import checked_picture
 from tree_sway.simulation import RecordedWind
 from tree_sway.simulation.commands import (
     add_exposure_arguments,

@@ -50,7 +50,7 @@ class AnemometerModel:
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
         within('rate', rate, 1.0, 100.0, 'Hz')
-        self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
+        self._bearing_to = within('bearing_to', bearing_to, -6.3, 6.3, 'rad')
         self._mean = np.array([mean_speed, 0.0, 0.0])
         self._gusts = np.zeros((1, 3))
         turbulence = Turbulence(mean_speed or 1.0, height, intensity)

@@ -1,13 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Commands of measured trees, and the arguments of motion sensors on them."""
+"""Arguments of motion sensors and cameras, which commands of other houses take."""
 
 from typing import TYPE_CHECKING
 
-from tree_sway.commands import commands_of
 from tree_sway.faces import face
-
-COMMANDS = commands_of(__name__)
 
 if TYPE_CHECKING:
     from tree_sway.twin.commands.camera_arguments import filmed_motion as filmed_motion

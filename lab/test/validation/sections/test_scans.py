@@ -16,8 +16,9 @@ SHARED = ROOT.parent / 'shared' / 'data' / 'trees'
 OURS = ROOT / 'test' / 'files' / 'data' / 'tree121.csv'
 
 STANDING = (
-    'qsm_archi.csv', 'qsm_simpleforest.csv', 'qsm_treeqsm_v5.mat', 'qsm_treeqsm_2.3.txt',
+    'qsm_archi.csv', 'qsm_simpleforest.csv', 'qsm_treeqsm_v5.mat',
     'sapling.csv', 'tree121.csv', 'tree121.simpleforest.csv',
+    pytest.param('qsm_treeqsm_2.3.txt', marks=pytest.mark.long),
     pytest.param('qsm_treeqsm_struct.mat', marks=pytest.mark.long),
     pytest.param('walnut.mtg', marks=pytest.mark.long),
 )  # fmt: skip

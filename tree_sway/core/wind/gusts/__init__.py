@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.gusts.crown_wind import CrownWind as CrownWind
     from tree_sway.core.wind.gusts.crown_wind import DECAY as DECAY
     from tree_sway.core.wind.gusts.crown_wind import delays_of as delays_of
+    from tree_sway.core.wind.gusts.crown_wind import limbs_of as limbs_of
     from tree_sway.core.wind.gusts.crown_wind import N_DELAYS as N_DELAYS
     from tree_sway.core.wind.gusts.crown_wind import parts_of as parts_of
     from tree_sway.core.wind.gusts.crown_wind import USUAL_COHERENCE as USUAL_COHERENCE

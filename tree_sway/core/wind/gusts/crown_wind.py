@@ -109,6 +109,16 @@ def _shares(part: Ints, load: Floats) -> Floats:
     return np.asarray(loads / whole)
 
 
+def limbs_of(parent: Ints) -> Ints:
+    """Find the limb of each branch, 0 for the stem, by the parents of branches, (b,)."""
+    on_stem = parent == 0
+    limb = np.where(on_stem, np.cumsum(on_stem), 0)
+    for branch, below in enumerate(parent.tolist()):
+        if below > 0:
+            limb[branch] = limb[below]
+    return limb
+
+
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     """
     Assign the delays: the stem has none, and subtrees of limbs have that of the limb.
@@ -116,12 +126,8 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     Branches have a parent, -1 for the stem, a centre of their wind load [m], (b, 3), and a load of
     any unit, (b,).
     """
-    on_stem = parent == 0
-    limb = np.where(on_stem, np.cumsum(on_stem), 0)
-    for branch, below in enumerate(parent.tolist()):
-        if below > 0:
-            limb[branch] = limb[below]
-    n = int(on_stem.sum()) + 1
+    limb = limbs_of(parent)
+    n = int(limb.max()) + 1
     total = np.maximum(np.bincount(limb, load, n), 1e-12)
     moments = [np.bincount(limb, load * x, n) for x in centre.T]
     middle = np.stack(moments, axis=1) / total[:, None]

@@ -12,8 +12,8 @@ export class Backdrop {
   /** @param {GL} gl @param {boolean} isPlain whether to keep the shadow too, as every pixel costs much */
   constructor(gl, isPlain) {
     this.gl = gl;
-    this._program = program(gl, "backdrop");
-    this._copying = program(gl, "copy");
+    this._program = program(gl, "backdrop", isPlain);
+    this._copying = program(gl, "copy", isPlain);
     this._whole = drawable(gl, this._program, { values: [-1, -1, 3, -1, -1, 3], indices: [0, 1, 2] });
     this._isPlain = isPlain;
     /** Pictures without and with the shadow. */

@@ -6,8 +6,8 @@
 const HALF = Math.tan((16 * Math.PI) / 180);
 /** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
-/** Distance from the edge of a stand, over its height. */
-const NEARBY = 1.6;
+/** Distance from the edge of a stand, over its height, and height of the eye there [m]. */
+const [NEARBY, EYE] = [2, 2.5];
 
 export class Camera {
   azimuth = -0.6;
@@ -48,7 +48,7 @@ export class Camera {
     const [round, deep] = isTree ? [0.75, 0.14] : [1, 0.16];
     const half = 0.54 * Math.max((tall + deep * wide) / down, (round * wide) / this.aspect / across);
     this.distance = isStand ? 0.6 * Math.min(high[0] - low[0], 1.5 * (high[1] - low[1])) + NEARBY * tall : half / HALF + 0.3 * wide;
-    this.elevation = isTree ? -0.07 : isStand ? (0.2 * tall) / this.distance : deep;
+    this.elevation = isTree ? -0.07 : isStand ? (EYE - 0.5 * tall) / this.distance : deep;
     this.pan(0.5 * this.aspect * (left + right - 1), 0.5 * (top + bottom - 1));
     this.isHome = true;
   }

@@ -73,7 +73,7 @@ export class Detail {
     for (let size = 1; this._spend(pixels, size, budget) && size > SMALLEST; size *= 0.85);
   }
 
-  /** Set the level of each tree, the nearest first. @param {number[]} pixels height of each @param {number} size
+  /** Set the level of each tree, the nearest first; none is a picture that is as large as the first mesh. @param {number[]} pixels height of each @param {number} size
    * for which they are chosen, over the real one @param {number} budget
    * @returns {boolean} whether the budget lowered any */
   _spend(pixels, size, budget) {
@@ -83,9 +83,9 @@ export class Detail {
     for (const t of this.order) {
       const levels = this.levels[this.trees[t].kind];
       const cost = (/** @type {number} */ level) => (level ? levels[level].segments + this._card * levels[level].cards : 0);
-      const least = t === this.watched ? 1 : pixels[t] ? 0 : -1;
+      const least = t === this.watched || pixels[t] > 2 * levels[1].from ? 1 : pixels[t] ? 0 : -1;
       let level = pixels[t] ? levels.length - 1 : least;
-      while (level > least && levels[level].from > size * pixels[t]) level--;
+      while (level > least && levels[level].from > (level > 1 ? size : 1) * pixels[t]) level--;
       for (; level > least && spent + cost(level) > budget; level--) isSpent = true;
       this.level[t] = Math.max(level, least);
       this.start[t] = this.segments;

@@ -17,7 +17,7 @@ const TUFTS_BESIDE = 0.7;
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [4.6, 1.3, 4];
+const [SHOOT, DENSE, FEW_LEAVES] = [6, 2.1, 4];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -38,7 +38,7 @@ const [INNER, INNER_APART] = [0.75, 0.4];
  * clothed all along. */
 const [STUB, LONG] = [4, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging shoots hide the boughs. */
-const [WEEPS, CURTAIN] = [0.8, 7];
+const [WEEPS, CURTAIN] = [0.8, 14];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at

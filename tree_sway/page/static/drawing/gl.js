@@ -46,12 +46,13 @@ export function contextOf(canvas, isFine) {
   return { gl, isSlow };
 }
 
-/** Compile a program and find its inputs. @param {GL} gl @param {string} name of its part @returns {Program} */
-export function program(gl, name) {
+/** Compile a program and find its inputs. @param {GL} gl @param {string} name of its part
+ * @param {boolean} isPlain whether it leaves out what costs much without a graphics unit @returns {Program} */
+export function program(gl, name, isPlain) {
   const made = gl.createProgram();
   for (const [kind, stage] of /** @type {const} */ ([[gl.VERTEX_SHADER, "vertex"], [gl.FRAGMENT_SHADER, "fragment"]])) {
     const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
-    gl.shaderSource(shader, HEAD + source(`${name}.${stage}`));
+    gl.shaderSource(shader, HEAD + (isPlain ? "#define PLAIN\n" : "") + source(`${name}.${stage}`));
     gl.compileShader(shader);
     gl.attachShader(made, shader);
   }

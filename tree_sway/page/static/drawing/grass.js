@@ -7,11 +7,11 @@ import { Gusts } from "./gusts.js";
 import { seeded } from "./looks.js";
 
 /** Number of blades with and without a graphics unit. */
-const [BLADES, FEW_BLADES] = [26000, 2500];
+const [BLADES, FEW_BLADES] = [140000, 2500];
 /** Radius over the size of the scene, and height over that of the trees. */
-const [REACH, TALL] = [2, 0.03];
+const [REACH, TALL] = [3, 0.02];
 /** Lowest and highest grass [m]. */
-const [LOWEST, HIGHEST] = [0.12, 0.6];
+const [LOWEST, HIGHEST] = [0.12, 0.35];
 
 export class Grass {
   /** @param {GL} gl @param {Program} used @param {boolean} isFew */
@@ -23,7 +23,7 @@ export class Grass {
     /** @type {Mesh} */
     const mesh = { values: [], indices: [] };
     for (let i = 0; i < (isFew ? FEW_BLADES : BLADES); i++) {
-      const [far, turn] = [Math.sqrt(random()), 2 * Math.PI * random()];
+      const [far, turn] = [random(), 2 * Math.PI * random()];
       const own = [far * Math.cos(turn), far * Math.sin(turn), (0.5 + random()) * (1 - far ** 4), random()];
       for (const corner of [-1, 1, 0]) mesh.indices.push(mesh.values.push(...own, corner) / 5 - 1);
     }

@@ -108,13 +108,13 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       if (climbed - ringAt < RING_SPACING * point) continue;
     }
     ringAt = climbed;
-    // At a joint both segments agree on the radius: no steps in the bark.
+    // At a joint both segments agree on the radius: no steps in the bark. Shoots end thin.
     const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
     const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
     for (const up of isStem && s === from ? FOOT_RINGS : [0]) {
       const above = climbed / baseRadius + up;
       const flare = isStem ? Math.exp(-above) : 0;
-      const ringRadius = Math.max(isTip ? radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
+      const ringRadius = Math.max(isTip ? 0.4 * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
       for (let k = 0; k < corners; k++) {
         const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
           : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];

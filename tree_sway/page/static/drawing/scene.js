@@ -21,8 +21,8 @@ import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
 import { barkPicture, CLUMP, leafPicture } from "./textures.js";
 
-/** Without a graphics unit: frames from one shadow to the next, and the share of the leaves that cast it. */
-const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
+/** Frames from one shadow to the next without a graphics unit; and the share of the leaves that cast it, with one and without. */
+const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
 /** Cost of a card over that of a segment, which the processor places for each frame. */
@@ -41,6 +41,9 @@ const PAINTED = 260;
 const [TILES, FEW_KINDS] = [[192, 128], 16];
 /** Specular reflection of a leathery evergreen leaf, and of a card of many leaves, which face all ways. */
 const [GLOSS, GLOSS_OF_MANY] = [0.2, 0.03];
+/** Colour of a crown of leaves or of needles in the open, over its green; where a leaf is more vivid it is
+ * half-way between, and less bright or dark. */
+const OPEN_GREENS = [[0.8, 1, 0.48], [0.68, 1, 0.6]];
 /** First and last row of no branch. */
 const NONE = [-2, -2];
 /** Months in which a horse chestnut flowers, from 1. */
@@ -83,7 +86,7 @@ export class Scene {
     this._chosenFor = "";
     const names = /** @type {const} */ (["bark", "leaf", "impostor", "solid", "shadow", "grass"]);
     this._programs = /** @type {Record<typeof names[number], Program>} */ (
-      Object.fromEntries(names.map((name) => [name, program(gl, this.isSlow && name === "leaf" ? "plainleaf" : name)])));
+      Object.fromEntries(names.map((name) => [name, program(gl, name, this.isSlow)])));
     this.grass = new Grass(gl, this._programs.grass, this.isSlow);
     this._backdrop = new Backdrop(gl, this.isSlow);
     /** Textures of leaves and bark, painted when they are first used. */
@@ -318,7 +321,7 @@ export class Scene {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned,
+        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.cbrt(0.05 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
         gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };
@@ -469,7 +472,7 @@ export class Scene {
     this._drawMeshes(this._levels, isShadow, {
       picked: rows, isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
       law: [this.flutters ? gain : 0, most],
-    }, this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1));
+    }, this.quality.density * (isShadow ? SHADOW_LEAVES[+this.isSlow] : 1));
     this._begin(impostor, isShadow);
     for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.5 : 0.9);
   }
@@ -537,10 +540,10 @@ export class Scene {
   }
 
   _drawShadow() {
-    const { gl, _shadow: { texture, width } } = this;
+    const { gl, _shadow: { texture } } = this;
     use(gl, this._programs.shadow, {
       camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
-      softness: this.isSlow ? 0 : 1.5 / width, depth: 0.5, shadow: [1, texture],
+      softness: (0.015 * this.height) / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
     });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

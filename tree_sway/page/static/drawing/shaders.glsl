@@ -7,7 +7,7 @@
 precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 0.47 * c + 0.7 * sqrt(c); }
+vec3 toned(vec3 c) { return 1.95 * c / (c + 0.8); }
 
 #part seen tones
 uniform mat4 camera;
@@ -85,7 +85,11 @@ out vec3 normal;
 out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
+#ifdef PLAIN
 out float sunny;
+#else
+out vec3 inMap; // place in the shadow map
+#endif
 out float high; // height over the ground, 1 at the top of the scene
 void main() {
   uint row = rowOf();
@@ -113,7 +117,11 @@ void main() {
   tone = vec3(thickness, skin.z, clearness(p));
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
+#ifdef PLAIN
   sunny = shadowArea.w < 0.5 ? sunlight(p) : 1.0;
+#else
+  inMap = inSunMap(p);
+#endif
   high = (p.z - ground) * shadowTop;
   gl_Position = seen(p);
 }
@@ -123,7 +131,12 @@ in vec3 normal;
 in vec2 at;
 in vec3 tone;
 in float mark;
+#ifdef PLAIN
 in float sunny;
+#else
+in vec3 inMap;
+uniform mediump sampler2DShadow sunMap;
+#endif
 in float high;
 uniform vec3 light;
 uniform vec3 sun;
@@ -135,7 +148,7 @@ uniform vec3 twigColor;
 uniform vec4 paint; // colour of the whole tree, and its opacity
 uniform sampler2D relief; // factor of the colour of the bark, twice as high as wide
 void main() {
-  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  if (isShadow > 0.5) { color = vec4(1.0 - 0.7 * min(high, 1.0)); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
   if (tone.x > 0.4) {
@@ -152,12 +165,29 @@ void main() {
   }
   // Weather and moss: stains as long as the stem is wide, the greener the nearer to the ground.
   float stain = noise(vec2(3.0 * normal.x, 0.5 * at.y + 2.0 * normal.y));
-  own *= mix(vec3(1.12), vec3(0.62, 0.68, 0.56) + 0.3 * min(1.0, 4.0 * high), stain);
-  vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
+  own *= mix(vec3(1.08, 1.05, 0.98), vec3(0.62, 0.68, 0.5) + 0.3 * min(1.0, 4.0 * high), stain);
+#ifndef PLAIN
+  if (tone.x > 0.1) {
+    // Lumps, scars and lichens, each of its own size; noise about the stem has no seam.
+    vec2 about = 6.0 * normal.xy;
+    float lumps = noise(about + vec2(0.0, 1.1 * at.y)) + noise(about.yx * 2.3 + vec2(1.7 * at.y, 5.0));
+    float fine = noise(about * 7.0 + vec2(0.0, 9.0 * at.y)) + noise(about.yx * 15.0 + vec2(31.0 * at.y, 3.0));
+    own *= 0.5 + 0.3 * lumps + 0.2 * fine;
+    own = mix(own, vec3(0.5, 0.53, 0.43), 0.45 * smoothstep(1.2, 1.5, lumps + 0.35 * (fine - 1.0)));
+    n = normalize(n + 0.35 * tone.x * vec3(lumps - 1.0, 0.7 * (fine - 1.0), 0.5 * (lumps - fine)));
+  }
+#endif
+  vec3 base = mix(twigColor, own * (0.15 + 0.77 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   // Within the crown, and at the foot among grass, bark is dark.
   float open = (0.15 + 0.85 * smoothstep(0.05, 1.0, tone.y)) * (0.4 + 0.6 * smoothstep(0.0, 0.05, high));
-  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
+#ifdef PLAIN
+  float shone = sunny;
+#else
+  // Spots of sun between the leaves above.
+  float shone = 0.5 * (texture(sunMap, inMap) + texture(sunMap, inMap + vec3(0.002, 0.001, 0.0)));
+#endif
+  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * shone * max(dot(n, light), 0.0) * (0.5 + 0.5 * tone.x));
   base = mix(base * toned(lit), vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
@@ -173,6 +203,7 @@ uniform float time;
 uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
+uniform vec3 dulled; // colour of a crown in the open over that of a leaf alone
 uniform vec3 unturned; // colour of a leaf before autumn over that of the picture
 uniform float gloss; // specular reflection, 0 for a dull leaf
 uniform vec3 horizon;
@@ -187,34 +218,39 @@ void main() {
   vec4 q = texel(row + 1u);
   edge = 1.0;
   lit = vec3(0.0);
-  veil = vec3(1.0);
   // A cheap approximation of the hyperbolic tangent in the law.
   float wild = law.x * speed * speed / (flutter.x * law.y);
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
   vec3 p = root.xyz + root.w * turned(q, place + a * swing);
   at = corner;
   gl_Position = seen(p);
+  // In the shadow: the lower, the brighter.
+  veil = vec3(1.0 - 0.7 * min(1.0, (p.z - ground) * shadowTop));
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.3 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
+  vec3 n = normalize(0.45 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
+#ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
+#else
+  edge = min(1.0, 2.2 * abs(dot(flat_, back)));
+#endif
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
   float across = dot(n, light);
   float open = flutter.z;
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.05, 0.95, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.3 + 0.7 * near);
-  vec3 up = sky * (0.17 + 0.9 * near) * (0.75 + 0.25 * n.z);
+  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.22 + 0.78 * near);
+  vec3 up = sky * (0.2 + 0.85 * near) * (0.72 + 0.28 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.05, 1.1, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
+  vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
-  vec3 hue = vec3(0.97, 0.97, 1.1) + vec3(0.03, 0.0, -0.03) * sin(5.0 * flutter.y);
+  vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
   hue += (0.6 * (flutter.w - 1.0) + 0.2 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
@@ -226,7 +262,11 @@ void main() {
 }
 
 #part leaf.fragment
+#ifdef PLAIN
+precision mediump float;
+#else
 precision highp float;
+#endif
 in vec2 at;
 in vec3 lit;
 flat in vec3 veil;
@@ -235,6 +275,11 @@ uniform sampler2D leaves;
 out vec4 color;
 void main() {
   vec4 leaf = texture(leaves, at);
+#ifdef PLAIN
+  // Without a graphics unit every operation counts; `chosenTexture` has made the random choice.
+  if (edge * leaf.a < 0.25) discard;
+  color = vec4(leaf.rgb * lit + veil, 1.0);
+#else
   // From afar a point of the picture covers leaves and gaps: it is drawn at random, so that no card looks like one
   // large leaf.
   float small = length(fwidth(at));
@@ -248,23 +293,7 @@ void main() {
   if (cover < 0.05) discard;
   float own = 1.0 + 0.4 * (fract(17.0 * chance) - 0.5) * mixed;
   color = vec4(leaf.rgb * own / max(leaf.a, 0.01) * lit + veil, cover);
-}
-
-#part plainleaf.vertex leaf.vertex
-
-#part plainleaf.fragment
-// The same without a graphics unit, where every operation counts; `chosenTexture` has made the random choice.
-precision mediump float;
-in vec2 at;
-in vec3 lit;
-flat in vec3 veil;
-flat in float edge;
-uniform sampler2D leaves;
-out vec4 color;
-void main() {
-  vec4 leaf = texture(leaves, at);
-  if (edge * leaf.a < 0.25) discard;
-  color = vec4(leaf.rgb * lit + veil, 1.0);
+#endif
 }
 
 #part impostor.vertex seen
@@ -370,14 +399,14 @@ void main() {
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
   vec3 p = vec3(foot, ground);
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * 0.045 * field.w;
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.33, 0.45, 0.18), vec3(0.46, 0.53, 0.26), blade.w);
+  vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-  base = vec4(tint * (0.5 + 0.5 * sunlight(vec3(foot, ground))), clearness(p));
+  base = vec4(tint * mix(vec3(0.43, 0.46, 0.55), vec3(1.0), sunlight(vec3(foot, ground))), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -395,22 +424,34 @@ void main() {
 }
 
 #part shadow.fragment
-precision mediump float;
+precision highp float;
 in vec2 at;
-uniform sampler2D shadow;
-uniform float softness; // 0 where every pixel counts
+uniform sampler2D shadow; // 0 in the sun, else the brighter, the lower what casts it
+uniform float softness; // widest border of a shadow; 0 where every pixel counts
 uniform float depth;
 out vec4 color;
 void main() {
   float dark = texture(shadow, at).r;
-  if (softness > 0.0) {
-    dark = 0.4 * dark + 0.15 * (texture(shadow, at + vec2(softness, 0.0)).r
-      + texture(shadow, at - vec2(softness, 0.0)).r
-      + texture(shadow, at + vec2(0.0, softness)).r
-      + texture(shadow, at - vec2(0.0, softness)).r);
+#ifdef PLAIN
+  dark = min(1.0, 2.0 * dark);
+#else
+  // The higher a leaf, the wider the border of its shadow.
+  float turn = 6.2831853 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.00584))));
+  vec2 seen = vec2(0.001, 0.0);
+  for (int i = 0; i < 6; i++) {
+    float found = texture(shadow, at + softness * vec2(cos(turn + float(i)), sin(turn + float(i)))).r;
+    if (found > 0.1) seen += vec2(1.0, 1.0 - found);
   }
+  float wide = softness * (0.15 + 1.2 * seen.y / seen.x);
+  dark = 0.0;
+  for (int i = 0; i < 28; i++) {
+    float way = turn + 2.4 * float(i);
+    dark += min(1.0, 4.0 * texture(shadow, at + wide * sqrt((float(i) + 0.5) / 28.0) * vec2(cos(way), sin(way))).r);
+  }
+  dark /= 28.0;
+#endif
   if (dark < 0.01) discard;
-  color = vec4(0.03, 0.04, 0.06, depth * dark);
+  color = vec4(0.05, 0.08, 0.13, depth * dark);
 }
 
 #part backdrop.vertex
@@ -437,29 +478,62 @@ uniform vec3 zenith;
 uniform vec3 horizon;
 uniform float dimmed;
 out vec4 color;
+// Sum of noises, each half as large and half as strong as the one before, 0 to 1.
+float cloudy(vec2 p) {
+  float sum = 0.0;
+  for (float part = 0.5; part > 0.012; part *= 0.5) {
+    sum += part * noise(p);
+    p = mat2(1.6, 1.2, -1.2, 1.6) * p + 3.7;
+  }
+  return sum;
+}
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
-  vec3 c = mix(horizon, zenith, 1.0 - exp(-3.2 * high));
-  vec2 at = way.xy / (high + 0.16);
-  float cloud = noise(1.7 * at) + 0.5 * noise(3.6 * at + 7.0) + 0.25 * noise(7.5 * at);
-  c = mix(c, horizon * 1.05, 0.42 * smoothstep(0.85, 1.45, cloud) * smoothstep(0.0, 0.25, high));
+  vec3 c = mix(horizon, zenith, 1.0 - exp(-3.6 * high));
+  // Clouds, whose sides towards the sun are brighter.
+  vec2 at = 0.9 * way.xy / (high + 0.2);
+  float cloud = cloudy(at);
+  float thick = smoothstep(0.42, 0.58, cloud) * smoothstep(0.02, 0.22, high);
+  float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.35 * thick, 0.0, 1.0);
+  c = mix(c, mix(horizon * 1.1, mix(horizon, zenith, 0.45), shaded), 0.85 * thick);
   float glow = max(dot(way, light), 0.0);
   c += sun * (0.1 * pow(glow, 6.0) + 0.16 * pow(glow, 60.0)) * dimmed;
   if (kind > 0.5) {
     // Hills, the nearer ones darker.
     float turn = 3.0 * atan(way.y, way.x);
-    float far = 0.028 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
-    float near = 0.008 + 0.024 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.008 * noise(vec2(turn * 22.0, 5.0));
-    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.36) * dimmed, 0.5);
-    if (way.z < far) c = mix(horizon, blue, 0.28);
-    if (way.z < near) c = mix(horizon, blue, 0.5);
-    // The edge of a wood: crowns of several sizes, darker at their feet.
-    float wood = 0.007 + 0.007 * noise(vec2(turn * 5.0, 2.0)) + 0.004 * noise(vec2(turn * 60.0, 4.0))
-      + 0.0016 * noise(vec2(turn * 190.0, 6.0));
-    vec3 leafy = dimmed * mix(vec3(0.3, 0.38, 0.3), vec3(0.42, 0.5, 0.36), noise(vec2(turn * 60.0, 90.0 * way.z)));
-    if (way.z < wood) c = mix(horizon, leafy, 0.62 + 0.2 * smoothstep(wood, 0.0, way.z));
+    float far = 0.03 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
+    float near = 0.012 + 0.03 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.003 * noise(vec2(turn * 40.0, 5.0));
+    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.34) * dimmed, 0.6);
+    if (way.z < far) c = mix(horizon, blue, 0.3);
+    if (way.z < near) c = mix(horizon, blue, 0.55);
+    // Edges of woods, the nearer ones higher: crowns lit from above, with shade between them.
+    for (float row = 0.0; row < 2.0; row++) {
+      vec2 along = vec2(turn * (46.0 - 14.0 * row) + 31.0 * row, row);
+      float wood = (1.0 + 0.9 * row) * (0.002 + 0.012 * noise(along * vec2(0.09, 1.0))
+        + 0.006 * noise(along) * noise(along * 0.5) + 0.0035 * noise(along * vec2(3.1, 1.0)) + 0.0016 * noise(along * vec2(9.0, 1.0)));
+      wood -= 0.016 * row * smoothstep(0.3, 0.7, noise(along * vec2(0.13, 1.0) + 5.0));
+      if (way.z > wood) continue;
+      vec2 leaf = vec2(along.x, 900.0 * way.z);
+      float lit = 0.45 * noise(leaf * vec2(1.6, 0.2)) + 0.35 * noise(leaf * vec2(5.0, 0.6)) + 0.25 * noise(leaf * vec2(14.0, 1.6));
+      lit *= 0.35 + 0.65 * smoothstep(0.0, 1.0, way.z / wood);
+      vec3 leafy = dimmed * mix(vec3(0.15, 0.21, 0.14), mix(vec3(0.46, 0.52, 0.26), vec3(0.3, 0.42, 0.25), noise(along)), lit);
+      c = mix(leafy, horizon, 0.4 - 0.2 * row);
+    }
   }
   return c;
+}
+// Blades of grass as they stand before each other, towards the eye: across and along the way of sight.
+float blades(vec2 p, float far, float size) {
+  float up = log(far) * (eye.z - ground) / (4.0 * size);
+  float level = log2(far / size);
+  float turn = atan(p.y, p.x);
+  float sum = 0.0;
+  for (float part = 0.0; part < 2.0; part++) {
+    float wide = exp2(floor(level) + part);
+    float share = part > 0.5 ? fract(level) : 1.0 - fract(level);
+    sum += share * noise(vec2(turn * wide, up + 7.0 * part));
+  }
+  return sum - 0.5;
 }
 void main() {
   vec3 way = normalize(ray);
@@ -478,16 +552,19 @@ void main() {
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      vec3 lush = vec3(0.36, 0.46, 0.22);
-      vec3 dry = vec3(0.47, 0.51, 0.28);
-      float patch_ = 0.5 + 0.5 * grain(p, 14.0, pixel) + 0.45 * grain(p, 3.1, pixel) + 0.3 * grain(p, 0.7, pixel);
-      soil = mix(lush, dry, clamp(patch_, 0.0, 1.0));
-      soil *= 1.0 + 0.42 * grain(p, 0.22, pixel) + 0.5 * grain(p * vec2(1.0, 0.6), 0.06, pixel)
-        + 0.24 * grain(p, 60.0, pixel);
+      // Patches of lush and of dry grass, clover and moss, tufts, and blades.
+      float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
+      float clumps = cloudy(p / 1.3) - 0.5;
+      soil = mix(vec3(0.3, 0.39, 0.17), vec3(0.46, 0.49, 0.26), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
+      soil = mix(soil, vec3(0.32, 0.43, 0.22), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
+      vec2 seen = p - eye.xy;
+      float size = max(0.012, 1.3 * far * length(fwidth(ray)));
+      soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);
+      soil *= 1.0 + 0.3 * (cloudy(vec2(0.2, 1.0) * p / 90.0) - 0.5);
     }
     soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
-    c = mix(horizon, soil, max(0.55 * kind, exp(-haze * far)));
+    c = mix(horizon, soil, max(0.6 * kind, exp(-haze * far)));
   }
   color = vec4(c, 1.0);
 }

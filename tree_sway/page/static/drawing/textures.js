@@ -14,7 +14,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 const LEAF_SHARE = 0.75;
 /** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
  * the picture. */
-export const [CLUMP, CLUMP_FILLED] = [12, 1.1];
+export const [CLUMP, CLUMP_FILLED] = [12, 0.7];
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -267,7 +267,7 @@ class Brush {
     const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
     for (let i = 0; i < count; i++) {
       const turn = 7 * random();
-      const far = random() ** 0.7;
+      const far = random() ** 0.55;
       const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
       const light = 0.55 + (0.5 * Math.floor(LAYERS * i / count)) / (LAYERS - 1);
       this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
@@ -390,12 +390,13 @@ class Brush {
       return;
     }
     const pairs = slenderness < 0.35 ? 5 : slenderness < 0.4 ? 4 : 3;
-    this.line(0.75, 0.02, color);
+    const long = 1.1 / pairs;
+    this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
       const pair = Math.floor(i / 2);
-      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (0.95 - 0.06 * pair) + 0.15 * (random() - 0.5);
-      const along = 0.14 + 0.58 * Math.min(1, pair / (pairs - 1));
-      this.at(along, 0, lean, pair === pairs ? Math.min(0.25, size) : size * (0.7 + (0.3 * pair) / pairs), blade);
+      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (1 - 0.06 * pair) + 0.15 * (random() - 0.5);
+      const along = 0.16 + (0.8 - long) * Math.min(1, pair / (pairs - 1));
+      this.at(along, 0, lean, long * (0.75 + (0.25 * pair) / pairs), blade);
     }
   }
 }

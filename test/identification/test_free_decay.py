@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
-from tree_sway.twin.identification.free_decay import free_decay
+from tree_sway.identification.free_decay import free_decay
 
 DT = 0.02
 

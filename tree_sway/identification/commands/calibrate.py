@@ -30,9 +30,9 @@ from tree_sway.files.commands import (
 )
 from tree_sway.files.trees import sway_oddity
 from tree_sway.files.wind import read_csv_sway, read_phone_sway, SwayRecord
-from tree_sway.twin import calibrate, estimate_sway
-from tree_sway.twin.identification.calibration import Calibration
-from tree_sway.twin.identification.free_decay import FreeDecay
+from tree_sway.identification import calibrate, estimate_sway
+from tree_sway.identification.calibration import Calibration
+from tree_sway.identification.free_decay import FreeDecay
 
 _YAML = ('.yaml', '.yml')
 _PERIOD = 1.0

@@ -11,7 +11,7 @@ from tree_sway.core.settings import Settings
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.species.species import species_named
 from tree_sway.errors import ParameterError, TreeError
-from tree_sway.twin.identification.calibration import calibrate
+from tree_sway.identification.calibration import calibrate
 
 OAK = species_named('oak')
 COUPLED = Settings(model='full')

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
-from tree_sway.twin.identification.measured_sway import estimate_sway
+from tree_sway.identification.measured_sway import estimate_sway
 
 DT, DAMPING = 0.05, 0.1
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError
-from tree_sway.twin.identification.spectral_peaks import spectral_peaks
+from tree_sway.identification.spectral_peaks import spectral_peaks
 
 F = np.linspace(0.0, 10.0, 5001)
 DURATION = 500.0

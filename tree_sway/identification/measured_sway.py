@@ -17,8 +17,8 @@ from scipy import signal
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.twin.identification.free_decay import free_decay, FreeDecay
-from tree_sway.twin.identification.spectral_peaks import Band, spectral_peaks
+from tree_sway.identification.free_decay import free_decay, FreeDecay
+from tree_sway.identification.spectral_peaks import Band, spectral_peaks
 
 _MIN_SAMPLES = 16
 _LARGEST = 1e100

@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from tree_sway.errors import ParameterError
-from tree_sway.twin.identification.calibration import calibrate
+from tree_sway.identification.calibration import calibrate
 
 
 @pytest.mark.parametrize('frequency', ['3', None, b'3', [1.0], {}, 1j], ids=repr)

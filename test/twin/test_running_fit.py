@@ -1,0 +1,41 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A fit of hours is by the air of those hours, weighted by their motion, and not by the last."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tree_sway.twin.motion_sensor import MotionSensor
+from tree_sway.twin.running_fit import RunningFit
+from tree_sway.twin.sensor_place import PlaceMotion, SensorPlace
+from tree_sway.twin.sensor_track import SensorTrack
+
+N, DT = 3, 1.0 / 60.0
+
+
+def test_air_and_forces_are_weighted_by_the_motion_of_their_stretches() -> None:
+    forces = SimpleNamespace(speed=8.0, air_damping=np.full(N, 0.8), covariance=2.0 * np.eye(N))
+    unknown: Any = SimpleNamespace(
+        count=N, all_stiffness=np.ones(N), all_damping=np.ones(N), forces=forces, mean_speed=8.0
+    )
+    track = SensorTrack(MotionSensor('s', SensorPlace(0, 0.5)), 1.0, DT)
+    track.uses = (0, 1)
+    fit = RunningFit(unknown, [track], [PlaceMotion(*np.zeros((2, 3, N)))], 1.0, DT)
+    filled = 0
+    for speed, power in ((8.0, 90.0), (2.0, 10.0)):
+        unknown.mean_speed = speed
+        for step in range(2):
+            spectrum = fit._spectra[0]
+            filled += 1
+            spectrum.native.filled = filled
+            spectrum.count += step
+            spectrum._products[0, 0, 0] += step * power
+            fit.note(speed, 0.0)
+    assert fit._weight == pytest.approx(100.0)
+    np.testing.assert_allclose(fit._air / fit._weight, 0.9 * 0.8 + 0.1 * 0.2)
+    np.testing.assert_allclose(fit._forces / fit._weight, np.eye(N) / N)
