@@ -282,7 +282,7 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
         ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
         ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),
-        ('time,s,d\n[2024-03-05] <STX>Q,229,002.74\n', 'a.txt', 'no time in it'),
+        ('M:x =   335 y =   218 z =     5 t =  2203\n' * 3, 'a.csv', 'no header: the first line'),
     ],
 )
 def test_what_is_no_table_of_wind_is_told(
@@ -546,6 +546,20 @@ def test_cylinders_above_other_tables(tmp_path: Path) -> None:
     )
     tree = open_tree(written(tmp_path, text, 'qsm.txt'), warn=False).tree
     assert tree.height == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    'form',
+    [
+        '1,1,0,0,0,.1,-1\n2,1,0,0,4,.08,1\n',
+        'id type x y z radius parent\n1 1 0 0 0 .1 -1\n2 1 0 0 4 .08 1\n',
+        '1 1 0 0 0 .1 -1 0 1 0 10000 0\n2 1 0 0 4 .08 1 0 1 0 10000 0\n',
+    ],
+    ids=['commas', 'names', 'further columns'],
+)
+def test_forms_of_swc(tmp_path: Path, form: str) -> None:
+    for name in ('a.swc', 'a.txt'):
+        assert open_tree(written(tmp_path, form, name), warn=False).tree.height == 4.0
 
 
 @pytest.mark.parametrize(

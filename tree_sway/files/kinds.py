@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.column_names import folded, motion_of
 from tree_sway.files.layouts.known import looks_like_wind, table_of
 from tree_sway.files.text_file import read_head
@@ -37,7 +37,7 @@ _KINDS = {
     _SCENE: ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
     'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
     _WIND: ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
-    _MOTION: ('a record of motion', 'give it behind --motion, as in tree-sway show --motion {0}'),
+    _MOTION: ('a record of motion', 'give it behind --motion of tree-sway simulate, with --at'),
     _SWAY: ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
     _STUDY: ('a study', 'run it by tree-sway study {0}'),
     _RECORD: ('the sheet of a record', 'give its folder to tree-sway lab twin'),
@@ -63,11 +63,11 @@ def expected(path: Path, *kinds: str) -> Iterator[None]:
 
 def kind_of(path: Path) -> str:
     """Return the kind of a file by its beginning; empty if nothing tells it."""
-    from tree_sway.files.scenes.stand_table import is_stand_table
-    from tree_sway.files.trees.tree_formats import TREE_FORMATS
-    from tree_sway.files.wind.wind_formats import WIND_FORMATS
+    with suppress(TreeSwayError):
+        from tree_sway.files.scenes.stand_table import is_stand_table
+        from tree_sway.files.trees.tree_formats import TREE_FORMATS
+        from tree_sway.files.wind.wind_formats import WIND_FORMATS
 
-    with suppress(FormatError):
         head = read_head(path)
         for key, kind in _KEYS.items():
             if begins_with_key(path, head, key):

@@ -134,7 +134,7 @@ def row_times(
     cells = [table.cells(column, rows) for column in columns]
     stamps = cells[0] if join is None else [join(parts) for parts in zip(*cells, strict=True)]
     times = _of_one_year(times_of(stamps, factor))
-    if join is None and times.epoch is None and not times.note:
+    if join is None and factor == 1.0 and times.epoch is None and not times.note:
         times = replace(times, note=_doubt(table, columns[0], times))
     zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
     return times if zone is None or times.epoch is None else _in_utc(times, zone[1])

@@ -312,7 +312,11 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     cells = split_row(header, separator)
     filled = list(filter(None, cells if len(cells) > 1 else header.split()))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
-    if not has_names or 2 * sum(finite(each) is not None for each in filled) > len(filled):
+    if (
+        len(cells) < 2
+        or not has_names
+        or 2 * sum(finite(each) is not None for each in filled) > len(filled)
+    ):
         raise FormatError(
             f"no header: the first line, '{header[:40].strip()}', has no names",
             where=f'{source}:{numbers[0]}',

@@ -3,7 +3,8 @@
 """
 SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
-A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a separate
+A node in each line: number, type, x, y, z, radius, parent, -1 at a root; spaces or commas are
+between, further columns and a line of names are passed over. Each root is a separate
 tree. SWC has no unit: see ``length_unit`` and ``diameter_unit`` of `TreeOptions`.
 """
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+import re
 
 import numpy as np
 
@@ -24,18 +26,29 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
 _COLUMNS = 'number type x y z radius parent'.split()
+_NAMES = re.compile(r'\s*[a-z]+[\s,;]+type\b.*\bradius\b', re.IGNORECASE)
+_BETWEEN = re.compile(r'[\s,;]+')
 
 
 def _is_swc(head: str) -> bool:
     """Whether the beginning of a file is that of an SWC file."""
-    _, lines = filled_lines(head.splitlines())
-    cells = lines[0].split() if lines else []
-    return len(cells) == 7 and None not in map(finite, cells)
+    _, lines = filled_lines(_without_names(head.splitlines()))
+    cells = _cells(lines[0]) if lines else []
+    is_root = len(cells) == 7 or cells[6:7] == ['-1']
+    return is_root and None not in map(finite, cells[:7])
+
+
+def _without_names(lines: Sequence[str]) -> list[str]:
+    return ['' if _NAMES.match(line) else line for line in lines]
+
+
+def _cells(line: str) -> list[str]:
+    return _BETWEEN.split(line.strip())
 
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
     """Trees of an SWC file."""
-    table = parse_columns(read_lines(path), str(path), _COLUMNS)
+    table = parse_columns(_without_names(read_lines(path)), str(path), _COLUMNS, _cells)
     if not table.texts:
         raise FormatError('no nodes', cure='give a node in each line')
     nodes = table.strict(_COLUMNS)[:, 2:6]
