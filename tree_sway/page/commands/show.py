@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
     if arguments.seconds is not None:
-        within('--seconds', arguments.seconds, 0.0, 1e9, 's', above=True)
+        within('--seconds', arguments.seconds, 0.0, 1e9, 's')
     refuse_unused_wind(arguments)
     added = [each(arguments) for each in additions('show')]
     with Ending(is_last=True) as ending, ExitStack() as stack:
