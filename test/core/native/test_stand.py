@@ -79,6 +79,8 @@ def test_nothing_that_holds_native_memory_is_copied_with_it(model):
     for each in (simulator, stand_of(model), address(np.zeros(1))):
         with pytest.raises(ParameterError, match='cannot be copied'):
             copy.deepcopy(each)
+    with pytest.raises(ParameterError, match='cannot be copied'):
+        copy.copy(simulator)
     for each in (address(np.zeros(1)), Opened(0, lambda _: None)):
         with pytest.raises(ParameterError, match='cannot be copied'):
             pickle.dumps(each)

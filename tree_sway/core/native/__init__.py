@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tree_sway.core.native.library import contiguous as contiguous
     from tree_sway.core.native.library import LastAddress as LastAddress
     from tree_sway.core.native.library import LIBRARY as LIBRARY
+    from tree_sway.core.native.library import NotCopied as NotCopied
     from tree_sway.core.native.model import AT_POSE as AT_POSE
     from tree_sway.core.native.model import bytes_of as bytes_of
     from tree_sway.core.native.model import NativeModel as NativeModel

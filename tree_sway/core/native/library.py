@@ -120,6 +120,14 @@ def _opened() -> ctypes.CDLL:
 LIBRARY = _opened()
 
 
+class NotCopied:
+    """What steps by native memory: even a shallow copy would step that of the first."""
+
+    def __copy__(self) -> NoReturn:
+        cure = 'make another simulator of the same model, and give it the state() of this one'
+        raise ParameterError('what the native core steps cannot be copied', cure=cure)
+
+
 class Address(int):
     """
     Where memory is, or what the native core has opened.
@@ -129,8 +137,7 @@ class Address(int):
     """
 
     def __reduce_ex__(self, _: object) -> NoReturn:
-        cure = 'make another simulator of the same model, and give it the state() of this one'
-        raise ParameterError('what the native core steps cannot be copied', cure=cure)
+        NotCopied().__copy__()
 
 
 class Opened:

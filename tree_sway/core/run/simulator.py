@@ -22,6 +22,7 @@ from tree_sway.core.checks import (
     whole,
 )
 from tree_sway.core.model import SwayModel
+from tree_sway.core.native import NotCopied
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.outcome import Outcome
@@ -63,7 +64,7 @@ class Counts:
     reduced: int = 0
 
 
-class SwaySimulator:
+class SwaySimulator(NotCopied):
     """
     A tree that sways.
 

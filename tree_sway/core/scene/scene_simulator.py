@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.model import ModelCache, PREPARED, SwayModel
+from tree_sway.core.native import NotCopied
 from tree_sway.core.run import (
     Bank,
     Counts,
@@ -53,7 +54,7 @@ if TYPE_CHECKING:
     from tree_sway.core.run import Spring, Touch
 
 
-class SceneSimulator:
+class SceneSimulator(NotCopied):
     """
     Trees that sway in one wind; used like a `SwaySimulator`. `Scene.simulator` makes it.
 

@@ -90,6 +90,7 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
   const end = first[branch + 1];
   const baseRadius = radius[2 * from];
   const isStem = parents[branch] < 0;
+  const thin = arrays.branch_base_segment.includes(end - 1) ? 1 : 0.4;
   const sides = sidesOf(baseRadius / point);
   const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
   const thickness = Math.min(1, baseRadius / (BARKED * height));
@@ -108,13 +109,13 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       if (climbed - ringAt < RING_SPACING * point) continue;
     }
     ringAt = climbed;
-    // At a joint both segments agree on the radius: no steps in the bark. Shoots end thin.
+    // At a joint both segments agree on the radius: no steps in the bark. What carries nothing at its end ends thin.
     const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
     const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
     for (const up of isStem && s === from ? FOOT_RINGS : [0]) {
       const above = climbed / baseRadius + up;
       const flare = isStem ? Math.exp(-above) : 0;
-      const ringRadius = Math.max(isTip ? 0.4 * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
+      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
       for (let k = 0; k < corners; k++) {
         const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
           : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];
