@@ -313,7 +313,7 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     filled = list(filter(None, cells if len(cells) > 1 else header.split()))
     has_names = any(map(str.isalpha, _STAMP_LETTERS.sub('', header)))
     if (
-        len(cells) < 2
+        (len(cells) < 2 and '"' not in header)
         or not has_names
         or 2 * sum(finite(each) is not None for each in filled) > len(filled)
     ):
