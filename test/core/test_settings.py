@@ -9,10 +9,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tree_sway.core.scene import make_simulator
 from tree_sway.core.settings import MODELS, Settings, USUAL
 from tree_sway.core.wind import simulate_turbulence, WindProfile
 from tree_sway.errors import ParameterError
-from tree_sway.simulation import simulate
 
 
 def test_the_defaults_stand():
@@ -73,7 +73,8 @@ def test_a_number_may_be_given_as_text():
     ids=str,
 )
 def test_a_whole_number_is_a_number(fork, whole):
-    simulate(fork(), np.ones((2, 3)), model=2, **whole)
+    simulator = make_simulator(fork(), model=2, **whole)
+    simulator.step(np.ones(3), 1 / 60)
 
 
 def test_a_bearing_in_degrees_is_refused():
