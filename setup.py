@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 import os
 from pathlib import Path
@@ -127,19 +128,21 @@ class BuildNative(build_ext):
         options += [f'-DSWAY_INTERFACE={zlib.crc32(b"".join(headers))}u']
         folder = Path(self.build_temp, 'native')
         folder.mkdir(parents=True, exist_ok=True)
-        objects = []
+        objects, commands = [], []
 
         def compiled(name, source, *own):
             path = ROOT / 'native' / f'{source}.cpp'
             objects.append(str(folder / f'{name}.o'))
-            run([*compiler, *options, *own, '-c', str(path), '-o', objects[-1]])
+            commands.append([*compiler, *options, *own, '-c', str(path), '-o', objects[-1]])
 
-        for name in SOURCES:
-            compiled(name, name)
+        # Those of the frame take longest.
         for name, own in TARGETS.get(MACHINE, {'baseline': []}).items():
             if is_zig:
                 own = [each.replace('x86-64-v', 'x86_64_v') for each in own]
             compiled(f'frame_{name}', 'frame', f'-DSWAY_FRAME=frame_{name}', *own)
+        for name in SOURCES:
+            compiled(name, name)
+        run_all(commands)
         # Nothing of the run-time library of C++ is needed.
         linker = ['cc' if word == 'c++' else word for word in compiler] if is_zig else compiler
         linked = folder / Path(self.get_ext_filename(ext.name)).name
@@ -151,6 +154,12 @@ class BuildNative(build_ext):
         target.parent.mkdir(parents=True, exist_ok=True)
         target.unlink(missing_ok=True)  # a process that has it open keeps it
         shutil.copy(linked, target)
+
+
+def run_all(commands):
+    """Run compilers, as many at a time as there are processors."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(run, commands))
 
 
 def run(words):

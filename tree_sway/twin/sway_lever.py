@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.signal import csd
+from numpy.lib.stride_tricks import sliding_window_view
 
 from tree_sway.core.arrays import Complexes, Floats
 
@@ -81,13 +81,20 @@ def _levers(
     felt = motion[:, :2].T
     turned = np.stack([motion[:, 4], -motion[:, 3]])  # the rate that leans along x, along y
 
-    def spectrum(one: Floats, other: Floats) -> Complexes:
-        return np.asarray(csd(one, other, 1.0 / dt, nperseg=length)[1].sum(axis=0))
+    step, window = length - length // 2, np.hanning(length + 1)[:-1]
 
+    def waves(series: Floats) -> Complexes:
+        stretches = sliding_window_view(series, length, axis=1)[:, ::step]
+        return np.fft.rfft((stretches - stretches.mean(axis=2, keepdims=True)) * window)
+
+    def spectrum(one: Complexes, other: Complexes) -> Complexes:
+        return np.asarray((one.conj() * other).sum(axis=(0, 1)))
+
+    of_turn, of_felt = waves(turned), waves(felt)
     hertz = np.fft.rfftfreq(length, dt)
     circular = 2.0 * math.pi * np.maximum(hertz, hertz[1])
-    of_rate = spectrum(turned, turned).real
-    shared = spectrum(turned, felt).imag  # (w l + g / w) |r|^2
+    of_rate = spectrum(of_turn, of_turn).real
+    shared = spectrum(of_turn, of_felt).imag  # (w l + g / w) |r|^2
     moment = (shared - pull / circular * of_rate) / circular  # l |r|^2
     edges = np.minimum(np.searchsorted(hertz, _BANDS * frequency), len(hertz) - 1)
 
@@ -95,5 +102,5 @@ def _levers(
         return np.add.reduceat(series, edges)[:-1]
 
     power = np.maximum(in_bands(of_rate), 1e-300)
-    coherence = in_bands(shared) / np.sqrt(in_bands(spectrum(felt, felt).real) * power)
+    coherence = in_bands(shared) / np.sqrt(in_bands(spectrum(of_felt, of_felt).real) * power)
     return in_bands(moment) / power, power, coherence

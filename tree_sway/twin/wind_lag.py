@@ -17,7 +17,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import fftconvolve
 
 from tree_sway.core.arrays import Floats, Ints
 
@@ -84,13 +83,17 @@ def find_lag(
 
     """
     n = len(pairs[0][0])
+    size = 2 ** (2 * n - 2).bit_length()  # of all products without a wrap
     least, most = max(least, -round(_LEAST_OVERLAP * n)), min(most, round(_LEAST_OVERLAP * n))
     lags = np.arange(least, most + 1)
     covariance = np.zeros((len(lags), 3, 3))
     own, other = np.zeros((2, len(lags)))
     for sensed, model in pairs:
         moved, wanted = _of_size_one(sensed), _of_size_one(model)
-        products = fftconvolve(moved[:, :, None], wanted[::-1, None], axes=0)
+        waves = np.fft.rfft(moved, size, axis=0)[:, :, None]
+        products = np.fft.irfft(
+            waves * np.fft.rfft(wanted[::-1], size, axis=0)[:, None], size, axis=0
+        )
         covariance += products[n - 1 + lags]
         own += _sums(np.square(moved).sum(axis=1), lags)
         other += _sums(np.square(wanted).sum(axis=1), -lags)

@@ -17,7 +17,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree import Tree
@@ -188,6 +187,8 @@ class _Fit:
 
     def from_bearing(self, bearing: float) -> Any:
         """Fit from a first bearing in [rad]."""
+        from scipy.optimize import least_squares  # it takes long to load, and few need it
+
         first = self._mean.copy()
         first[0] = bearing
         rise = float(self._points[:, 2].mean() - self._foot[2]) - first[2]

@@ -7,8 +7,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError
@@ -37,6 +35,10 @@ def cylinders_of_edges(point: Floats, edges: Ints, radius: Floats, *, of_nodes: 
         No edges, an edge to a node that is not there, or edges that close a ring.
 
     """
+    # They take long to load, and few files need them.
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import breadth_first_order, connected_components
+
     n = len(point)
     if len(edges) == 0:
         raise FormatError('no edges', cure='join the nodes of each segment')
