@@ -280,7 +280,8 @@ def pip(environment, *arguments):
     """Install with pip, one line of progress; its own words go to a log beside the environment."""
     log = VENV / 'setup.log'
     command = [str(VENV / 'bin' / 'python'), '-m', 'pip', 'install', '--progress-bar', 'off']
-    command += ['--disable-pip-version-check', *arguments]
+    # Few modules of what is installed are ever loaded, and each is compiled when it is first.
+    command += ['--disable-pip-version-check', '--no-compile', *arguments]
     process = subprocess.Popen(
         command,
         cwd=str(ROOT),

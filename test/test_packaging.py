@@ -251,6 +251,7 @@ async def first_frame(address: str) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.xdist_group('wheel')
 @pytest.mark.parametrize('installer', ['pip', 'uvx'])
 def test_the_wheel_shows_a_tree_in_a_fresh_environment(
     wheel: Path, tmp_path: Path, installer: str
@@ -412,6 +413,7 @@ def test_the_recipe_of_conda_has_what_setup_asks_for(setup_words: dict[str, Any]
 
 
 @pytest.mark.long
+@pytest.mark.xdist_group('wheel')
 def test_a_wheel_brings_executables_to_where_ros2_run_looks(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         infos = {re.sub(r'.*\.data/data/', '', info.filename): info for info in archive.infolist()}

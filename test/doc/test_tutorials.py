@@ -32,7 +32,7 @@ FIRST = 'python3 .ci/in_venv.py tree-sway --version'
 DEADLINE = 600.0
 NOT_OF_A_NEW_USER = ('TREE_SWAY_VENV', 'VIRTUAL_ENV', 'PYTHONPATH', 'AMENT_PREFIX_PATH')
 
-pytestmark = [pytest.mark.long, pytest.mark.ros]
+pytestmark = [pytest.mark.long, pytest.mark.ros, pytest.mark.xdist_group('tutorials')]
 
 
 @pytest.fixture(scope='module')
