@@ -109,7 +109,9 @@ def move(bodies: Bodies, turn: Floats, rate: Floats, motion: Motion) -> None:
         p = bodies.carrier[i]
         arm = read(bodies.arm, i)
         if p < 0:
-            rotation[i] = turn[i]
+            for j in range(3):
+                for k in range(3):
+                    rotation[i, j, k] = turn[i, j, k]
             write(motion.arm, i, arm)
             write(motion.spin, i, times(turn[i], read(rate, i)))
             continue

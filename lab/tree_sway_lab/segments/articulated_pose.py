@@ -36,10 +36,11 @@ def place_bodies(
     for i in range(len(turn)):
         p = bodies.carrier[i]
         arm, axis = read(bodies.arm, i), read(bodies.axis, i)
-        matrix_of(turn[i], own)
         if p < 0:
-            rotation[i], place, back = own, arm, axis
+            matrix_of(turn[i], rotation[i])
+            place, back = arm, axis
         else:
+            matrix_of(turn[i], own)
             product(rotation[p], own, rotation[i])
             place, back = (
                 plus(read(joint, p), times(rotation[p], arm), 1.0),
@@ -72,7 +73,8 @@ def pose_block(
     for i in range(len(turn)):
         p = bodies.carrier[i]
         if p < 0:
-            q[i] = turn[i]
+            for k in range(4):
+                q[i, k] = turn[i, k]
         else:
             _multiply(q[p], turn[i], q[i])
     whole = np.empty(4)
