@@ -65,8 +65,8 @@ def kernel(function: _F) -> _F:
     Compile a function of numbers and arrays to machine code at its first call.
 
     Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released.
-    Rows are copied number by number: assigned as a whole, each compiles the words of an error, too,
-    for 3 s. The plain function stays reachable as ``py_func``.
+    Rows are copied number by number: where one is assigned as a whole, the words of an error are
+    compiled, too, for 3 s. The plain function stays reachable as ``py_func``.
     """
     return cast(_F, numba.njit(error_model='numpy', nogil=True, cache=True)(function))
 
