@@ -232,7 +232,10 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert 0.1 < told['residual'] < 3.0
     assert 0.3 < status['explained'] < 0.95
     learned = session._scene.simulator.learned
-    assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
+    said = {key: values for key, *values in status['said']}
+    assert said['sensor_followed'][0] == told['name']
+    assert said['shares'][0] == f'{100.0 * status["explained"]:.0f}'
+    assert said.get('learned_sway', [None])[-1] == (learned and f'{learned.hours:.2f}')
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
 
 
@@ -284,6 +287,7 @@ def test_the_page_says_what_a_camera_tells(sensor: Sensor) -> None:
     assert seen['in_use']
     assert seen['rate'] == 30.0
     assert 'points on the tree' in seen['notes'][0]
+    assert session.status()['motion']['said'][0][:2] == ['sensor_followed', 'camera:0']  # type: ignore[index]
     film.is_over = True
     lost = told(60)
     assert not lost['in_use']

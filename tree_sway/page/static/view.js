@@ -8,7 +8,7 @@ import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
 import { Risk } from "./risk.js";
 import { Trace } from "./trace.js";
-import { language, motionSensors, setLanguage, windFrom, windSource, word } from "./words.js";
+import { language, sentences, setLanguage, windFrom, windSource, word } from "./words.js";
 
 /** Interval at which numbers are written [ms]. */
 const FACTS_EVERY = 400;
@@ -142,7 +142,7 @@ export class View {
       latency: Number.isFinite(latency) ? `${(latency + delay).toFixed(0)} ms` : "–",
       "wind-now": playout.isWindLost ? "–" : `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
       source: windSource(status.wind),
-      sensors: motionSensors(status.motion),
+      sensors: sentences(status.motion?.said),
       warnings: (status.warnings ?? []).join("; "),
       "band-of": status.motion?.band && this._showsTip ? word("band") : "",
       gust: gusts ? word("gust", gusts.mean.toFixed(1), gusts.greatest.toFixed(1)) : "",
