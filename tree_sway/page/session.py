@@ -301,7 +301,7 @@ class Session:
                     'problem': film.problem or ('' if sees else said),
                     'residual': round(simulator.error, 2),
                     'rate': round(film.rate, 1),
-                    'refused': simulator.refused,
+                    'refused': simulator.refused + film.refused,
                     'notes': [said],
                 }
             )

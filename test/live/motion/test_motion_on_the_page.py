@@ -11,7 +11,6 @@ from functools import cache
 from pathlib import Path
 import threading
 import time
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -155,18 +154,17 @@ class LateMachine:
 class StillFilm:
     """The part of a live film that a feed reads: a tree that hangs still, until pictures end."""
 
-    name, problem, rate, is_over = 'camera:0', '', 30.0, False
+    name, problem, rate, refused, is_over = 'camera:0', '', 30.0, 0, False
 
     def __init__(self, sensor: Sensor) -> None:
         self._clock = sensor
         away = 2.0 * float(TREE.end[:, 2].max())
         axes = looking(0.0, 0.0, 0.0)
         height = 0.3 * away
-        self.view = SimpleNamespace(
-            camera=Camera(np.array([0.0, -away, height]), axes, 900.0, np.array([640.0, 360.0]))
-        )
+        at = np.array([0.0, -away, height])
+        self.camera = Camera(at, axes, 900.0, np.array([640.0, 360.0]))
         middles = 0.5 * (TREE.start + TREE.end)
-        self._points = self.view.camera.project(middles)
+        self._points = self.camera.project(middles)
 
     def drain(self) -> list[Sighting]:
         """Return a picture of now."""

@@ -336,6 +336,7 @@ interface Hands {
   drag: import("./drag.js").Drag | null;
   sound: import("./sound.js").Sound | null;
   headset: import("./headset.js").Headset | null;
+  film: import("./hand_camera.js").HandCamera | null;
 }
 
 /** View of one eye. */

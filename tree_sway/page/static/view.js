@@ -29,7 +29,7 @@ export class View {
     this.stream = stream;
     this.state = state;
     this.risk = new Risk(scene);
-    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null });
+    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null, film: null });
     this.panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
     this.shown = /** @type {HTMLSelectElement} */ (element("shown"));
     this.traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
@@ -220,7 +220,7 @@ export class View {
   showButtons() {
     const { hasLeaves, leavesShown, isAutumn: season, description } = this.scene;
     const [pull, sound, headset] = [this.hands.drag?.isOn, this.hands.sound?.isOn, this.hands.headset?.session];
-    const pressed = { leaves: hasLeaves && leavesShown, season, clip: this.endClip, pull, sound, headset };
+    const pressed = { leaves: hasLeaves && leavesShown, season, clip: this.endClip, pull, sound, headset, "own-camera": this.hands.film?.video };
     for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(Boolean(isSo)));
     Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
     const isStand = (description?.trees.length ?? 1) > 1;

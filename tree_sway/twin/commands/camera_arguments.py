@@ -14,7 +14,7 @@ from tree_sway.commands import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.live import CameraView, Film, is_camera, LiveFilm
+from tree_sway.live import CameraView, Film, is_camera, LiveFilm, PAGE, PageFilm
 from tree_sway.live.commands import sensors_and_places
 from tree_sway.twin.camera import FilmedMotion
 
@@ -30,6 +30,17 @@ class PlacedCamera(NamedTuple):
     view: CameraView
 
 
+def _told_camera(arguments: argparse.Namespace) -> tuple[str, str] | None:
+    """Take the address of the camera and what is told of it out of the arguments."""
+    pairs = sensors_and_places(arguments)
+    cameras = [pair for pair in pairs if is_camera(pair[0])]
+    if len(cameras) > 1:
+        raise ParameterError('two cameras', where='--motion', cure='give one')
+    others = [pair for pair in pairs if not is_camera(pair[0])]
+    arguments.motion, arguments.at = [[pair[k] for pair in others] for k in (0, 1)]
+    return cameras[0] if cameras else None
+
+
 def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | None:
     """
     Take the camera out of the arguments, and find where it stands; None without one.
@@ -42,15 +53,9 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
         OpenCV is not installed.
 
     """
-    pairs = sensors_and_places(arguments)
-    cameras = [pair for pair in pairs if is_camera(pair[0])]
-    if not cameras:
+    if (told := _told_camera(arguments)) is None:
         return None
-    if len(cameras) > 1:
-        raise ParameterError('two cameras', where='--motion', cure='give one')
-    others = [pair for pair in pairs if not is_camera(pair[0])]
-    arguments.motion, arguments.at = [[pair[k] for pair in others] for k in (0, 1)]
-    (address, at), *_ = cameras
+    address, at = told
 
     def say(text: str) -> None:
         print(f'note: {address}: {text}', file=sys.stderr)
@@ -61,14 +66,18 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
 
 
 @contextmanager
-def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | None]:
+def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | PageFilm | None]:
     """
-    Follow the live camera among the arguments, and end at once; None without one.
+    Follow the live camera among the arguments, or that of a page; None without one.
 
     The errors are those of `placed_camera`, and a film in a file.
     """
     if not any(map(is_camera, arguments.motion)):
         yield None
+        return
+    if PAGE in arguments.motion:
+        (_, at) = _told_camera(arguments) or ('', '')
+        yield PageFilm(tree(), at, _say)
         return
     placed = placed_camera(arguments, tree())
     assert placed is not None
