@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A visitor's camera: a film of a drawn tree that a browser takes for one moves the tree of the page."""
+"""A film of a drawn tree that a browser takes for a visitor's camera moves that of the page."""
 
 from __future__ import annotations
 
@@ -92,9 +92,7 @@ def page() -> Iterator[Page]:
     filmed = PageFilm(tree, 'bearing=0; distance=6', print)
     feed.film = filmed
     wind = RecordedWind(np.array([0.0, 1e4]), np.zeros((2, 3)))
-    session = Session(
-        lambda _: FilmedTree(tree, rate=RATE), Choices('spruce'), wind, motion=feed
-    )
+    session = Session(lambda _: FilmedTree(tree, rate=RATE), Choices('spruce'), wind, motion=feed)
     panel = ControlPanel(PAUSE_AND_RESET, session.apply, session.pull)
     with PageServer(PageSettings(port=0), panel, session.status, film=filmed) as server:
         session.serve(server)
@@ -139,7 +137,8 @@ async def click(browser: Browser, point: Floats) -> None:
         f"""(() => {{
           const canvas = {VIEW}, box = canvas.getBoundingClientRect();
           const [x, y] = [{x}, {y}].map((each) => each * box.width / canvas.width);
-          canvas.dispatchEvent(new MouseEvent("click", {{ clientX: box.x + x, clientY: box.y + y }}));
+          const at = {{ clientX: box.x + x, clientY: box.y + y }};
+          canvas.dispatchEvent(new MouseEvent("click", at));
         }})()"""
     )
 
@@ -196,10 +195,10 @@ def test_the_film_before_a_visitors_camera_moves_the_tree(page: Page, film: Draw
         times, found = np.array(tips).T
         there = swing(np.arange(len(film.tips)) / FILM_RATE, film.tips[:, 0])
         here = swing(times[times > begun + PERIOD], found[times > begun + PERIOD])
-        print(f'swing {here:.4f} m, of the film {there:.4f} m; {page.film.rate:.0f} pictures a second')
+        print(f'swing {here:.4f} m, of the film {there:.4f} m, {page.film.rate:.0f} pictures a s')
         assert 0.7 < here / there < 1.3
         await start(browser)
-        assert 'films no more' in page.film.problem
+        assert 'no page films' in page.film.problem
 
     visit(page, script, *_FLAGS, f'--use-file-for-fake-video-capture={film.path}')
 
@@ -216,11 +215,11 @@ def test_a_refused_and_a_missing_camera_are_told_and_the_page_goes_on(page: Page
         await start(browser)
         wanted = (await browser.run(WORDS))['NotAllowedError']
         await browser.until(f"document.getElementById('toast').textContent === '{wanted}'")
-        assert await browser.run("treeSway.hands.film.video") is None
+        assert await browser.run('treeSway.hands.film.video') is None
 
     async def missing(browser: Browser) -> None:
         await browser.run(
-            "navigator.mediaDevices.getUserMedia = () =>"
+            'navigator.mediaDevices.getUserMedia = () =>'
             " Promise.reject(new DOMException('none', 'NotFoundError'))"
         )
         await start(browser)
@@ -256,7 +255,7 @@ def test_a_camera_that_is_taken_away_and_a_closed_page_are_told(page: Page) -> N
 
     visit(page, script, *_FLAGS)
     end = time.monotonic() + DEADLINE
-    while 'films no more' not in page.film.problem:
+    while 'no page films' not in page.film.problem:
         assert time.monotonic() < end
         time.sleep(0.02)
     assert page.session.failure is None
@@ -274,7 +273,9 @@ def test_a_second_camera_is_ended_and_told(page: Page) -> None:
             await click(browser, np.array(point))
         await point_at(browser, 3)
         await click(browser, np.array([300.0, 300.0]))
-        await browser.until("document.getElementById('toast').textContent.includes('another page')")
+        await browser.until(
+            "document.getElementById('toast').textContent.includes('another page')"
+        )
         assert await browser.run('treeSway.hands.film.video') is None
 
     visit(page, script, *_FLAGS)
@@ -296,7 +297,9 @@ def test_a_viewer_and_a_page_without_camera_get_no_button(page: Page) -> None:
                 async with session.ws_connect(f'{server.url}stream') as line:
                     told = (await line.receive_json(timeout=DEADLINE))['hello']['can_film']
                     await line.send_json({'film': {'at': '', 'size': [640, 480]}})
-                    while not (answered := await line.receive_json(timeout=DEADLINE)).get('refused'):
+                    while not (answered := await line.receive_json(timeout=DEADLINE)).get(
+                        'refused'
+                    ):
                         pass
                     return told, answered['refused']['name']
 

@@ -537,10 +537,10 @@ def test_it_speaks_languages(visit: Visit) -> None:
             found = await browser.run("document.querySelector('summary').textContent")
             assert found == title
             words = "import('/static/words.js').then((m) => "
-            assert await browser.run(words + "m.hasWord('model'))"), language
+            assert await browser.run(words + "m.wordOr('model', '') !== '')"), language
             short = (
                 words + "[...document.querySelectorAll('[data-word]')]"
-                '.filter((e) => !m.hasWord(e.dataset.word)).map((e) => e.dataset.word))'
+                '.filter((e) => !m.wordOr(e.dataset.word, "")).map((e) => e.dataset.word))'
             )
             assert await browser.run(short) == [], language
 

@@ -57,10 +57,11 @@ def words() -> dict[str, list[str]]:
          {'explained': 1.0}, 'phyphox at 3.2: no sample yet'),
     ],
 )  # fmt: skip
-def test_sentences_name_the_sensors_and_what_they_tell(
-    sensors: Any, told: Any, text: str
-) -> None:
-    said = [words().get(key, [key])[0].format(*values) for key, *values in sensors_told(sensors, **told)]
+def test_sentences_name_the_sensors_and_what_they_tell(sensors: Any, told: Any, text: str) -> None:
+    said = [
+        words().get(key, [key])[0].format(*values)
+        for key, *values in sensors_told(sensors, **told)
+    ]
     assert '\n'.join(said) == text
 
 

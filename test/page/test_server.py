@@ -11,8 +11,8 @@ import json
 import socket
 import threading
 import time
-from types import SimpleNamespace
 import tracemalloc
+from types import SimpleNamespace
 from typing import Any
 
 import pytest

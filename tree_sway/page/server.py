@@ -426,7 +426,9 @@ class PageServer:
         """Take what a page films, or refuse it."""
         why: str | None = 'no camera of a page is wanted: start with --motion camera:page'
         if self._of_page is not None:
-            why = self._of_page.take(client, seen, lambda told: self._call(lambda: client.say(told)))
+            why = self._of_page.take(
+                client, seen, lambda told: self._call(lambda: client.say(told))
+            )
         if why is not None:
             self._refuse(client, 'film', why)
 

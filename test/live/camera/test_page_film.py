@@ -86,9 +86,9 @@ def test_clicks_are_answered_by_where_the_wood_is(film: PageFilm, told: list[str
         ('1,2,b999:0.5;3,4,0;5,6,1', 'b999'),
         ('1,2,0;3,4,1', '2 clicked points'),
         ('10,10,0;600,20,1.5;30,400,2.9;bearing=0', 'no camera fits'),
-        ('check=/tmp/x.png', 'no picture to write'),
         ('a,b', 'no clicked point'),
         ('bearing=nan', 'no number'),
+        ('1e300,2,0;3,4,1;5,6,1.5;bearing=0', 'no number'),
     ],
 )
 def test_clicks_of_no_camera_are_refused_with_the_cause(
@@ -103,7 +103,7 @@ def test_clicks_of_no_camera_are_refused_with_the_cause(
     assert 'film' in page.click()
 
 
-@pytest.mark.parametrize('at', ['1,2,0', 'check=x.png', 'bearing=x'])
+@pytest.mark.parametrize('at', ['1,2,0', 'bearing=x'])
 def test_a_start_takes_no_clicks_of_other_pictures(at: str) -> None:
     with pytest.raises(ParameterError):
         PageFilm(spruce(), at, print)
@@ -115,9 +115,9 @@ def test_a_start_takes_no_clicks_of_other_pictures(at: str) -> None:
         [], 5, None, {}, {'points': 5, 'time': 1.0}, {'points': [1.0], 'time': 1.0},
         {'points': [1.0, '2'], 'time': 1.0}, {'points': [1.0, True], 'time': 1.0},
         {'points': [1.0, math.nan], 'time': 1.0}, {'points': [1.0, 10**400], 'time': 1.0},
-        {'points': [0.0] * 402, 'time': 1.0}, {'points': [], 'time': '1'}, {'points': []},
+        {'points': [0.0], 'time': None}, {'points': [], 'time': '1'}, {'points': []},
         {'at': '', 'size': [640]}, {'at': '', 'size': [0, 480]}, {'at': '', 'size': None},
-        {'at': '', 'size': [640, 480, 3]}, {'at': ''},
+        {'at': '', 'size': [640, 480, 3]}, {'at': ''}, {'at': '', 'size': [640, '480']},
     ],
 )  # fmt: skip
 def test_a_message_of_another_form_is_none(film: PageFilm, message: Any) -> None:
@@ -136,14 +136,14 @@ def test_one_page_films_at_a_time_and_another_when_it_is_gone(film: PageFilm) ->
     film.leave(second)
     assert len(film.drain()) == 9
     first.send(end=True)
-    assert 'films no more' in film.problem
+    assert 'no page films' in film.problem
     assert second.send(time=5.0, number=1, points=[1.0, 2.0]) is None
     assert film.drain() == []  # of clicks that are not its own
     number = second.click()['film']['number']
     assert second.send(time=60.0, number=number, points=[1.0, 2.0]) is None
     assert len(film.drain()) == 1
     film.leave(second)
-    assert 'films no more' in film.problem
+    assert 'no page films' in film.problem
 
 
 def test_points_of_other_clicks_or_another_number_of_them_are_refused(film: PageFilm) -> None:

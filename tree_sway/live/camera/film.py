@@ -131,7 +131,7 @@ class LiveFilm(FilmPoints):
 
     def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
         super().__init__(film.name, log)
-        self._film, self.view, self.camera = film, view, view.camera
+        self._film, self.view = film, view
         self.picture = view.drawn
         """Draws what it sees as a JPEG; called in a thread of its own."""
         self._stop = threading.Event()
@@ -154,7 +154,9 @@ class LiveFilm(FilmPoints):
                 at, picture = self._film.newest()
                 if picture is not None:
                     self._say('')
-                    self._add(self.view.follow(at, picture))
+                    seen = self.view.follow(at, picture)
+                    self.camera = self.view.camera
+                    self._add(seen)
                     continue
                 self._say('no picture comes: check the camera and its connection')
                 self._stop.wait(_AGAIN)

@@ -23,7 +23,7 @@ export class HandCamera {
     /** Newest answer of the server. */
     this._found = { number: 0, places: /** @type {number[][]} */ ([]) };
     this._flow = /** @type {OpticalFlow | null} */ (null);
-    this._goodAt = 0;
+    this._goodAt = Infinity;
     this.canvas.addEventListener("click", (event) => this.video && this._click(event));
     element("camera-known").addEventListener("change", () => this.send());
   }
@@ -32,38 +32,32 @@ export class HandCamera {
     if (this.video) return this.end();
     // A page of another machine has no camera over plain http.
     if (!navigator.mediaDevices) throw new Error(word("camera_needs_https"));
-    const video = this.video = Object.assign(document.createElement("video"), { muted: true, playsInline: true });
-    const media = await navigator.mediaDevices.getUserMedia({ video: WANTED }).catch(({ name }) => {
-      this.video = null;
+    const srcObject = await navigator.mediaDevices.getUserMedia({ video: WANTED }).catch(({ name }) => {
       throw new Error(word(name));
     });
-    video.srcObject = media;
-    media.getVideoTracks()[0].onended = () => this.end("camera_gone");
-    if (video !== this.video) return stop(video);
+    this.end(); // one that was asked for at the same time
+    const video = this.video = Object.assign(document.createElement("video"), { muted: true, playsInline: true, srcObject });
+    srcObject.getVideoTracks()[0].onended = () => this.end("camera_gone");
+    this.canvas.width = 0;
     await video.play();
-    this._restart();
     this._take(video, 0);
   }
 
   /** Let the camera go. @param {string} [why] key of its text */
   end(why = "") {
-    if (this.video) stop(this.video);
+    const media = /** @type {MediaStream | undefined} */ (this.video?.srcObject);
+    for (const track of media?.getTracks() ?? []) track.stop();
     this.video = null;
     this.view.stream.connection.send({ film: { end: true } });
     write({ "camera-said": word(why) });
     this.view.showButtons();
   }
 
-  _restart() {
-    this.clicks = [];
-    this.take({ number: 0, said: "", places: [] });
-    this.send();
-  }
-
   /** Take what the server tells of the clicks. @param {{number: number, said: string, places: number[][]}} found */
   take(found) {
     this._found = found;
     this._flow = null;
+    this._goodAt = Infinity;
     write({ "camera-said": found.said });
   }
 
@@ -72,8 +66,7 @@ export class HandCamera {
     const { clicks, canvas: { width, height }, view: { stream } } = this;
     if (!this.video) return;
     write({ "camera-said": word(`camera_click_${Math.min(clicks.length, 2)}`) });
-    const known = /** @type {HTMLInputElement} */ (element("camera-known")).value;
-    const at = [known, ...clicks.map(([x, y, place]) => `${x.toFixed(1)},${y.toFixed(1)},${place}`)].join(";");
+    const at = [/** @type {HTMLInputElement} */ (element("camera-known")).value, ...clicks].join(";");
     if (clicks.length > 2) stream.connection.send({ film: { at, size: [width, height] } });
   }
 
@@ -81,47 +74,48 @@ export class HandCamera {
    * @param {MouseEvent} event */
   _click({ offsetX, offsetY }) {
     const { clicks, canvas, view, view: { pointedAt, scene } } = this;
-    const stem = scene.watched.kind?.branch_names[0];
     if (pointedAt < 0 && clicks.length > 1) return;
     const scale = canvas.width / canvas.clientWidth;
-    clicks.push([scale * offsetX, scale * offsetY, pointedAt < 0 ? `${stem}:${clicks.length}` : `segment:${pointedAt}`]);
+    const place = pointedAt < 0 ? `${scene.watched.kind?.branch_names[0]}:${clicks.length}` : `segment:${pointedAt}`;
+    clicks.push([scale * offsetX, scale * offsetY, place]);
     view.pick(scene.picked);
     this.send();
   }
 
   /** Follow the points of a picture. @param {HTMLVideoElement} video @param {number} time when it was taken [ms] */
   _take(video, time) {
-    const { canvas, clicks, _found: { number, places }, view: { stream } } = this;
+    const { canvas, view: { stream } } = this;
     if (video !== this.video) return;
     video.requestVideoFrameCallback((now, { captureTime = now }) => this._take(video, captureTime));
     const { videoWidth: width, videoHeight: height } = video;
     if (canvas.width !== width || canvas.height !== height) {
+      // Begin, also as a phone was turned.
       [canvas.width, canvas.height] = [width, height];
-      this._restart(); // a phone that was turned
+      this.clicks = [];
+      this.take({ number: 0, said: "", places: [] });
+      this.send();
     }
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
     context.drawImage(video, 0, 0);
-    /** @param {string} color @param {number} size @returns {(at: ArrayLike<any>) => void} */
-    const dot = (color, size) => ({ 0: x, 1: y }) => {
+    /** @param {string} color @param {number} size @param {any[][]} marks */
+    const mark = (color, size, marks) => {
       context.fillStyle = color;
-      context.fillRect(x - size / 2, y - size / 2, size, size);
+      for (const [x, y] of marks) context.fillRect(x - size / 2, y - size / 2, size, size);
     };
+    const { data } = context.getImageData(0, 0, width, height);
+    const { number, places } = this._found;
     if (number) {
-      const { data } = context.getImageData(0, 0, width, height);
-      if (!this._flow) this._goodAt = time;
-      const flow = this._flow ??= new OpticalFlow(width, height, data, places);
-      if (flow.follow(data) > FEWEST) this._goodAt = time;
-      const { points } = flow;
-      stream.connection.send({ film: { time, number, points: Array.from(points, (each) => Math.round(100 * each) / 100) } });
-      places.forEach(dot("red", 1));
-      for (let i = 0; i < points.length; i += 2) dot("lime", 5)(points.subarray(i));
-      if (time - this._goodAt > LONG) this.send();
+      this._flow ??= new OpticalFlow(width, height, data, places);
+      if (this._flow.follow(data) > FEWEST) this._goodAt = time;
+      else if (time - this._goodAt > LONG) {
+        this._goodAt = time;
+        this.send();
+      }
+      const points = Array.from(this._flow.points, (each) => Math.round(100 * each) / 100);
+      stream.connection.send({ film: { time, number, points } });
+      mark("red", 1, places);
+      mark("lime", 5, points.map((each, i) => [each, points[i + 1]]).filter((_, i) => i % 2 === 0));
     }
-    clicks.forEach(dot("orange", 7));
+    mark("orange", 7, this.clicks);
   }
-}
-
-/** @param {HTMLVideoElement} video */
-function stop({ srcObject }) {
-  for (const track of /** @type {MediaStream} */ (srcObject)?.getTracks() ?? []) track.stop();
 }

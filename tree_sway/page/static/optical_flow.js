@@ -109,8 +109,10 @@ export class OpticalFlow {
   /** @param {number} width of the pictures @param {number} height @param {ArrayLike<number>} pixels of the first
    * @param {number[][]} places where points may be, of which the best corners are taken */
   constructor(width, height, pixels, places) {
-    [this._first, this._now] = [0, 0].map(() => Array.from({ length: LEVELS }, (_, k) =>
-      ({ wide: width >> k, high: height >> k, grey: new Float32Array((width >> k) * (height >> k)) })));
+    const sizes = () => Array.from({ length: LEVELS }, (_, k) =>
+      ({ wide: width >> k, high: height >> k, grey: new Float32Array((width >> k) * (height >> k)) }));
+    this._first = sizes();
+    this._now = sizes();
     take(this._first, pixels);
     const found = /** @type {number[][]} */ ([]);
     const corners = places.map(([x, y]) => [x, y, slopes(this._first[0], x, y)]).sort((one, other) => other[2] - one[2]);

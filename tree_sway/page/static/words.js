@@ -31,8 +31,8 @@ export function word(key, ...values) {
   return text.replace(/\{(\d)\}/g, (_, i) => String(values[i]));
 }
 
-/** Whether a key has a text. @param {string} key */
-export const hasWord = (key) => key in WORDS;
+/** The text of a key, or another one if there is none. @param {string} key @param {string} other */
+export const wordOr = (key, other) => (key in WORDS ? word(key) : other);
 
 /** Direction that a wind comes from, as everywhere on the page: compass point, and degrees clockwise from north; empty in
  * calm. @param {Numbers} wind to east and north [m/s] */
@@ -72,7 +72,7 @@ export function windSource(source = {}) {
   const { kind = "", name = "" } = source;
   if (kind === "recorded") return name ? word("wind_recorded", name) : word("wind_recorded_unnamed");
   if (kind === "live") return liveSource(source);
-  return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
+  return wordOr(`wind_${kind}`, "");
 }
 
 /** Sentences of a server: the key of a text and its values each, or a text that is shown as it is. @param {string[][]} [sentences] */

@@ -41,21 +41,18 @@ def _told_camera(arguments: argparse.Namespace) -> tuple[str, str] | None:
     return cameras[0] if cameras else None
 
 
-def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | None:
+def placed_camera(address: str, at: str, tree: Tree) -> PlacedCamera:
     """
-    Take the camera out of the arguments, and find where it stands; None without one.
+    Find where a camera stands, of its address and what is told of it.
 
     Raises
     ------
     ParameterError
-        Two cameras, a film that cannot be opened, or clicks that fit no camera.
+        A film that cannot be opened, or clicks that fit no camera.
     MissingDependencyError
         OpenCV is not installed.
 
     """
-    if (told := _told_camera(arguments)) is None:
-        return None
-    address, at = told
 
     def say(text: str) -> None:
         print(f'note: {address}: {text}', file=sys.stderr)
@@ -66,21 +63,19 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
 
 
 @contextmanager
-def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | PageFilm | None]:
+def filming(
+    arguments: argparse.Namespace, tree: Callable[[], Tree]
+) -> Iterator[LiveFilm | PageFilm | None]:
     """
     Follow the live camera among the arguments, or that of a page; None without one.
 
     The errors are those of `placed_camera`, and a film in a file.
     """
-    if not any(map(is_camera, arguments.motion)):
-        yield None
+    told = _told_camera(arguments)
+    if told is None or told[0] == PAGE:
+        yield PageFilm(tree(), told[1], _say) if told else None
         return
-    if PAGE in arguments.motion:
-        (_, at) = _told_camera(arguments) or ('', '')
-        yield PageFilm(tree(), at, _say)
-        return
-    placed = placed_camera(arguments, tree())
-    assert placed is not None
+    placed = placed_camera(*told, tree())
     if not placed.film.is_live:
         cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
         raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
@@ -103,9 +98,10 @@ def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | N
 
     The errors are those of `placed_camera`, and a camera without an end.
     """
-    placed = placed_camera(arguments, tree)
-    if placed is None:
+    told = _told_camera(arguments)
+    if told is None:
         return None
+    placed = placed_camera(*told, tree)
     if placed.film.is_live:
         cure = 'give a film, as camera:FILE.mp4; tree-sway show follows a live camera'
         raise ParameterError(f'{placed.film.name} has no end', where='--motion', cure=cure)
