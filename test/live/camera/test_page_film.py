@@ -126,13 +126,18 @@ def test_a_message_of_another_form_is_none(film: PageFilm, message: Any) -> None
     assert film.drain() == []
 
 
-def test_one_page_films_at_a_time_and_another_when_it_is_gone(film: PageFilm) -> None:
+def test_one_page_films_at_a_time_and_another_when_it_is_gone(
+    film: PageFilm, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = Clock(time.monotonic())
+    monkeypatch.setattr(page_film, 'time', clock)
     first, second = Page(film), Page(film)
     first.click()
     for k in range(9):
+        clock.now += 0.03
         assert first.send(time=30.0 * k, number=1, points=[1.0, None]) is None
         if k > 2:
-            assert 'another page films' in str(second.send(at=clicks(spruce()), size=[*SIZE]))
+            assert 'another page films' in str(second.send(at='', size=[*SIZE]))
     film.leave(second)
     assert len(film.drain()) == 9
     first.send(end=True)
