@@ -312,14 +312,14 @@ class Session:
         if self._band is not None:
             told['band'] = self._band
         change = max(simulator.sway_changes, key=lambda each: each.size, default=None)
-        said = sensors_told(
+        sentences = sensors_told(
             sensors,
             explained=explained,
             band=self._band,
             learned=simulator.learned,
             change=change,
         )
-        return {**told, 'said': list(said)}
+        return {**told, 'said': list(sentences)}
 
     def written(self, suffix: str) -> bytes:
         """

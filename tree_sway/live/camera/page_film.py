@@ -36,8 +36,8 @@ PAGE = 'camera:page'
 
 _PLACES = 4
 """Number of places of a segment of which a page takes the best."""
-_MOST = 1500
-"""Largest number of all places."""
+_APART = 8
+"""Width in pixels of the squares of which each has one place at most."""
 _LARGEST = 1e15
 _SILENT = 1.0
 """Time in [s] without a picture after which that is told."""
@@ -140,13 +140,15 @@ class PageFilm(FilmPoints):
             return 'another page films this tree: end its camera first'
         if self._senders.current != before:
             self._begin()
+        size: Any = message.get('size')
+        given: Any = message.get('points')
         if 'at' in message:
-            wide, high = (int(_number(each, 1.0)) for each in message.get('size'))
+            wide, high = (int(_number(each, 1.0)) for each in size)
             at = str(message['at'])
             self._placing.want(lambda: self._place(at, (wide, high), answer))
             return None
-        given = [math.nan if each is None else _number(each) for each in message.get('points')]
-        points, stamp = np.array(given).reshape(-1, 2), _number(message.get('time'))
+        numbers = [math.nan if each is None else _number(each) for each in given]
+        points, stamp = np.array(numbers).reshape(-1, 2), _number(message.get('time'))
         number, camera = self._placed
         is_ours = camera is not None and message.get('number') == number
         is_other = self._seen.reference == number and len(self._seen.points) != len(points)
@@ -178,8 +180,8 @@ class PageFilm(FilmPoints):
         self._log(f'{PAGE}: {found}')
         wood = drawn_wood(found.camera, tree.start, tree.end, tree.base_diameter)
         places = np.linspace(wood.first, wood.last, _PLACES, endpoint=False).reshape(-1, 2).round()
-        places = np.unique(places[((places >= 0.0) & (places < size)).all(axis=1)], axis=0)
-        places = places[:: 1 + len(places) // _MOST]
+        places = places[((places >= 0.0) & (places < size)).all(axis=1)]
+        places = places[np.unique(places // _APART, axis=0, return_index=True)[1]]
         # A place where wood crosses tells nothing.
         kept = matched_points(tree, tree.rest_poses, found.camera, places).row
         clear = places[kept].astype(int).tolist()

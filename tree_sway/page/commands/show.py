@@ -139,7 +139,7 @@ def _serve(
         panel = ControlPanel((*own, *controls), apply, session.pull)
         panel.update(session.values())
     pages = PageServer(
-        settings, panel, status, session.written, critical_winds, motion and motion.film
+        settings, panel, status, session.written, critical_winds, motion.film if motion else None
     )
     with pages as server:
         session.serve(server)

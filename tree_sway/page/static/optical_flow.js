@@ -14,8 +14,8 @@ const INNER = Int32Array.from({ length: (WIDE - 2) ** 2 }, (_, k) =>
 const LEVELS = 3;
 /** Most steps towards a place, and length of a last one [px]. */
 const [ROUNDS, LAST] = [10, 0.02];
-/** How far from its begin a point may come back, and how near to each other two may be [px]. */
-const [RETURNED, APART] = [0.7, 8];
+/** How far from its begin a point may come back [px]. */
+const RETURNED = 0.7;
 /** Least mean square of the slopes of a corner, along any way. */
 const FLAT = 2;
 const MOST_POINTS = 40;
@@ -114,13 +114,9 @@ export class OpticalFlow {
     this._first = sizes();
     this._now = sizes();
     take(this._first, pixels);
-    const found = /** @type {number[][]} */ ([]);
-    const corners = places.map(([x, y]) => [x, y, slopes(this._first[0], x, y)]).sort((one, other) => other[2] - one[2]);
-    for (const [x, y, size] of corners) {
-      const isApart = found.every(([u, v]) => Math.hypot(u - x, v - y) >= APART);
-      if (size >= FLAT && isApart && found.length < MOST_POINTS) found.push([x, y]);
-    }
-    this._found = Float64Array.from(found.flat());
+    const corners = places.map(([x, y]) => ({ at: [x, y], size: slopes(this._first[0], x, y) }))
+      .filter(({ size }) => size >= FLAT).sort((one, other) => other.size - one.size);
+    this._found = Float64Array.from(corners.slice(0, MOST_POINTS).flatMap(({ at }) => at));
     /** Where each is, x and y [px]; not a number where it is lost. */
     this.points = this._found.slice();
   }
