@@ -277,6 +277,7 @@ def test_a_second_camera_is_ended_and_told(page: Page) -> None:
             "document.getElementById('toast').textContent.includes('another page')"
         )
         assert await browser.run('treeSway.hands.film.video') is None
+        assert page.film.refused == 1
 
     visit(page, script, *_FLAGS)
 

@@ -103,7 +103,7 @@ def test_clicks_of_no_camera_are_refused_with_the_cause(
     assert 'film' in page.click()
 
 
-@pytest.mark.parametrize('at', ['1,2,0', 'bearing=x'])
+@pytest.mark.parametrize('at', ['1,2,0', 'check=x.png', 'bearing=x'])
 def test_a_start_takes_no_clicks_of_other_pictures(at: str) -> None:
     with pytest.raises(ParameterError):
         PageFilm(spruce(), at, print)

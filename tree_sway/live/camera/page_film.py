@@ -38,6 +38,8 @@ _PLACES = 4
 """Number of places of a segment of which a page takes the best."""
 _APART = 8
 """Width in pixels of the squares of which each has one place at most."""
+_MOST = 1000
+"""Largest number of all places."""
 _LARGEST = 1e15
 _SILENT = 1.0
 """Time in [s] without a picture after which that is told."""
@@ -68,9 +70,10 @@ class PageFilm(FilmPoints):
 
     def __init__(self, tree: Tree, at: str, log: Callable[[str], None]) -> None:
         super().__init__(PAGE, log)
-        if told_by(at).clicks:
+        told = told_by(at)
+        if told.clicks or told.check:
             cure = "give what is known, as 'distance=14.2; bearing=240': visitors click"
-            raise ParameterError(f'clicks of {PAGE}', where='--at', cure=cure)
+            raise ParameterError(f'clicks or a check of {PAGE}', where='--at', cure=cure)
         self._tree, self._at = tree, at
         self._senders = OneSender()
         self._placing = Newest[Callable[[], None]](lambda place: place(), PAGE)
@@ -181,7 +184,8 @@ class PageFilm(FilmPoints):
         wood = drawn_wood(found.camera, tree.start, tree.end, tree.base_diameter)
         places = np.linspace(wood.first, wood.last, _PLACES, endpoint=False).reshape(-1, 2).round()
         places = places[((places >= 0.0) & (places < size)).all(axis=1)]
-        places = places[np.unique(places // _APART, axis=0, return_index=True)[1]]
+        rows = np.unique(places // _APART, axis=0, return_index=True)[1]
+        places = places[rows[:: 1 + len(rows) // _MOST]]
         # A place where wood crosses tells nothing.
         kept = matched_points(tree, tree.rest_poses, found.camera, places).row
         clear = places[kept].astype(int).tolist()

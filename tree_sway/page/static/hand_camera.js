@@ -45,8 +45,8 @@ export class HandCamera {
 
   /** Let the camera go. @param {string} [why] key of its text */
   end(why = "") {
-    const media = /** @type {MediaStream | undefined} */ (this.video?.srcObject);
-    for (const track of media?.getTracks() ?? []) track.stop();
+    if (!this.video) return;
+    for (const track of /** @type {MediaStream} */ (this.video.srcObject).getTracks()) track.stop();
     this.video = null;
     this.view.stream.connection.send({ film: { end: true } });
     write({ "camera-said": word(why) });
@@ -84,7 +84,7 @@ export class HandCamera {
 
   /** Follow the points of a picture. @param {HTMLVideoElement} video @param {number} time when it was taken [ms] */
   _take(video, time) {
-    const { canvas, view: { stream } } = this;
+    const { canvas, view, view: { stream, scene } } = this;
     if (video !== this.video) return;
     video.requestVideoFrameCallback((now, { captureTime = now }) => this._take(video, captureTime));
     const { videoWidth: width, videoHeight: height } = video;
@@ -92,6 +92,7 @@ export class HandCamera {
       // Begin, also as a phone was turned.
       [canvas.width, canvas.height] = [width, height];
       this.clicks = [];
+      view.pick(scene.picked); // a click on the drawn tree counts from here on
       this.take({ number: 0, said: "", places: [] });
       this.send();
     }
