@@ -30,11 +30,12 @@ def chromium() -> str | None:
 
 
 class Chromium:
-    """A browser without a page, its address, and its end."""
+    """A browser without a page, with flags of its command line, its address, and its end."""
 
-    def __init__(self) -> None:
+    def __init__(self, *flags: str) -> None:
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        command = [str(chromium()), *_FLAGS, f'--user-data-dir={self._folder.name}', 'about:blank']
+        own = f'--user-data-dir={self._folder.name}', *flags
+        command = [str(chromium()), *_FLAGS, *own, 'about:blank']
         self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
         assert self._process.stderr is not None
         for line in self._process.stderr:

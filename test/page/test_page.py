@@ -537,10 +537,10 @@ def test_it_speaks_languages(visit: Visit) -> None:
             found = await browser.run("document.querySelector('summary').textContent")
             assert found == title
             words = "import('/static/words.js').then((m) => "
-            assert await browser.run(words + "m.hasWord('model'))"), language
+            assert await browser.run(words + "m.wordOr('model', '') !== '')"), language
             short = (
                 words + "[...document.querySelectorAll('[data-word]')]"
-                '.filter((e) => !m.hasWord(e.dataset.word)).map((e) => e.dataset.word))'
+                '.filter((e) => !m.wordOr(e.dataset.word, "")).map((e) => e.dataset.word))'
             )
             assert await browser.run(short) == [], language
 
@@ -622,51 +622,21 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ('motion', 'text'),
+    ('said', 'text'),
     [
         (None, ''),
-        ({'sensors': []}, 'Sensors: not on this tree'),
-        ({'explained': 0.624, 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
-             'residual': 0.251, 'notes': ['acceleration in g']},
-            {'name': 'limb at b12:0.5', 'in_use': False, 'problem': 'silent for 7 s'}]},
-         'phyphox at 3.2: followed, 100 Hz, residual 0.25; acceleration in g\n'
-         'limb at b12:0.5: silent for 7 s\nMotion: 62 % by the wind alone, 38 % by sensors'),
-        ({'learned': {'frequency': 0.6627, 'hours': 0.447}, 'band': [-0.0123, 0.02], 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
-             'residual': 0.251}]},
-         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
-         'Highest tip: -1.2 to +2.0 cm from this for 80 % of trees that yours may be\n'
-         'First frequency 0.663 Hz, learned in 0.45 h of sway'),
-        ({'change': {'is_change': True, 'percent': 7.64, 'hours': 1.33}, 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
-             'residual': 0.251}]},
-         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
-         'Sways differently: frequencies +7.6 % from those of 1.3 h; a limb lost, loose roots, '
-         'ice or leaves?'),
-        ({'change': {'is_change': True, 'percent': 1.2, 'hours': 1.0, 'power': 2.53, 'low': 2.71,
-                     'high': 3.26}, 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
-             'residual': 0.251}]},
-         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
-         'Sways differently: 2.5 times the power at 2.71 to 3.26 Hz of 1.0 h before; a limb lost, '
-         'loose roots, ice or leaves?'),
-        ({'change': {'is_change': False, 'percent': -0.62, 'hours': 0.5}, 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
-             'residual': 0.251}]},
-         'phyphox at 3.2: followed, 100 Hz, residual 0.25\n'
-         'Sways as before: frequencies -0.6 % from those of 0.5 h'),
-        ({'explained': 1.0, 'sensors': [
-            {'name': 'phyphox at 3.2', 'in_use': False,
-             'problem': 'phyphox at 3.2: no sample yet'}]},
-         'phyphox at 3.2: no sample yet'),
+        ([['sensor_elsewhere']], 'Sensors: not on this tree'),
+        ([['sensor_followed', 'mast', '99', '0.25; in g'], ['limb: silent'], [5], []],
+         'mast: followed, 99 Hz, residual 0.25; in g\nlimb: silent\n5\nundefined'),
     ],
 )  # fmt: skip
-def test_the_head_names_the_sensors_on_the_tree(visit: Visit, motion: Any, text: str) -> None:
+def test_the_head_says_what_the_server_tells_of_sensors(
+    visit: Visit, said: Any, text: str
+) -> None:
     async def script(browser: Browser) -> None:
-        described = 'undefined' if motion is None else json.dumps(motion)
-        said = f"import('/static/words.js').then((m) => m.motionSensors({described}))"
-        assert await browser.run(said) == text
+        told = 'undefined' if said is None else json.dumps(said)
+        shown = f"import('/static/words.js').then((m) => m.sentences({told}))"
+        assert await browser.run(shown) == text
 
     visit(script)
 

@@ -12,6 +12,7 @@ import socket
 import threading
 import time
 import tracemalloc
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -378,7 +379,7 @@ def test_a_tree_is_written_or_refused_with_the_reason(server: PageServer) -> Non
 
 
 def test_what_a_camera_sees_is_for_who_may_control(server: PageServer) -> None:
-    pictures: list[bytes | None] = [None, b'jpeg']
+    film: Any = SimpleNamespace(picture=[b'jpeg', None].pop)
 
     async def answer(url: str, token: str, **headers: str) -> tuple[int, bytes, Any]:
         headers['Authorization'] = f'Bearer {token}'
@@ -392,7 +393,7 @@ def test_what_a_camera_sees_is_for_who_may_control(server: PageServer) -> None:
     own = {'X-Requested-With': 'test'}
     assert asyncio.run(answer(server.url, '', **own))[::2] == (404, False)
     token = 'a token of some length'
-    with PageServer(PageSettings(port=0, token=token), picture=lambda: pictures.pop(0)) as seeing:
+    with PageServer(PageSettings(port=0, token=token), film=film) as seeing:
         assert asyncio.run(answer(seeing.url, seeing.viewers_token, **own))[::2] == (403, False)
         assert asyncio.run(answer(seeing.url, token))[0] == 403  # as by an image of another page
         assert asyncio.run(answer(seeing.url, token, **own)) == (204, b'', True)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from tree_sway.live.camera.film import Film as Film
     from tree_sway.live.camera.film import is_camera as is_camera
     from tree_sway.live.camera.film import LiveFilm as LiveFilm
+    from tree_sway.live.camera.page_film import PAGE as PAGE
+    from tree_sway.live.camera.page_film import PageFilm as PageFilm
     from tree_sway.live.camera.point_tracker import PointTracker as PointTracker
     from tree_sway.live.camera.point_tracker import Sighting as Sighting
     from tree_sway.live.live_wind import LiveWind as LiveWind

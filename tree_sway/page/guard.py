@@ -41,6 +41,7 @@ _HEADERS = {
     ),
     'X-Content-Type-Options': 'nosniff',
     'Referrer-Policy': 'no-referrer',
+    'Permissions-Policy': 'camera=(self), microphone=(), geolocation=()',
     'Cache-Control': 'no-cache',
 }
 _LONGEST_PATH = 100

@@ -23,6 +23,7 @@ from aiohttp import web, WSCloseCode, WSMsgType
 
 from tree_sway.doorkeeper import Doorkeeper
 from tree_sway.errors import TransportError, TreeSwayError
+from tree_sway.live import LiveFilm, PageFilm
 from tree_sway.page.access import is_own_page
 from tree_sway.page.guard import add_headers, Guard, STATIC
 from tree_sway.page.page_client import PageClient
@@ -74,9 +75,8 @@ class PageServer:
         raises a `TreeSwayError` to refuse.
     critical_winds
         Band of the critical wind of each tree by its name [m/s], by which viewers colour trees.
-    picture
-        Function called on a separate thread for what a camera sees, a JPEG or None yet; it is for
-        those alone who may control.
+    film
+        Camera whose picture is shown to those alone who may control, or that is one of theirs.
 
     Raises
     ------
@@ -98,7 +98,7 @@ class PageServer:
         status: Callable[[], Mapping[str, object]] | None = None,
         written: Callable[[str], bytes] | None = None,
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
-        picture: Callable[[], bytes | None] | None = None,
+        film: LiveFilm | PageFilm | None = None,
     ) -> None:
         self.settings = settings
         self._tls = settings.tls()
@@ -108,7 +108,8 @@ class PageServer:
         self._status = status or dict
         self._written = written
         self._critical_winds = critical_winds
-        self._picture = picture
+        self._film = film
+        self._of_page = film if isinstance(film, PageFilm) else None
         self._published = Published()
         self._clients: set[PageClient] = set()
         self._refusals = Refusals()
@@ -339,11 +340,11 @@ class PageServer:
     async def _camera(self, request: web.Request) -> web.StreamResponse:
         """Answer with what the camera sees, for its check and not for whoever looks on."""
         refused = self._guard.refused
-        if self._picture is None:
+        if self._film is None:
             return refused(404, 'no camera looks at this tree')
         if not (self._guard.may_control(request) and is_own_page(request.headers)):
             return refused(403, _MAY_LOOK)
-        data = await asyncio.to_thread(self._picture)
+        data = await asyncio.to_thread(self._film.picture)
         return web.Response(status=200 if data else 204, body=data, content_type='image/jpeg')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
@@ -379,6 +380,8 @@ class PageServer:
                     )
         finally:
             self._clients.discard(client)
+            if self._of_page is not None:
+                self._of_page.leave(client)
             sender.cancel()
             client.stop_timer()
         return socket
@@ -391,7 +394,8 @@ class PageServer:
             'address': self.settings.address,
             'viewers_token': self.viewers_token,
             'critical_winds': self._critical_winds,
-            'has_camera': self._picture is not None and may_control,
+            'has_camera': self._film is not None and may_control,
+            'can_film': self._of_page is not None and may_control,
         }
         return json.dumps({'hello': hello})
 
@@ -401,7 +405,8 @@ class PageServer:
         if not isinstance(message, dict):
             raise TypeError('not an object')
         client.take(message)
-        for name, action in (('set', self._change), ('pull', self._pull)):
+        takers = ('set', self._change), ('pull', self._pull), ('film', self._follow_film)
+        for name, action in takers:
             if name in message and client.may_control:
                 action(client, message[name])
             elif name in message:
@@ -416,6 +421,16 @@ class PageServer:
         why = self._panel.pull(pull, refused)
         if why is not None:
             self._refuse(client, 'pull', why)
+
+    def _follow_film(self, client: PageClient, seen: object) -> None:
+        """Take what a page films, or refuse it."""
+        why: str | None = 'no camera of a page is wanted: start with --motion camera:page'
+        if self._of_page is not None:
+            why = self._of_page.take(
+                client, seen, lambda told: self._call(lambda: client.say(told))
+            )
+        if why is not None:
+            self._refuse(client, 'film', why)
 
     def _change(self, client: PageClient, change: object) -> None:
         change = change if isinstance(change, dict) else {}

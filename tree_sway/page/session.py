@@ -27,6 +27,7 @@ from tree_sway.live import LiveWind, MotionFeed
 from tree_sway.newest import Newest
 from tree_sway.page.leaf_calendar import SUMMER
 from tree_sway.page.one_file import page_of_scene
+from tree_sway.page.sensors_told import sensors_told
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_ahead import wind_ahead
 from tree_sway.simulation import blow, RecordedWind, SimulatedWind, WindSource
@@ -276,7 +277,7 @@ class Session:
     def _motion_status(self, simulator: Simulator) -> dict[str, object]:
         """Return what the sensors tell; of a tree without them, that they are not in use."""
         if not isinstance(simulator, ObservedTree):
-            return {'sensors': []}
+            return {'sensors': [], 'said': list(sensors_told([]))}
         live = {name: each.live for name, each in self._motion.sensors.items()}
         sensors = [
             {
@@ -300,29 +301,25 @@ class Session:
                     'problem': film.problem or ('' if sees else said),
                     'residual': round(simulator.error, 2),
                     'rate': round(film.rate, 1),
-                    'refused': simulator.refused,
+                    'refused': simulator.refused + film.refused,
                     'notes': [said],
                 }
             )
+        explained = round(simulator.explained, 3) if simulator.sensors else None
         told: dict[str, object] = {'sensors': sensors}
-        if simulator.sensors:
-            told['explained'] = round(simulator.explained, 3)
-        if changes := simulator.sway_changes:
-            first = max(changes, key=lambda each: each.size)
-            change: dict[str, object] = {
-                'is_change': first.is_change,
-                'percent': round(100.0 * (first.ratio - 1.0), 1),
-                'hours': round(first.hours, 2),
-            }
-            if (band := first.changed_band) is not None:
-                change |= {name: round(value, 3) for name, value in band._asdict().items()}
-            told['change'] = change
-        if (learned := simulator.learned) is not None:
-            told['learned'] = {
-                'frequency': round(learned.frequency, 4),
-                'hours': round(learned.hours, 3),
-            }
-        return told if self._band is None else {**told, 'band': self._band}
+        if explained is not None:
+            told['explained'] = explained
+        if self._band is not None:
+            told['band'] = self._band
+        change = max(simulator.sway_changes, key=lambda each: each.size, default=None)
+        sentences = sensors_told(
+            sensors,
+            explained=explained,
+            band=self._band,
+            learned=simulator.learned,
+            change=change,
+        )
+        return {**told, 'said': list(sentences)}
 
     def written(self, suffix: str) -> bytes:
         """

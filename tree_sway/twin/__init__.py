@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from tree_sway.twin.sensor_place import SensorPlace as SensorPlace
     from tree_sway.twin.sensor_place import strain_of as strain_of
     from tree_sway.twin.sensor_report import sensor_reports as sensor_reports
+    from tree_sway.twin.sway_watch import SwayChange as SwayChange
     from tree_sway.twin.tree_fit import TreeFit as TreeFit
 else:
     __getattr__, __dir__, __all__ = face(__name__)

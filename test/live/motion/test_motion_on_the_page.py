@@ -11,7 +11,6 @@ from functools import cache
 from pathlib import Path
 import threading
 import time
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -155,18 +154,17 @@ class LateMachine:
 class StillFilm:
     """The part of a live film that a feed reads: a tree that hangs still, until pictures end."""
 
-    name, problem, rate, is_over = 'camera:0', '', 30.0, False
+    name, problem, rate, refused, is_over = 'camera:0', '', 30.0, 0, False
 
     def __init__(self, sensor: Sensor) -> None:
         self._clock = sensor
         away = 2.0 * float(TREE.end[:, 2].max())
         axes = looking(0.0, 0.0, 0.0)
         height = 0.3 * away
-        self.view = SimpleNamespace(
-            camera=Camera(np.array([0.0, -away, height]), axes, 900.0, np.array([640.0, 360.0]))
-        )
+        at = np.array([0.0, -away, height])
+        self.camera = Camera(at, axes, 900.0, np.array([640.0, 360.0]))
         middles = 0.5 * (TREE.start + TREE.end)
-        self._points = self.view.camera.project(middles)
+        self._points = self.camera.project(middles)
 
     def drain(self) -> list[Sighting]:
         """Return a picture of now."""
@@ -232,7 +230,10 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert 0.1 < told['residual'] < 3.0
     assert 0.3 < status['explained'] < 0.95
     learned = session._scene.simulator.learned
-    assert status.get('learned', {}).get('hours') == (learned and round(learned.hours, 3))
+    said = {key: values for key, *values in status['said']}
+    assert said['sensor_followed'][0] == told['name']
+    assert said['shares'][0] == f'{100.0 * status["explained"]:.0f}'
+    assert said.get('learned_sway', [None])[-1] == (learned and f'{learned.hours:.2f}')
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
 
 
@@ -284,6 +285,7 @@ def test_the_page_says_what_a_camera_tells(sensor: Sensor) -> None:
     assert seen['in_use']
     assert seen['rate'] == 30.0
     assert 'points on the tree' in seen['notes'][0]
+    assert session.status()['motion']['said'][0][:2] == ['sensor_followed', 'camera:0']  # type: ignore[index]
     film.is_over = True
     lost = told(60)
     assert not lost['in_use']

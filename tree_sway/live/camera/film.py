@@ -13,6 +13,7 @@ from typing import Any
 from tree_sway.errors import ParameterError
 from tree_sway.live.camera.camera_view import CameraView, opencv
 from tree_sway.live.camera.point_tracker import Sighting
+from tree_sway.twin.camera import Camera
 
 _PREFIX = 'camera:'
 _AGAIN = 3.0
@@ -95,17 +96,16 @@ class Film:
         self._capture.release()
 
 
-class LiveFilm:
-    """Points of a live camera, followed in a view of it from `start` to `stop`."""
+class FilmPoints:
+    """Points of the newest pictures of a camera."""
 
-    def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
-        self._film, self.view, self._log = film, view, log
-        self.name = film.name
+    def __init__(self, name: str, log: Callable[[str], None]) -> None:
+        self.name, self._log = name, log
+        self.camera: Camera | None = None
+        """Where it stands; None before that is known."""
+        self.refused = 0
+        """Messages that were refused before they told a picture."""
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
-        self.problem = 'no picture yet'
-        """Why no picture comes; empty if they come."""
         self._times: deque[float] = deque(maxlen=_COUNTED)
 
     @property
@@ -113,6 +113,31 @@ class LiveFilm:
         """Pictures per second [Hz]; 0 before two of them."""
         times = list(self._times)
         return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 0.0
+
+    def drain(self) -> list[Sighting]:
+        """Return what was seen since the last call; times are those of `time.monotonic`."""
+        found = list[Sighting]()
+        while self._sightings:
+            found.append(self._sightings.popleft())
+        return found
+
+    def _add(self, seen: Sighting) -> None:
+        self._times.append(seen.time)
+        self._sightings.append(seen)
+
+
+class LiveFilm(FilmPoints):
+    """Points of a live camera, followed in a view of it from `start` to `stop`."""
+
+    def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
+        super().__init__(film.name, log)
+        self._film, self.view = film, view
+        self.picture = view.drawn
+        """Draws what it sees as a JPEG; called in a thread of its own."""
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
+        self.problem = 'no picture yet'
+        """Why no picture comes; empty if they come."""
 
     def start(self) -> None:
         """Begin."""
@@ -123,21 +148,15 @@ class LiveFilm:
         self._stop.set()
         self._thread.join(timeout=2.0)
 
-    def drain(self) -> list[Sighting]:
-        """Return what was seen since the last call; times are those of `time.monotonic`."""
-        found = list[Sighting]()
-        while self._sightings:
-            found.append(self._sightings.popleft())
-        return found
-
     def _run(self) -> None:
         try:
             while not self._stop.is_set():
                 at, picture = self._film.newest()
                 if picture is not None:
                     self._say('')
-                    self._times.append(at)
-                    self._sightings.append(self.view.follow(at, picture))
+                    seen = self.view.follow(at, picture)
+                    self.camera = self.view.camera
+                    self._add(seen)
                     continue
                 self._say('no picture comes: check the camera and its connection')
                 self._stop.wait(_AGAIN)

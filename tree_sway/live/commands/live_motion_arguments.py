@@ -23,7 +23,7 @@ def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--motion', action='append', default=[], metavar='URL',
         help='live motion sensor on the real tree: http://PHONE:8080 '
-        '(phyphox), udp:PORT or mqtt://host/topic (JSON); with show also camera:0 or '
+        '(phyphox), udp:PORT or mqtt://host/topic (JSON); with show also camera:0, camera:page or '
         'camera:rtsp://host/path (doc/camera.md); repeatable (doc/phone_on_a_tree.md)',
     )  # fmt: skip
     add_place_argument(parser)

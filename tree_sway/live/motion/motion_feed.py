@@ -16,9 +16,10 @@ import time
 from typing import NamedTuple
 
 from tree_sway.live.camera.film import LiveFilm
+from tree_sway.live.camera.page_film import PageFilm
 from tree_sway.live.motion.live_motion import LiveMotion
 from tree_sway.twin import ObservedTree
-from tree_sway.twin.camera import Camera, FilmedTree
+from tree_sway.twin.camera import FilmedTree
 
 _ROUNDING = 1e-6
 """Largest change [s] of the difference of the clocks that is none."""
@@ -56,7 +57,7 @@ class MotionFeed:
     def __init__(self, sensors: Sequence[PlacedSensor] = ()) -> None:
         self.sensors = {f'{each.live.name} at {each.at}': each for each in sensors}
         """Sensors by their names; of two of one name and place, the last."""
-        self.film: LiveFilm | None = None
+        self.film: LiveFilm | PageFilm | None = None
         """A camera that films the tree; None without one."""
         self._ahead = math.nan  # time of a step less the time of the clock at which it is due [s]
         self._stepped = -math.inf  # time of the last step [s]
@@ -66,11 +67,6 @@ class MotionFeed:
     def places(self) -> dict[str, str]:
         """Place of each sensor, for `ObservedTree`."""
         return {name: each.at for name, each in self.sensors.items()}
-
-    @property
-    def camera(self) -> Camera | None:
-        """Where the camera stands; None without one."""
-        return None if self.film is None else self.film.view.camera
 
     def feed(self, simulator: object, until: float, due: float | None = None) -> None:
         """
@@ -92,7 +88,8 @@ class MotionFeed:
             self._left_out = _LeftOut(self._ahead, self._stepped, self._stepped - ahead)
         self._ahead, self._stepped = ahead, until
         sightings = self.film.drain() if self.film is not None else []
-        if isinstance(simulator, FilmedTree):
+        if self.film is not None and isinstance(simulator, FilmedTree):
+            simulator.camera = self.film.camera
             for seen in sightings:
                 simulator.film(seen.time + self._ahead, seen.reference, seen.points)
         for name, placed in self.sensors.items():

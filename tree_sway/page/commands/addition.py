@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
@@ -34,9 +34,6 @@ class PageAddition:
 
     motion: MotionFeed | None = None
     """Live sensors that the page reports, set by `open`."""
-
-    picture: Callable[[], bytes | None] | None = None
-    """Draws what a camera sees as a JPEG, set by `open`; called in a thread of its own."""
 
     @staticmethod
     def add_arguments(parser: argparse.ArgumentParser) -> None:

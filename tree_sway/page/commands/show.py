@@ -109,18 +109,18 @@ def _serve(
     own = [control for each in added for control in each.controls()]
     first = {each.name: each.value for each in own if each.name in vars(choices)}
     choices = replace(choices, **first)  # type: ignore[arg-type]
+    motion = next((each.motion for each in added if each.motion is not None), None)
     told: dict[str, tuple[str, ...]] = {}
     with waiting(f'setting {arguments.tree} up'):
         session = Session(
             lambda wanted: build_scene(wanted, arguments, added, told, scene),
             choices,
             wind,
-            motion=next((each.motion for each in added if each.motion is not None), None),
+            motion=motion,
             warnings=told,
         )
     found = (each.critical_winds(session.names) for each in added)
     critical_winds = next((each for each in found if each is not None), None)
-    picture = next((each.picture for each in added if each.picture is not None), None)
 
     def apply(name: str, value: Value) -> None:
         if not any(each.apply(name, value) for each in added):
@@ -138,7 +138,9 @@ def _serve(
         controls = page_controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel((*own, *controls), apply, session.pull)
         panel.update(session.values())
-    pages = PageServer(settings, panel, status, session.written, critical_winds, picture)
+    pages = PageServer(
+        settings, panel, status, session.written, critical_winds, motion.film if motion else None
+    )
     with pages as server:
         session.serve(server)
         print_address(server, 'open')

@@ -48,8 +48,8 @@ const stream = new TreeStream(address.href, {
     state.lastFrameAt = performance.now();
     view.count(size);
   },
-  onMessage({ hello, refused, unreadable, values, status }) {
-    const { panel, risk } = view;
+  onMessage({ hello, refused, unreadable, values, status, film }) {
+    const { panel, risk, hands } = view;
     if (hello) {
       state.controls = hello.controls;
       state.viewersToken = hello.viewers_token ?? "";
@@ -59,9 +59,13 @@ const stream = new TreeStream(address.href, {
       element("pull").hidden = hello.can_pull !== true;
       risk.take(hello.critical_winds);
       element("camera").hidden = hello.has_camera !== true;
+      element("own-camera").hidden = element("camera-known").hidden = hello.can_film !== true;
+      hands.film?.send();
       const missed = state.follow(stream, settings);
       if (missed.length) toast(word("of_link", missed.join(", ")));
     }
+    if (film) hands.film?.take(film);
+    if (refused?.name === "film") hands.film?.end();
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
       scene.flower(Number(values.month));

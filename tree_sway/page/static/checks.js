@@ -170,8 +170,8 @@ export function checkMessage(message) {
   need(mean.length === 3 && [sequence, ...mean, ...delay, ...wind].every(Number.isFinite), "gusts");
   need(isFinite(pong), "pong");
   need(isObject(status) && isObject(status.wind ?? {}), "status");
-  const { sensors = [], band = [0, 0] } = status.motion ?? {};
-  need(Array.isArray(sensors) && sensors.every(isObject), "status.motion");
+  const { said = [], band = [0, 0] } = status.motion ?? {};
+  need(Array.isArray(said) && said.every(Array.isArray), "status.motion.said");
   need(Array.isArray(band) && band.length === 2 && band.every(Number.isFinite), "status.motion.band");
   need(isObject(values), "values");
   need(refused === undefined || typeof refused?.reason === "string", "refused");

@@ -58,6 +58,7 @@ export function listen(view, token) {
     "sensor-here": () => stream.set("sensor_at", `segment:${view.pointedAt}`),
     pull: async () => (hands.drag ??= new (await import("./drag.js")).Drag(scene, stream)).toggle(),
     sound: async () => (hands.sound ??= new (await import("./sound.js")).Sound()).toggle(),
+    "own-camera": async () => (hands.film ??= new (await import("./hand_camera.js")).HandCamera(view)).toggle(),
     headset: async () => {
       hands.headset ??= new (await import("./headset.js")).Headset(scene, stream);
       await hands.headset.toggle(() => view.showButtons());

@@ -14,8 +14,7 @@ const [FARTHEST, HEIGHTS_AWAY] = [40, 0.9];
 
 /** The view of an eye with the interface of `Camera`. @param {any} view of WebXR @returns {View["camera"]} */
 function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, projectionMatrix: p }) {
-  const matrix = Float32Array.from(m, (_, i) =>
-    [0, 1, 2, 3].reduce((sum, k) => sum + p[(i % 4) + 4 * k] * inverse.matrix[4 * Math.floor(i / 4) + k], 0));
+  const matrix = new DOMMatrix([...p]).multiply(new DOMMatrix([...inverse.matrix])).toFloat32Array();
   const column = (/** @type {number} */ at, share = 1) => Array.from(m.slice(at, at + 3), (each) => share * each);
   const [right, up] = [column(0, 1 / p[0]), column(4, 1 / p[5])];
   const axes = { right, up, back: column(8).map((each, c) => each - p[8] * right[c] - p[9] * up[c]) };

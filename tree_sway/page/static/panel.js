@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Controls as the server describes them: sliders, choices, texts, buttons; a refusal resets them. */
 
-import { hasWord, language, windPoint, word } from "./words.js";
+import { language, windPoint, word, wordOr } from "./words.js";
 
 /** Least interval between two values of a slider [ms]. */
 const SEND_EVERY = 80;
@@ -23,10 +23,9 @@ export function made(tag, properties, ...within) {
 }
 
 /** @param {Control} control */
-const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
+const nameOf = ({ name, label }) => wordOr(name, label);
 /** @param {Control} control */
-const named = ({ name, description }) =>
-  ({ id: `control-${name}`, title: hasWord(`${name}_hint`) ? word(`${name}_hint`) : description });
+const named = ({ name, description }) => ({ id: `control-${name}`, title: wordOr(`${name}_hint`, description) });
 
 /** A number with its unit as text. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
@@ -77,7 +76,7 @@ export class Panel {
     this._show.clear();
     const isButton = (/** @type {Control} */ { is_action: isAction, value }) => isAction || typeof value === "boolean";
     const fields = controls.filter((each) => !isButton(each)).map((each) =>
-      each.choices.length ? this._choice(each) : typeof each.value === "string" ? this._text(each) : this._slider(each));
+      each.choices.length || typeof each.value === "string" ? this._text(each) : this._slider(each));
     const buttons = controls.filter(isButton).map((each) => this._button(each));
     this.form.replaceChildren(...fields, made("div", { className: "buttons" }, ...buttons));
     for (const { name, value } of controls) this._show.get(name)?.(value);
@@ -92,13 +91,18 @@ export class Panel {
 
   /** Hide a control that has no effect now. @param {string} name @param {boolean} isHidden */
   hide(name, isHidden) {
-    const field = /** @type {HTMLElement | null | undefined} */ (this.form.querySelector(`#control-${name}`)?.closest(".field"));
+    const field = this._fieldOf(name);
     if (field) field.hidden = isHidden;
+  }
+
+  /** @param {string} name @returns {HTMLElement | null | undefined} */
+  _fieldOf(name) {
+    return this.form.querySelector(`#control-${name}`)?.closest(".field");
   }
 
   /** Write a note under a control. @param {string} name @param {string} text */
   note(name, text) {
-    const field = this.form.querySelector(`#control-${name}`)?.closest(".field");
+    const field = this._fieldOf(name);
     if (!field) return;
     const note = field.querySelector("small") ?? field.appendChild(made("small", { id: `note-${name}` }));
     if (note.textContent === text) return;
@@ -139,18 +143,11 @@ export class Panel {
     return this._field(control, input, shown);
   }
 
-  /** @param {Control} control */
-  _choice(control) {
-    const options = control.choices.map((each) => made("option", { value: each }, each.replaceAll("_", " ")));
-    const input = made("select", named(control), ...options);
-    input.addEventListener("change", () => this.send(control.name, input.value));
-    this._show.set(control.name, (value) => (input.value = value));
-    return this._field(control, input);
-  }
-
-  /** @param {Control} control */
+  /** A text, or one of some. @param {Control} control */
   _text(control) {
-    const input = made("input", { ...named(control), type: "text", maxLength: 40 });
+    const options = control.choices.map((value) => made("option", { value }, value.replaceAll("_", " ")));
+    const input = options.length ? made("select", named(control), ...options)
+      : made("input", { ...named(control), type: "text", maxLength: 40 });
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);

@@ -165,34 +165,6 @@ interface Mesh {
   indices: number[];
 }
 
-/** A motion sensor on the real tree. */
-interface SensorStatus {
-  /** Its name and place. */
-  name?: string;
-  /** Whether the tree follows it. */
-  in_use?: boolean;
-  /** The reason if not, and the cure. */
-  problem?: string;
-  /** Difference between sensor and tree, over the expected one. */
-  residual?: number;
-  /** Samples per second [Hz]. */
-  rate?: number;
-  /** What the reader recognised, such as a unit. */
-  notes?: string[];
-}
-
-/** Motion sensors, and the share of the motion that the wind alone explains. */
-interface MotionStatus {
-  sensors?: SensorStatus[];
-  explained?: number;
-  /** First frequency from the sensors [Hz], and the length of the motion that it was found from [h]. */
-  learned?: { frequency: number; hours: number };
-  /** Change of the sway frequencies since some hours [h] ago [%]. */
-  change?: { is_change: boolean; percent: number; hours: number; power?: number; low?: number; high?: number };
-  /** Interval with a probability of 80 % for the real tip, from the model's [m]. */
-  band?: number[];
-}
-
 /** Source of the wind, and the newest reading of a live one. */
 interface WindStatus {
   kind?: string;
@@ -364,6 +336,7 @@ interface Hands {
   drag: import("./drag.js").Drag | null;
   sound: import("./sound.js").Sound | null;
   headset: import("./headset.js").Headset | null;
+  film: import("./hand_camera.js").HandCamera | null;
 }
 
 /** View of one eye. */

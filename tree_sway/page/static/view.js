@@ -8,7 +8,7 @@ import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
 import { Risk } from "./risk.js";
 import { Trace } from "./trace.js";
-import { language, motionSensors, setLanguage, windFrom, windSource, word } from "./words.js";
+import { language, sentences, setLanguage, windFrom, windSource, word } from "./words.js";
 
 /** Interval at which numbers are written [ms]. */
 const FACTS_EVERY = 400;
@@ -29,7 +29,7 @@ export class View {
     this.stream = stream;
     this.state = state;
     this.risk = new Risk(scene);
-    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null });
+    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null, film: null });
     this.panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
     this.shown = /** @type {HTMLSelectElement} */ (element("shown"));
     this.traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
@@ -142,7 +142,7 @@ export class View {
       latency: Number.isFinite(latency) ? `${(latency + delay).toFixed(0)} ms` : "–",
       "wind-now": playout.isWindLost ? "–" : `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
       source: windSource(status.wind),
-      sensors: motionSensors(status.motion),
+      sensors: sentences(status.motion?.said),
       warnings: (status.warnings ?? []).join("; "),
       "band-of": status.motion?.band && this._showsTip ? word("band") : "",
       gust: gusts ? word("gust", gusts.mean.toFixed(1), gusts.greatest.toFixed(1)) : "",
@@ -220,7 +220,7 @@ export class View {
   showButtons() {
     const { hasLeaves, leavesShown, isAutumn: season, description } = this.scene;
     const [pull, sound, headset] = [this.hands.drag?.isOn, this.hands.sound?.isOn, this.hands.headset?.session];
-    const pressed = { leaves: hasLeaves && leavesShown, season, clip: this.endClip, pull, sound, headset };
+    const pressed = { leaves: hasLeaves && leavesShown, season, clip: this.endClip, pull, sound, headset, "own-camera": this.hands.film?.video };
     for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(Boolean(isSo)));
     Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
     const isStand = (description?.trees.length ?? 1) > 1;

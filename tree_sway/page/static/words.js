@@ -31,8 +31,8 @@ export function word(key, ...values) {
   return text.replace(/\{(\d)\}/g, (_, i) => String(values[i]));
 }
 
-/** Whether a key has a text. @param {string} key */
-export const hasWord = (key) => key in WORDS;
+/** The text of a key, or another one if there is none. @param {string} key @param {string} other */
+export const wordOr = (key, other) => (key in WORDS ? word(key) : other);
 
 /** Direction that a wind comes from, as everywhere on the page: compass point, and degrees clockwise from north; empty in
  * calm. @param {Numbers} wind to east and north [m/s] */
@@ -72,37 +72,8 @@ export function windSource(source = {}) {
   const { kind = "", name = "" } = source;
   if (kind === "recorded") return name ? word("wind_recorded", name) : word("wind_recorded_unnamed");
   if (kind === "live") return liveSource(source);
-  return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
+  return wordOr(`wind_${kind}`, "");
 }
 
-/** State of the motion sensors on the real tree, one line each. @param {MotionStatus} [motion] of a status */
-export function motionSensors(motion) {
-  const { sensors, explained, learned, band, change } = motion ?? {};
-  if (!Array.isArray(sensors)) return "";
-  if (!sensors.length) return word("sensor_elsewhere");
-  const lines = sensors.slice(0, 8).map(({ name = "", in_use, problem = "", rate, residual, notes = [] }) => {
-    if (in_use && !problem) {
-      const followed = word("sensor_followed", name, Number(rate).toFixed(0), Number(residual).toFixed(2));
-      return [followed, ...notes].join("; ").slice(0, 200);
-    }
-    const told = String(problem).slice(0, 200);
-    return told.startsWith(name) ? told : `${name}: ${told}`;
-  });
-  const isFollowed = sensors.some(({ in_use }) => in_use);
-  const byWind = Math.round(100 * Number(explained));
-  if (isFollowed && Number.isFinite(byWind)) lines.push(word("shares", byWind, 100 - byWind));
-  if (isFollowed && band) lines.push(word("band_of_tip", (100 * band[0]).toFixed(1), (100 * band[1]).toFixed(1)));
-  if (learned && Number.isFinite(learned.frequency) && Number.isFinite(learned.hours)) {
-    lines.push(word("learned_sway", learned.frequency.toFixed(3), learned.hours.toFixed(2)));
-  }
-  if (change && Number.isFinite(change.percent) && Number.isFinite(change.hours)) {
-    const { is_change, percent, hours, power, low, high } = change;
-    const signed = `${percent > 0 ? "+" : ""}${percent.toFixed(1)}`;
-    if (power && low && high) {
-      lines.push(word("sways_with_other_power", power.toPrecision(2), low.toFixed(2), high.toFixed(2), hours.toFixed(1)));
-    } else {
-      lines.push(word(is_change ? "sways_differently" : "sways_as_before", signed, hours.toFixed(1)));
-    }
-  }
-  return lines.join("\n");
-}
+/** Sentences of a server: the key of a text and its values each, or a text that is shown as it is. @param {string[][]} [sentences] */
+export const sentences = (sentences = []) => sentences.map(([key, ...values]) => word(String(key), ...values)).join("\n");

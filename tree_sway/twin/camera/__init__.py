@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tree_sway.twin.camera.filmed_tree import FilmedTree as FilmedTree
     from tree_sway.twin.camera.limb_points import drawn_wood as drawn_wood
     from tree_sway.twin.camera.limb_points import DrawnWood as DrawnWood
+    from tree_sway.twin.camera.limb_points import matched_points as matched_points
     from tree_sway.twin.camera.pinhole import Camera as Camera
     from tree_sway.twin.camera.pinhole import looking as looking
 else:

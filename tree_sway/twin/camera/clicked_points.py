@@ -11,6 +11,8 @@ from tree_sway.errors import nearest, ParameterError
 from tree_sway.twin.camera.camera_pose import Click, Told
 
 _LATEST = 1.0
+_LARGEST = 1e6
+"""Number beyond which none is a place in a picture, or told of a camera."""
 
 
 class ToldCamera(NamedTuple):
@@ -68,7 +70,7 @@ def _number(text: str, part: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
+    if not abs(value) < _LARGEST:
         cure = 'give numbers as 12.5'
         raise ParameterError(f"'{part[:40]}' has no number", where='--at', cure=cure)
     return value

@@ -14,7 +14,7 @@ from tree_sway.commands import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.live import CameraView, Film, is_camera, LiveFilm
+from tree_sway.live import CameraView, Film, is_camera, LiveFilm, PAGE, PageFilm
 from tree_sway.live.commands import sensors_and_places
 from tree_sway.twin.camera import FilmedMotion
 
@@ -30,27 +30,29 @@ class PlacedCamera(NamedTuple):
     view: CameraView
 
 
-def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | None:
-    """
-    Take the camera out of the arguments, and find where it stands; None without one.
-
-    Raises
-    ------
-    ParameterError
-        Two cameras, a film that cannot be opened, or clicks that fit no camera.
-    MissingDependencyError
-        OpenCV is not installed.
-
-    """
+def _told_camera(arguments: argparse.Namespace) -> tuple[str, str] | None:
+    """Take the address of the camera and what is told of it out of the arguments."""
     pairs = sensors_and_places(arguments)
     cameras = [pair for pair in pairs if is_camera(pair[0])]
-    if not cameras:
-        return None
     if len(cameras) > 1:
         raise ParameterError('two cameras', where='--motion', cure='give one')
     others = [pair for pair in pairs if not is_camera(pair[0])]
     arguments.motion, arguments.at = [[pair[k] for pair in others] for k in (0, 1)]
-    (address, at), *_ = cameras
+    return cameras[0] if cameras else None
+
+
+def placed_camera(address: str, at: str, tree: Tree) -> PlacedCamera:
+    """
+    Find where a camera stands, of its address and what is told of it.
+
+    Raises
+    ------
+    ParameterError
+        A film that cannot be opened, or clicks that fit no camera.
+    MissingDependencyError
+        OpenCV is not installed.
+
+    """
 
     def say(text: str) -> None:
         print(f'note: {address}: {text}', file=sys.stderr)
@@ -61,17 +63,19 @@ def placed_camera(arguments: argparse.Namespace, tree: Tree) -> PlacedCamera | N
 
 
 @contextmanager
-def filming(arguments: argparse.Namespace, tree: Callable[[], Tree]) -> Iterator[LiveFilm | None]:
+def filming(
+    arguments: argparse.Namespace, tree: Callable[[], Tree]
+) -> Iterator[LiveFilm | PageFilm | None]:
     """
-    Follow the live camera among the arguments, and end at once; None without one.
+    Follow the live camera among the arguments, or that of a page; None without one.
 
     The errors are those of `placed_camera`, and a film in a file.
     """
-    if not any(map(is_camera, arguments.motion)):
-        yield None
+    told = _told_camera(arguments)
+    if told is None or told[0] == PAGE:
+        yield PageFilm(tree(), told[1], _say) if told else None
         return
-    placed = placed_camera(arguments, tree())
-    assert placed is not None
+    placed = placed_camera(*told, tree())
     if not placed.film.is_live:
         cure = 'give camera:0 or camera:rtsp://host/path; tree-sway simulate follows films'
         raise ParameterError(f'{placed.film.name} is of the past', where='--motion', cure=cure)
@@ -94,9 +98,10 @@ def filmed_motion(arguments: argparse.Namespace, tree: Tree) -> FilmedMotion | N
 
     The errors are those of `placed_camera`, and a camera without an end.
     """
-    placed = placed_camera(arguments, tree)
-    if placed is None:
+    told = _told_camera(arguments)
+    if told is None:
         return None
+    placed = placed_camera(*told, tree)
     if placed.film.is_live:
         cure = 'give a film, as camera:FILE.mp4; tree-sway show follows a live camera'
         raise ParameterError(f'{placed.film.name} has no end', where='--motion', cure=cure)

@@ -8,7 +8,6 @@ import argparse
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
-from functools import partial
 import sys
 import time
 from weakref import WeakKeyDictionary
@@ -62,8 +61,6 @@ class SensorsOnThePage(PageAddition):
         film = stack.enter_context(filming(self.arguments, self._named_tree))
         self.motion = stack.enter_context(sensing(self.arguments))
         self.motion.film = film
-        if film is not None:
-            self.picture = film.view.drawn
         self.places = self.motion.places
         if (path := self.arguments.history) is not None:
             with inside('--history'):
@@ -84,8 +81,8 @@ class SensorsOnThePage(PageAddition):
 
     def simulator(self, scene: Scene, settings: Settings, choices: Choices) -> Simulator | None:
         """Make an observed tree; None without sensors and camera, and for a stand."""
-        camera = self.motion.camera if self.motion else None
-        if not (self.places or camera) or int(choices.count) != 1:
+        film = self.motion.film if self.motion else None
+        if not (self.places or film) or int(choices.count) != 1:
             return None
         places = self.places
         if choices.sensor_at:
@@ -95,7 +92,7 @@ class SensorsOnThePage(PageAddition):
         if (path := self.arguments.learn) is not None:
             file = LearnedFile(path, scene.trees[0], settings.in_leaf)
             scene = scene.of_species(file.opened.species)
-        kind = partial(FilmedTree, camera=camera) if camera else ObservedTree
+        kind = FilmedTree if film else ObservedTree
         twin = observed_scene(scene, settings, kind, at=places, rate=RATE, has_band=True)
         if file is not None:
             twin.learned_before = file.opened.learned
