@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import json
 from typing import Any
 
@@ -16,6 +17,17 @@ def parsed(text: str, kind: str = 'JSON') -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         raise FormatError(f'not {kind}: {error}', cure='save it again whole') from None
+
+
+def document_of(lines: Sequence[str], kind: str = 'JSON') -> Any:
+    """Return a document of several lines, or a list of those that are one each."""
+    try:
+        return parsed('\n'.join(lines), kind)
+    except FormatError:
+        filled = [line for line in lines if line.strip()]
+        if not (filled and filled[0].rstrip().endswith('}')):
+            raise
+        return [parsed(line, kind) for line in filled]
 
 
 def cell_of(value: Any) -> str:

@@ -23,7 +23,10 @@ PARTS = {tuple(names.split()): form for names, form in TIME_PARTS.items()}
 _LOOKED_AT = 20
 """Rows that are looked at for which of several columns has the time."""
 
-_RATE = re.compile(r'(?:rate|frequency)\W*(\d+\.?\d*)\s*Hz|\bat (\d+\.?\d*) Hz', re.IGNORECASE)
+_RATE = re.compile(
+    r'(?:(?:rate|frequency)\W*|\bat )(\d+\.?\d*)\s*Hz|Delta_X\s+(\d+[.,]\d+)', re.IGNORECASE
+)
+"""Samples per second, or the seconds of one as in files of LabVIEW."""
 
 _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
@@ -50,7 +53,8 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
 def counted_times(table: TextTable) -> Times | None:
     """Return times by the rate that is told above the header; None without one."""
     rate = _RATE.search('\n'.join(table.above))
-    hertz = float(rate[1] or rate[2]) if rate else 0.0
+    known = [float(each.replace(',', '.')) if each else 0.0 for each in rate.groups()] if rate else []
+    hertz = known[0] or 1.0 / known[1] if any(known) else 0.0
     if hertz <= 0.0:
         return None
     rows = np.arange(float(len(table.texts)))

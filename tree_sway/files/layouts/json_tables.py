@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import rank_of
-from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
+from tree_sway.files.json_values import cell_of, document_of, list_of, object_of
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -49,7 +49,7 @@ def _is_json(lines: Sequence[str]) -> bool:
 
 def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
-    document = _document(lines)
+    document = document_of(lines)
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
@@ -93,17 +93,6 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
             cure=f'record {SIGNALK_WIND}directionTrue and speedOverGround or speedTrue',
         )
     return None
-
-
-def _document(lines: list[str]) -> Any:
-    """Return a document of several lines, or a list of those that are one each."""
-    try:
-        return parsed('\n'.join(lines))
-    except FormatError:
-        filled = [line for line in lines if line.strip()]
-        if not filled[0].rstrip().endswith('}'):
-            raise
-        return [parsed(line) for line in filled]
 
 
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:

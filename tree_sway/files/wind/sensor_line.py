@@ -38,7 +38,7 @@ class SensorLine:
 
 
 STAMP = re.compile(
-    r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
+    r'(?<!\d)\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
     r'|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
     re.ASCII,
 )
@@ -110,7 +110,7 @@ def read_sensor_log(
             rows.refuse(number, said.refusal)
         else:
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
-            stamp = STAMP.match(line)
+            stamp = STAMP.search(line)
             stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:
