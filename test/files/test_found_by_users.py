@@ -139,7 +139,7 @@ class Frame:
 @pytest.mark.parametrize(
     ('read', 'given', 'told'),
     [
-        (open_tree, None, r"a NoneType, where the path of a file is expected; give its name, as"),
+        (open_tree, None, r'a NoneType, where the path of a file is expected; give its name, as'),
         (open_scene, 3, 'a int, where the path'),
         (read_wind, Frame(), r"a Frame, where .* first: frame.to_csv\('table.csv', index=False\)"),
         (read_motion, Frame(), r'frame.to_csv'),

@@ -52,9 +52,11 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
 
 def counted_times(table: TextTable) -> Times | None:
     """Return times by the rate that is told above the header; None without one."""
-    rate = _RATE.search('\n'.join(table.above))
-    known = [float(each.replace(',', '.')) if each else 0.0 for each in rate.groups()] if rate else []
-    hertz = known[0] or 1.0 / known[1] if any(known) else 0.0
+    told = _RATE.search('\n'.join(table.above))
+    if told is None:
+        return None
+    rate, step = (float((each or '0').replace(',', '.')) for each in told.groups())
+    hertz = 1.0 / step if step else rate
     if hertz <= 0.0:
         return None
     rows = np.arange(float(len(table.texts)))

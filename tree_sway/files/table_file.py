@@ -108,7 +108,7 @@ class TextTable:
         return Column(found[0], self.factor_of(found[0], quantity)) if found else None
 
     def find_all(self, quantity: str) -> list[int]:
-        """Places of a quantity's columns in the order of their names, those without a cell last."""
+        """Places of a quantity's columns in the order of their names, empty ones last."""
         ranks = [(rank_of(column, quantity), index) for index, column in enumerate(self.columns)]
         found = [index for _, index in sorted(each for each in ranks if each[0] is not None)]
         first = range(min(len(self.texts), _LOOKED_AT))

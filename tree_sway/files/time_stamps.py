@@ -3,10 +3,11 @@
 """
 Times of loggers, stations and services: dates in any usual order, 12-hour clocks, and numbers.
 
-A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024``, the day of a year as
-``2024-061``, or ``202403011200``, with a time of 24 or of 12 hours, and maybe a zone. Whether ``3/1/24`` has the month first is seen
-in the whole column. Numbers are seconds, or if they are as large as the time since 1970 in s, ms,
-us or ns, that; or the days of Excel, of MATLAB, or Julian ones.
+A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024``, ``202403011200`` or
+the day of a year, ``2024-061``, with a time of 24 or of 12 hours, and maybe a zone. Whether
+``3/1/24`` has the month first is seen in the whole column. Numbers are seconds, or if they are as
+large as the time since 1970 in s, ms, us or ns, that; or the days of Excel, of MATLAB, or Julian
+ones.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from os.path import commonprefix
+from itertools import takewhile
 import re
 
 from tree_sway.files.column_names import (
@@ -109,7 +109,8 @@ def _read(lines: list[str], source: str) -> TextTable:
 def _without_place(names: Sequence[str]) -> Sequence[str]:
     """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
     unknown = [name for name in names if not is_known(name)]
-    place = commonprefix(unknown).rpartition(' ')[0] if len(unknown) > 1 else ''
+    words = zip(*map(str.split, unknown), strict=False) if len(unknown) > 1 else ()
+    place = ' '.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, words))
     short = [name.removeprefix(place).strip() for name in names]
     return short if any(map(is_known, {*short} - {*names})) else names
 

@@ -16,8 +16,9 @@ import re
 from typing import Any
 
 from tree_sway.files import finite, unit_factor
-from tree_sway.files.wind import checksum_of, degrees_to_bearing
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.files.wind import checksum_of
+from tree_sway.live.readers.values import reading_of
+from tree_sway.live.reading import Reading, Refusal
 from tree_sway.tables import table_beside
 
 INSTRUMENTS = [
@@ -52,23 +53,17 @@ def _reading(
     text = cells['wind_speed'] or ''
     if known['units']:
         units = dict(each.split('=') for each in known['units'].split())
-        factor = unit_factor('speed', units.get(unit, '')) or math.nan
-    number = finite(text)
-    speed = math.nan if number is None else factor * number
-    if not speed >= 0.0:
-        return Refusal(kind, f"speed is '{text}{unit}'")
-    direction = cells.get('wind_direction')
-    degrees = finite(direction or '')
-    bearing = None if degrees is None else degrees_to_bearing(degrees)
-    if direction is not None and bearing is None:
-        return Refusal(kind, f"direction is '{direction}'")
-    rise = math.radians(float(cells.get('elevation') or 0.0))
+        known_unit = unit_factor('speed', units.get(unit, ''))
+        text += unit if known_unit is None else ''
+        factor = known_unit or 0.0
     gust = finite(cells.get('gust') or '')
-    return WindReading(
+    return reading_of(
         kind,
-        speed * math.cos(rise),
-        None if bearing is None else bearing + heading,
-        speed * math.sin(rise),
-        None if gust is None else factor * gust,
-        0.0 if known['instant'] else None,
+        text,
+        cells.get('wind_direction'),
+        factor=factor,
+        turn=heading,
+        rise=math.radians(float(cells.get('elevation') or 0.0)),
+        gust=None if gust is None else factor * gust,
+        interval=0.0 if known['instant'] else None,
     )

@@ -15,8 +15,8 @@ from typing import Any
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_in_name
 from tree_sway.live.readers.json_path import JsonPath
-from tree_sway.live.readers.values import bearing_of, is_calm, number, speed_factor
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.readers.values import number, reading_of, speed_factor
+from tree_sway.live.reading import Reading, Refusal
 
 _SHORTEST, _LONGEST = 2, 60
 """Lengths of names that are looked at: one letter may be anything in JSON."""
@@ -56,23 +56,17 @@ class WindNames:
         factor = speed_factor(unit)
         if factor is None:
             return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
-        value = number(speed)
-        if value is None or value < 0.0:
-            return [Refusal(kind, f"speed is '{str(speed)[:20]}'")]
         _, direction = _found(document, leaves, self.direction, 'wind_direction')
-        has_vane = direction is not _ABSENT and direction is not None
-        bearing = bearing_of(direction) if has_vane else None
-        if has_vane and bearing is None and not is_calm(value * factor):
-            return [Refusal(kind, f"direction is '{str(direction)[:20]}'")]
         name, gust = _found(document, leaves, self.gust, 'gust')
         most = None if gust is _ABSENT else number(gust)
         gust_factor = speed_factor(self._unit_of(document, leaves, name, 'gust'))
         has_gust = most is not None and gust_factor is not None
         return [
-            WindReading(
+            reading_of(
                 kind,
-                value * factor,
-                bearing,
+                speed,
+                None if direction is _ABSENT else direction,
+                factor=factor,
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
                 sender=_sender(leaves),

@@ -9,6 +9,7 @@ from typing import Any
 
 from tree_sway.files import finite, unit_factor
 from tree_sway.files.wind import degrees_of, degrees_to_bearing
+from tree_sway.live.reading import Reading, Refusal, WindReading
 
 _CALM = 0.05
 """Speed [m/s] below which a direction may be missing."""
@@ -42,6 +43,44 @@ def bearing_of(value: Any) -> float | None:
     return None if degrees is None else degrees_to_bearing(degrees)
 
 
-def is_calm(speed: float) -> bool:
-    """Whether a speed [m/s] is so small that its direction does not matter."""
-    return speed < _CALM
+def reading_of(
+    kind: str,
+    speed: Any,
+    direction: Any,
+    *,
+    factor: float = 1.0,
+    turn: float = 0.0,
+    rise: float = 0.0,
+    **fields: Any,
+) -> Reading:
+    """
+    Make a reading of a speed and a direction as they were sent, or the refusal of what is none.
+
+    Parameters
+    ----------
+    kind
+        Sentence or format of the message.
+    speed, direction
+        Numbers or texts; the direction is None where none is measured, and does not matter in a
+        calm.
+    factor
+        Metres per second in a unit of the speed.
+    turn
+        Direction of the instrument's north [rad].
+    rise
+        Elevation of the wind [rad].
+    **fields
+        Further ones of `WindReading`.
+
+    """
+    value = number(speed)
+    if value is None or value < 0.0:
+        return Refusal(kind, f"speed is '{str(speed)[:20]}'")
+    size = factor * value
+    bearing = None if direction is None else bearing_of(direction)
+    if bearing is None and direction is not None:
+        if size >= _CALM:
+            return Refusal(kind, f"direction is '{str(direction)[:20]}'")
+        bearing = 0.0
+    turned = None if bearing is None else bearing + turn
+    return WindReading(kind, size * math.cos(rise), turned, size * math.sin(rise), **fields)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import re
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -193,9 +193,7 @@ def _leave_out_dead(columns: InventoryColumns) -> None:
                     columns.leave_out(row, 'dead or gone', columns.told(index, row))
 
 
-def _double(
-    columns: InventoryColumns, kept: list[int], cells: Sequence[Sequence[object]]
-) -> str:
+def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
     """Tell how many trees have the place, species and size of one before; empty for none."""
     first: dict[str, int] = {}
     twice = [
