@@ -12,9 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tree_sway.files import unit_factor
-from tree_sway.files.wind import METAR
+from tree_sway.files.wind import METAR, number, reading_of
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.values import number, reading_of
 from tree_sway.live.reading import Reading, Refusal
 from tree_sway.live.transports.transport import Message
 

@@ -13,9 +13,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tree_sway.files import folded, rank_of, SENDERS, unit_in_name
+from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
+from tree_sway.files.wind import number, reading_of
 from tree_sway.live.readers.json_path import JsonPath
-from tree_sway.live.readers.values import number, reading_of, speed_factor
 from tree_sway.live.reading import Reading, Refusal
 
 _SHORTEST, _LONGEST = 2, 60
@@ -53,13 +53,13 @@ class WindNames:
         if speed is _ABSENT:
             return []
         unit = self._unit_of(document, leaves, name, 'wind_speed')
-        factor = speed_factor(unit)
+        factor = unit_factor('speed', unit)
         if factor is None:
             return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
         _, direction = _found(document, leaves, self.direction, 'wind_direction')
         name, gust = _found(document, leaves, self.gust, 'gust')
         most = None if gust is _ABSENT else number(gust)
-        gust_factor = speed_factor(self._unit_of(document, leaves, name, 'gust'))
+        gust_factor = unit_factor('speed', self._unit_of(document, leaves, name, 'gust'))
         has_gust = most is not None and gust_factor is not None
         return [
             reading_of(
@@ -75,7 +75,7 @@ class WindNames:
 
     def _unit(self, document: Any) -> str:
         """Text of the unit of speeds."""
-        if not self.unit or speed_factor(self.unit) is not None:
+        if not self.unit or unit_factor('speed', self.unit) is not None:
             return self.unit or 'm/s'
         found = JsonPath(self.unit).find(document)
         return found if isinstance(found, str) else self.unit

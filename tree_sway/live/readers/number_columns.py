@@ -17,8 +17,8 @@ import re
 
 from tree_sway.errors import ParameterError
 from tree_sway.files import finite
-from tree_sway.live.readers.values import reading_of
-from tree_sway.live.reading import of_velocity, Reading, Refusal
+from tree_sway.files.wind import of_velocity, reading_of
+from tree_sway.live.reading import Reading, Refusal
 
 COLUMNS = 'speed direction gust u v w -'.split()
 """Meanings of a column; components point east, north and up, the way the air goes."""

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tree_sway.files import dates, object_of
+from tree_sway.files import dates, object_of, unit_factor
+from tree_sway.files.wind import number
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.readers.values import number, speed_factor
 from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.transports.transport import Message
 
@@ -32,7 +32,7 @@ def read_forecast(message: Message) -> Sequence[Reading]:
     if isinstance(reason := document.get('reason'), str) and not current:
         return [Refusal(_KIND, reason[:80])]
     unit = JsonPath('current_units.wind_speed_10m').find(document)
-    is_known = isinstance(unit, str) and speed_factor(unit) is not None
+    is_known = isinstance(unit, str) and unit_factor('speed', unit) is not None
     names = replace(_NAMES, unit=unit) if is_known else _NAMES
     return [_dated(each, current) for each in names.read(current, _KIND)]
 

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tree_sway.files.wind import tempest_values
-from tree_sway.live.readers.values import reading_of
+from tree_sway.files.wind import reading_of, tempest_values
 from tree_sway.live.reading import Reading
 
 KIND = 'rapid_wind'

@@ -7,9 +7,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tree_sway.files import finite, unit_factor
-from tree_sway.files.wind import degrees_of, degrees_to_bearing
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.files.text_file import finite
+from tree_sway.files.wind.compass import degrees_of
+from tree_sway.files.wind.reading import Reading, Refusal, WindReading
 
 _CALM = 0.05
 """Speed [m/s] below which a direction may be missing."""
@@ -30,17 +30,12 @@ def number(value: Any) -> float | None:
     return found if math.isfinite(found) else None
 
 
-def speed_factor(unit: str) -> float | None:
-    """Metres per second in one unit of speed; None for an unknown one."""
-    return unit_factor('speed', unit)
-
-
 def bearing_of(value: Any) -> float | None:
     """Bearing [rad] from degrees, or from a point of the compass such as NNW."""
     degrees = number(value)
     if degrees is None and isinstance(value, str) and value.strip():
         degrees = float(degrees_of([value.strip()[:_LONGEST]])[0])
-    return None if degrees is None else degrees_to_bearing(degrees)
+    return None if degrees is None or not 0.0 <= degrees <= 360.0 else math.radians(degrees)
 
 
 def reading_of(
@@ -51,6 +46,7 @@ def reading_of(
     factor: float = 1.0,
     turn: float = 0.0,
     rise: float = 0.0,
+    up: float | None = None,
     **fields: Any,
 ) -> Reading:
     """
@@ -67,8 +63,8 @@ def reading_of(
         Metres per second in a unit of the speed.
     turn
         Direction of the instrument's north [rad].
-    rise
-        Elevation of the wind [rad].
+    rise, up
+        Elevation of the wind [rad], or its vertical component [m/s].
     **fields
         Further ones of `WindReading`.
 
@@ -82,5 +78,6 @@ def reading_of(
         if size >= _CALM:
             return Refusal(kind, f"direction is '{str(direction)[:20]}'")
         bearing = 0.0
-    turned = None if bearing is None else bearing + turn
-    return WindReading(kind, size * math.cos(rise), turned, size * math.sin(rise), **fields)
+    turned = None if bearing is None else (bearing + turn) % math.tau
+    rising = size * math.sin(rise) if up is None else up
+    return WindReading(kind, size * math.cos(rise), turned, rising, **fields)
