@@ -28,6 +28,7 @@ from tree_sway.files.layouts.station_messages import (
     tempest_values,
 )
 from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import finite
 
 _DEEPEST = 12
 _DECIMAL = re.compile(r'-?\d+,\d+')
@@ -111,12 +112,34 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
         states = _lists_of_states(node)
+        node = list(_samples(node)) or node
         if states:
             yield _of_states(states, source)
         elif node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
         for each in [] if states else node:
             yield from _tables(each, units, source, depth + 1)
+
+
+def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
+    """
+    Yield the samples of messages with a time and a list of samples each, at even times.
+
+    So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list.
+    """
+    bodies = [object_of([*object_of(each).values(), None][0]) or each for each in messages]
+    names = [*object_of(bodies[0])] if bodies[1:] and all(map(object_of, bodies)) else []
+    clock = next((name for name in names if rank_of(name, 'time') is not None), '')
+    batch = next((name for name in names if list_of(bodies[0][name])[:1] != []), '')
+    told = (finite(cell_of(each.get(clock))) for each in bodies)
+    starts = [start for start in told if start is not None] if batch else []
+    if len(starts) < max(len(bodies), 2):
+        return
+    ends = [*starts[1:], 2.0 * starts[-1] - starts[-2]]
+    for body, start, end in zip(bodies, starts, ends, strict=True):
+        samples = list_of(body.get(batch))
+        for number, sample in enumerate(samples):
+            yield {clock: start + number * (end - start) / len(samples), batch: sample}
 
 
 def _said_units(node: dict[str, Any]) -> Cells:

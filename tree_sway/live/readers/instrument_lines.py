@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
-import re
 
 from tree_sway.core.wind import is_wind
+from tree_sway.files import pairs_of
 from tree_sway.files.wind import INSTRUMENTS, LOGGED, parse_nmea, read_instrument, SENTENCES
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import factor_of, names_of
@@ -38,7 +38,6 @@ EXPECTS = ', '.join(
         'SDI-12, JSON, name=value, or numbers as 5.3,270',
     )
 )
-_PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z/]*)')
 
 
 @dataclass
@@ -113,8 +112,7 @@ class InstrumentLines:
         )
         if reading is not None:
             yield reading
-        elif pairs := _PAIR.findall(line):
-            named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
+        elif named := pairs_of(line):
             yield from self.names.read(named, 'name=value')
 
     def _read_json(self, line: str) -> Sequence[Reading]:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from tree_sway.files import unit_factor, UNITS
+from tree_sway.files import unit_factor
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.source_address import SourceAddress
@@ -30,7 +30,7 @@ def factor_of(address: SourceAddress) -> float:
     unit = address.text_of('unit', 'm/s')
     factor = unit_factor('speed', unit)
     if factor is None:
-        raise address.error(f"unknown unit '{unit}'", f'use {", ".join(UNITS["speed"])}')
+        raise address.error(f"unknown unit '{unit}'", 'use m/s, km/h, kn, mph or ft/s')
     return factor
 
 
