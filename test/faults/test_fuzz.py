@@ -8,9 +8,9 @@ import random
 
 import numpy as np
 import pytest
+from tree_sway.files.wind.sonic_ascii import parse_sonic
 
 from tree_sway.files.wind.nmea import parse_nmea
-from tree_sway.files.wind.sonic_ascii import parse_sonic
 
 ODD = (math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 1e300, -1e300, 999.99, 327.68, 40.0, 1e6)
 FRAME_IDS = ('map', '', 'mast', '\u2014' * 300)

@@ -216,7 +216,8 @@ def _grown(choices: Choices) -> Scene:
     rng = np.random.default_rng(int(choices.individual))
     diameter = stem_of_age(choices.tree, choices.age) if choices.age else None
     tree = grow(choices.tree, choices.height, diameter, rng=rng)
-    species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.northern_month)
+    wood = rooted(tree, species_named(choices.tree))
+    species = species_in_month(wood, tree, choices.northern_month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
 

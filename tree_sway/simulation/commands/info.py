@@ -26,6 +26,7 @@ from tree_sway.files.commands import (
     add_tree_arguments,
     chosen_leaves,
     opened_scene,
+    simulated_speed,
 )
 from tree_sway.files.trees import sway_oddity
 from tree_sway.growth import BREAST_HEIGHT, breast_height_diameter
