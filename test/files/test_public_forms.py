@@ -165,8 +165,8 @@ TOA5 = (
             False,
         ),
         (
-            '# SNOTEL 727: Saddle Mtn., MT\nDate,Saddle Mtn. (727) Wind Direction Average (degree),'
-            'Saddle Mtn. (727) Wind Speed Average (mph)\n',
+            '# SNOTEL 727: Saddle Mtn., MT\nDate,Saddle Mtn. (727) Wind Direction Average (degree)'
+            ',Saddle Mtn. (727) Wind Speed Average (mph)\n',
             '2024-03-05 {clock},225,{speed}',
             1 / 0.44704,
             False,
@@ -503,17 +503,17 @@ def test_what_is_no_motion_is_told(tmp_path: Path, text: str, match: str) -> Non
 def test_messages_with_several_samples_are_spread_over_their_time(
     tmp_path: Path, form: str
 ) -> None:
+    samples = [{'x': 1e-3 * number, 'y': 0, 'z': 9.8} for number in range(200)]
     messages = [
-        {'acc': {'Timestamp': 599025762 + 80 * k, 'ArrayAcc': [{'x': 4 * k + j, 'y': 0, 'z': 9.8}
-                                                                for j in range(4)]}}
-        for k in range(50)
-    ]  # fmt: skip
+        {'acc': {'Timestamp': 599025762 + 20 * first, 'ArrayAcc': samples[first : first + 4]}}
+        for first in range(0, 200, 4)
+    ]
     between = ',' if 'data' in form else '\n'
     record = read_motion(
         written(tmp_path, form.format(between.join(map(dumps, messages))), 'a.json')
     )
     assert record.acceleration is not None
-    np.testing.assert_array_equal(record.acceleration[:, 0], np.arange(200))
+    np.testing.assert_allclose(record.acceleration[:, 0], 1e-3 * np.arange(200), atol=1e-12)
     np.testing.assert_allclose(np.diff(record.time), 0.02, atol=1e-6)
 
 

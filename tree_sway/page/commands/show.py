@@ -197,8 +197,10 @@ def build_scene(
         scene = stand(scene, count, choices.model)
     damping = choices.damping_ratio or None
     in_leaf = chosen_leaves(arguments)
-    if not is_first and choices.is_grown and is_bare(
-        species_named(choices.tree), choices.northern_month
+    if (
+        not is_first
+        and choices.is_grown
+        and is_bare(species_named(choices.tree), choices.northern_month)
     ):
         in_leaf = False
     far = distance_settings(arguments)
