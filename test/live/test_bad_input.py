@@ -98,7 +98,7 @@ REFUSED = [
     ('lines', b'-5.0,270', "speed is '-5.0'"),
     ('lines', b'5.0,999', "direction is '999.0'"),
     ('lines', b'0 006.2 270 01*00', 'wrong checksum'),
-    ('lines', b'{"wind_speed": null, "wind_direction": 270}', "speed is 'None'"),
+    ('lines', b'{"wind_speed": null, "wind_direction": 270}', "speed is ''"),
     ('lines', b'{"wind_speed": {"value": 5, "unit": "bft"}}', "unknown unit 'bft'"),
     ('lines', b'{"wind_speed": NaN}', "speed is 'nan'"),
     ('lines', b'{"wind_speed": 5.0, "wind_direction": 400}', "direction is '400'"),

@@ -9,17 +9,19 @@ rtl_433 or ``windspeedmph`` of Ecowitt.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
+from tree_sway.files.motion import flat, unit_beside
 from tree_sway.files.wind import number, reading_of
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.reading import Reading, Refusal
 
-_SHORTEST, _LONGEST = 2, 60
-"""Lengths of names that are looked at: one letter may be anything in JSON."""
+_LONGEST = 120
+"""Length of names that are looked at; of one letter is none, which may be anything."""
 _MOST = 2000
 """Largest number of values of one message."""
 
@@ -48,7 +50,8 @@ class WindNames:
 
     def read(self, document: Any, kind: str) -> list[Reading]:
         """Return the wind of a document; nothing where it has no speed."""
-        leaves = dict(_leaves(document))
+        whole = document if isinstance(document, Mapping) else {'': document}
+        leaves = dict(islice(flat(whole, lists=True), _MOST))
         name, speed = _found(document, leaves, self.speed, 'wind_speed')
         if speed is _ABSENT:
             return []
@@ -65,7 +68,7 @@ class WindNames:
             reading_of(
                 kind,
                 speed,
-                None if direction is _ABSENT else direction,
+                None if direction in (_ABSENT, '') else direction,
                 factor=factor,
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
@@ -82,9 +85,12 @@ class WindNames:
 
     def _unit_of(self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str) -> str:
         """Return the unit of a speed: that beside it, in its name, or of all."""
-        beside = leaves.get(f'{name}_unit') if name else None
-        in_name = unit_in_name(name, quantity) if name else ''
-        return beside if isinstance(beside, str) else in_name or self._unit(document)
+        if not name:
+            return self._unit(document)
+        has_parts = name.endswith('.value')
+        beside = unit_beside(leaves, name) if has_parts else leaves.get(f'{name}_unit')
+        last = name.removesuffix('.value').rpartition('.')[2]
+        return beside or unit_in_name(last, quantity) or self._unit(document)
 
 
 _ABSENT = object()
@@ -92,9 +98,8 @@ _ABSENT = object()
 
 def _sender(leaves: Mapping[str, Any]) -> str:
     """Return what a message says of its instrument; empty for nothing."""
-    named = {folded(name): value for name, value in leaves.items()}
-    found = next((named[name] for name in SENDERS if isinstance(named.get(name), str | int)), '')
-    return str(found)[:_LONGEST]
+    named = {folded(name.rpartition('.')[2]): value for name, value in leaves.items()}
+    return next((named[name] for name in SENDERS if named.get(name)), '')[:_LONGEST]
 
 
 def _found(
@@ -105,44 +110,15 @@ def _found(
         found = path.find(document)
         return '', _ABSENT if found is None else found
     # Longer names are none, and would stay in the cache.
-    short = (name for name in leaves if _SHORTEST <= len(name) <= _LONGEST)
-    ranked = ((rank_of(name, quantity), name) for name in short)
+    last_of = {name: name.rpartition('.')[2] for name in leaves if len(name) <= _LONGEST}
+    ranks = {name: rank_of(name, quantity) for name, last in last_of.items() if last[1:]}
     # A boat has a speed as well as a wind_speed.
-    known = [('wind' not in name.lower(), rank, name) for rank, name in ranked if rank is not None]
+    known = [
+        ('wind' not in name.lower(), rank, name.count('.'), name)
+        for name, rank in ranks.items()
+        if rank is not None
+    ]
     if not known:
         return '', _ABSENT
-    name = min(known)[2]
+    name = min(known)[-1]
     return name, leaves[name]
-
-
-def _leaves(document: Any) -> Iterator[tuple[str, Any]]:
-    """
-    Yield the values of a document by the last part of their name, inner levels first.
-
-    What is inside of ``wind`` is called so, as ``wind_deg``; an object with a ``value`` stands for
-    that value, with its unit beside it.
-    """
-    level: list[tuple[str, Any]] = [('', document)]
-    found = list[tuple[str, Any]]()
-    while level and len(found) < _MOST:
-        inner: list[tuple[str, Any]] = []
-        for key, value in level[:_MOST]:
-            if isinstance(value, Mapping):
-                inner += _inside(key, value)
-            elif isinstance(value, list):
-                inner += [(key, each) for each in value if isinstance(each, Mapping | list)]
-            else:
-                found.append((key, value))
-        level = inner
-    return reversed(found)
-
-
-def _inside(key: str, value: Mapping[Any, Any]) -> list[tuple[str, Any]]:
-    """Return the values inside of an object, by their names."""
-    if 'value' in value and not isinstance(value['value'], Mapping | list):
-        unit = value.get('unit', value.get('unitCode'))
-        return [(key, value['value']), (f'{key}_unit', unit)]
-    names = [str(each) for each in value]
-    if key.lower() == 'wind':
-        names = [name if 'wind' in name.lower() else f'wind_{name}' for name in names]
-    return list(zip(names, value.values(), strict=True))
