@@ -109,7 +109,7 @@ CHANGES = {
         'True',
     ),
     'instrument': (
-        'tree_sway/live/readers/instruments.csv', 'Young 81000,', 'R. M. Young 81000,',
+        'tree_sway/files/wind/instruments.csv', 'Young 81000,', 'R. M. Young 81000,',
         'from tree_sway.live.readers.instrument_lines import EXPECTS;'
         "print('R. M. Young 81000' in EXPECTS)",
         'True',

@@ -4,16 +4,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tree_sway.commands.cli import main
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.motion.motion_file import read_motion
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.wind.table import read_table_wind
+from tree_sway.files.wind.wind_file import read_wind
 
 HERE = Path(__file__).parent
 G = 9.80665
@@ -125,3 +128,40 @@ def test_a_geneactiv(tmp_path: Path, settings: int) -> None:
     record = read_motion(written(tmp_path, above + ''.join(rows)))
     np.testing.assert_allclose(np.diff(record.time), 0.02, atol=1e-6)
     np.testing.assert_allclose(record.acceleration[5], np.multiply(G, (0.01, -0.5, 0.866)))
+
+
+class Frame:
+    """A table of pandas, of which a path is expected."""
+
+    def to_csv(self) -> None: ...
+
+
+@pytest.mark.parametrize(
+    ('read', 'given', 'told'),
+    [
+        (open_tree, None, r'a NoneType, where the path of a file is expected; give its name, as'),
+        (open_scene, 3, 'a int, where the path'),
+        (read_wind, Frame(), r"a Frame, where .* first: frame.to_csv\('table.csv', index=False\)"),
+        (read_motion, Frame(), r'frame.to_csv'),
+    ],
+)
+def test_what_is_no_path_is_named(read: Callable[[Any], Any], given: Any, told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        read(given)
+
+
+def test_rows_that_repeat_a_tree_are_told(tmp_path: Path) -> None:
+    rows = 'x,y,species,dbh\n0,0,oak,30\n0,0,oak,30\n0,0,oak,31\n9,0,oak,30\n'
+    notes = ' '.join(open_scene(written(tmp_path, rows), warn=False).notes)
+    assert '1 trees have the place, species and size of another, as line 2 and line 3' in notes
+    one_each = rows.replace('0,0,oak,30\n0,0,oak,30', '0,0,oak,30\n0,5,oak,30')
+    assert 'of another' not in ' '.join(open_scene(written(tmp_path, one_each), warn=False).notes)
+
+
+@pytest.mark.parametrize('speed', ['0', '41'])
+def test_a_speed_out_of_range_is_named_as_it_is_typed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], speed: str
+) -> None:
+    output = str(tmp_path / 'sway.csv')
+    assert main(['simulate', 'benjamina', '--speed', speed, '-o', output]) != 0
+    assert f'--speed: {float(speed)} is out of range' in capsys.readouterr().err

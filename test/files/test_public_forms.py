@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from json import dumps
 import math
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.motion import read_motion
 from tree_sway.files.trees import open_scene, open_tree
 from tree_sway.files.wind import read_wind
+from tree_sway.files.wind.sensor_line import checksum_of
 
 ROWS = 12
 SPEEDS = [4.0 + 0.5 * row for row in range(ROWS)]
@@ -162,6 +164,33 @@ TOA5 = (
             1.0,
             False,
         ),
+        (
+            '# SNOTEL 727: Saddle Mtn., MT\nDate,Saddle Mtn. (727) Wind Direction Average (degree)'
+            ',Saddle Mtn. (727) Wind Speed Average (mph)\n',
+            '2024-03-05 {clock},225,{speed}',
+            1 / 0.44704,
+            False,
+        ),
+        (
+            'FECHA     HORA  TEMP   HUM   PNM    DD    FF     NOMBRE\n'
+            '         [HOA]  [°C]   [%]  [hPa]  [gr] [km/hr]\n',
+            '05032024    {n:2d}  19.5   94  1004.3  225   {speed}     AZUL AERO',
+            3.6,
+            False,
+        ),
+        (
+            'time,wind_speed_mph,wind_avg_km_h,wind_dir_deg\n',
+            '2024-03-05 {clock}:00,,{speed},225',
+            3.6,
+            False,
+        ),
+        (
+            'Datum;Windrichtung;WindgeschwindigkeitInMeterProSekunde\n',
+            '05.03.2024 {clock};225;{speed}',
+            1.0,
+            False,
+        ),
+        ('', '{clock}:00 -> Wind speed: {speed} km/h, Wind direction: 225 deg', 3.6, False),
     ],
     ids=[
         'units above',
@@ -186,6 +215,11 @@ TOA5 = (
         'true degrees',
         'degrees behind a point',
         'flags between',
+        'a place before names',
+        'a name behind the row',
+        'the column with values',
+        'units as words',
+        'pairs with units',
     ],
 )
 def test_winds_are_read_as_they_say(
@@ -206,6 +240,46 @@ def test_stations_are_not_mixed(tmp_path: Path, name: str) -> None:
     path = written(tmp_path, f'{name},time,speed [m/s],direction\n' + '\n'.join(rows))
     with pytest.raises(FormatError, match='rows of 2 instruments: A, B'):
         read_wind(path)
+
+
+def test_stations_behind_the_rows_are_not_mixed(tmp_path: Path) -> None:
+    rows = ''.join(
+        f'05032024    {hour:2d}  19.5   94  1004.3  225   13     {name}\n'
+        for name in ('AZUL AERO', 'EZEIZA AERO')
+        for hour in range(12)
+    )
+    path = written(tmp_path, f'FECHA HORA TEMP HUM PNM DD FF NOMBRE\n [HOA]\n{rows}', 'a.txt')
+    with pytest.raises(FormatError, match='rows of 2 instruments: AZUL AERO, EZEIZA AERO'):
+        read_wind(path)
+
+
+def logged(body: str, begin: str, end: str) -> str:
+    return f'{begin}{body}*{checksum_of(body)}{end}'
+
+
+@pytest.mark.parametrize(
+    ('before', 'begin', 'body', 'end'),
+    [
+        ('2024-03-05 14:{n:02d}:00 ', '\x02', '{speed:04.1f} 225 +12.3 00', '\x03'),
+        ('met  2024-03-05T14:{n:02d}:00.00Z  ', '$', 'WIMWV,225.0,R,{speed:.1f},M,A', ''),
+    ],
+    ids=['Thies', 'a name before the time'],
+)
+def test_lines_of_instruments_have_the_times_before_them(
+    tmp_path: Path, before: str, begin: str, body: str, end: str
+) -> None:
+    lines = [
+        before.format(n=n) + logged(body.format(speed=speed), begin, end)
+        for n, speed in enumerate(SPEEDS)
+    ]
+    record = read_wind(written(tmp_path, '\n'.join(lines), 'a.log'))
+    assert (record.refused, record.epoch) == (0, 1709647200.0)
+    np.testing.assert_allclose(record.time, 60.0 * np.arange(ROWS))
+    np.testing.assert_allclose(np.hypot(*record.velocity[:, :2].T), SPEEDS)
+    np.testing.assert_allclose(record.velocity[:, 0], record.velocity[:, 1])
+    faulty = [line.replace('00*', '01*').replace(',A*', ',V*') for line in lines]
+    with pytest.raises(FormatError, match='no good row of wind, 12 refused'):
+        read_wind(written(tmp_path, '\n'.join(faulty), 'b.log'))
 
 
 def test_knots_of_a_boat_are_asked(tmp_path: Path) -> None:
@@ -282,7 +356,7 @@ def test_the_first_of_columns_of_one_name_is_said(tmp_path: Path) -> None:
         ('{"SiteRep": {"Wx": {}}}', 'a.json', 'DataPoint'),
         ('netcdf a {\nvariables:\n}\n', 'a.txt', 'netCDF file as text'),
         ('Mast 1\n 50.0 8.0 10.0\n 12 1.00 0\n', 'a.tab', 'a table of frequencies'),
-        ('M:x =   335 y =   218 z =     5 t =  2203\n' * 3, 'a.csv', 'no header: the first line'),
+        ('M:x =   335 y =   218 z =     5 t =  2203\n' * 3, 'a.csv', 'axes are left-handed'),
     ],
 )
 def test_what_is_no_table_of_wind_is_told(
@@ -330,6 +404,10 @@ def motion_rows(form: str) -> str:
 
 
 GROUP = 'Data Set 1:'
+LABVIEW = (
+    'LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\nChannels\t3\n'
+    'Delta_X\t0.020000\t0.020000\t0.020000\n***End_of_Header***\n'
+)
 AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
 
 
@@ -364,6 +442,8 @@ AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
         ),
         ('时间,加速度X(g),加速度Y(g),加速度Z(g)\n', '{s:.3f},{x:.5f},0,1'),
         ('Time,Acceleration_1,Acceleration_2,Acceleration_3\n', '{s:.2f} sec,{x:.5f},0,{z}'),
+        (f'{LABVIEW}X_Value\tAcc_X\tAcc_Y\tAcc_Z\tComment\n', '{s:.3f}\t{x:.5f}\t0\t{z}'),
+        (f'{LABVIEW}X_Value\tAcc_X\tAcc_Y\tAcc_Z\tComment\n', '\t{x:.5f}\t0\t{z}'),
         ('', '12:00:0{s:.3f} -> ax: {x:.5f} | ay: 0.0 | az: {z}'),
         (
             '',
@@ -391,6 +471,8 @@ AXES = ','.join(f'{GROUP}{axis}-axis acceleration(m/s²)' for axis in 'XYZ')
         'Italian',
         'Chinese',
         'durations',
+        'LabVIEW',
+        'LabVIEW without times',
         'pairs',
         'a message of ROS',
     ],
@@ -415,6 +497,24 @@ def test_motions_are_read_as_they_are(tmp_path: Path, head: str, form: str) -> N
 def test_what_is_no_motion_is_told(tmp_path: Path, text: str, match: str) -> None:
     with pytest.raises(FormatError, match=match):
         read_motion(written(tmp_path, text))
+
+
+@pytest.mark.parametrize('form', ['{{"data": [{}]}}', '{}'])
+def test_messages_with_several_samples_are_spread_over_their_time(
+    tmp_path: Path, form: str
+) -> None:
+    samples = [{'x': 1e-3 * number, 'y': 0, 'z': 9.8} for number in range(200)]
+    messages = [
+        {'acc': {'Timestamp': 599025762 + 20 * first, 'ArrayAcc': samples[first : first + 4]}}
+        for first in range(0, 200, 4)
+    ]
+    between = ',' if 'data' in form else '\n'
+    record = read_motion(
+        written(tmp_path, form.format(between.join(map(dumps, messages))), 'a.json')
+    )
+    assert record.acceleration is not None
+    np.testing.assert_allclose(record.acceleration[:, 0], 1e-3 * np.arange(200), atol=1e-12)
+    np.testing.assert_allclose(np.diff(record.time), 0.02, atol=1e-6)
 
 
 def scene_of(folder: Path, text: str) -> tuple[list[tuple[str, float]], float, str]:
@@ -574,3 +674,33 @@ def test_forms_of_swc(tmp_path: Path, form: str) -> None:
 def test_other_files_are_named(tmp_path: Path, name: str, text: str, match: str) -> None:
     with pytest.raises(FormatError, match=match):
         open_tree(written(tmp_path, text, name))
+
+
+TREES = [('Quercus robur', 40.0, 14.0), ('Fagus sylvatica', 52.0, 20.0)]
+
+
+def lines_of_json(form: str) -> str:
+    return ''.join(
+        form % (13.4 + 1e-4 * row, name, stem, height) + '\n'
+        for row, (name, stem, height) in enumerate(TREES)
+    )
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        lines_of_json('{"lat": 52.5, "lon": %s, "species": "%s", "dbh_cm": %s, "height": %s}'),
+        lines_of_json(
+            '{"type": "Feature", "geometry": {"type": "Point", "coordinates": [%s, 52.5]}, '
+            '"properties": {"species": "%s", "dbh_cm": %s, "height": %s}}'
+        ),
+        'x,y,d,h,n,s\n0,0,40,14,1,QURO\n6.8,0,52,20,2,FASY\n',
+        'plot,sps,coordinates_x_metres,coordinates_y_metres,dbh_centimetres,height_metres\n'
+        'a,QURO,0,0,40,14\na,FASY,6.8,0,52,20\n',
+    ],
+    ids=['records', 'features', 'letters', 'units as words'],
+)
+def test_inventories_are_read_as_they_are(tmp_path: Path, text: str) -> None:
+    trees, width, _ = scene_of(tmp_path, text)
+    assert trees == [('oak', 14.0), ('beech', 20.0)]
+    assert width == pytest.approx(6.8, abs=0.1)

@@ -8,15 +8,25 @@ from pathlib import Path
 import pytest
 
 from tree_sway import tables
-from tree_sway.live.readers import instrument_lines, instruments
+from tree_sway.files import wind
+from tree_sway.files.wind import instruments
+from tree_sway.live.readers import instrument_lines
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
 ROW = (
     r'BreezeBox,"\$BBX,\d+,(?P<wind_speed>[\d.]+),(?P<wind_direction>[\d.]+)(?P<unit>)",'
-    '=kn,yes,a test\n'
+    '=kn,,,yes,no,a test\n'
 )
+
+
+def read_anew():
+    """Load the table again, and what the face of its house had found of it."""
+    reload(instruments)
+    for name in ('INSTRUMENTS', 'LOGGED', 'read_instrument'):
+        vars(wind).pop(name, None)
+    return reload(instrument_lines)
 
 
 @pytest.fixture
@@ -26,11 +36,9 @@ def lines(tmp_path, monkeypatch):
     read = tables.table_beside
     beside = str(tmp_path / 'instruments.py')
     monkeypatch.setattr(tables, 'table_beside', lambda _, name: read(beside, name))
-    reload(instruments)
-    yield reload(instrument_lines)
+    yield read_anew()
     monkeypatch.undo()
-    reload(instruments)
-    reload(instrument_lines)
+    read_anew()
 
 
 def test_one_row_is_all_it_takes(lines):

@@ -22,14 +22,14 @@ from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.json_path import JsonPath, parse_json
+from tree_sway.live.readers.metar_report import read_reports
 from tree_sway.live.readers.named_values import WindNames
+from tree_sway.live.readers.open_meteo import read_forecast
 from tree_sway.live.readers.signalk import SignalKWind
+from tree_sway.live.readers.weatherlink import read_conditions
 from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.registry import open_source, source_kinds
 from tree_sway.live.sources.ecowitt import read_upload
-from tree_sway.live.sources.metar_report import read_reports
-from tree_sway.live.sources.open_meteo import read_forecast
-from tree_sway.live.sources.weatherlink import read_conditions
 from tree_sway.live.transports.transport import Message
 
 READERS = {
@@ -95,10 +95,10 @@ REFUSED = [
     ('lines', b'0R1,Dm=270D,Sm=000#', "speed is '000#'"),
     ('lines', b'0+999+999.9+04', 'status is 4'),
     ('lines', b'1.0 2.0 3.0', '3 numbers; say which'),
-    ('lines', b'-5.0,270', 'speed is -5'),
-    ('lines', b'5.0,999', 'direction is 999'),
+    ('lines', b'-5.0,270', "speed is '-5.0'"),
+    ('lines', b'5.0,999', "direction is '999.0'"),
     ('lines', b'0 006.2 270 01*00', 'wrong checksum'),
-    ('lines', b'{"wind_speed": null, "wind_direction": 270}', "speed is 'None'"),
+    ('lines', b'{"wind_speed": null, "wind_direction": 270}', "speed is ''"),
     ('lines', b'{"wind_speed": {"value": 5, "unit": "bft"}}', "unknown unit 'bft'"),
     ('lines', b'{"wind_speed": NaN}', "speed is 'nan'"),
     ('lines', b'{"wind_speed": 5.0, "wind_direction": 400}', "direction is '400'"),
@@ -110,8 +110,8 @@ REFUSED = [
     ('Open-Meteo', b'{"current": {"wind_speed_10m": null}}', None),
     ('Signal K', b'{"updates":[{"values":[{"path":"environment.wind.speedTrue","value":"x"}]}]}',
      'environment.wind.speedTrue is x'),
-    ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,null,128]}', 'ob is'),
-    ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,2.0,361]}', 'direction is 361'),
+    ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,null,128]}', "speed is 'None'"),
+    ('Tempest', b'{"type":"rapid_wind","ob":[1493322445,2.0,361]}', "direction is '361'"),
     ('Modbus', b'\x00', '0 registers of 4'),
     ('Modbus', b'\xff\xff' * 4, 'no speed: the register is -1'),
     ('JSON', b'{"a": {"b": "calm"}}', "speed is 'calm'"),

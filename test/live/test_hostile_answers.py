@@ -193,9 +193,9 @@ WORDS: list[Any] = [
 
 @pytest.mark.parametrize('seed', range(40))
 def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
+    from tree_sway.live.readers.metar_report import read_reports
     from tree_sway.live.readers.signalk import SignalKWind
     from tree_sway.live.reading import Refusal, WindReading
-    from tree_sway.live.sources.metar_report import read_reports
     from tree_sway.live.transports.transport import Message
 
     rng = random.Random(seed)

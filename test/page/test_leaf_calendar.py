@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Leaves over the year."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from tree_sway.core.species.species import SPECIES
 from tree_sway.errors import ParameterError
 from tree_sway.growth.growing import grow
 from tree_sway.page.leaf_calendar import is_bare, leaf_share, species_in_month
+from tree_sway.page.session import Choices
 
 OAK = SPECIES['oak']
 
@@ -64,3 +67,10 @@ def test_damping_lies_between_bare_and_in_leaf() -> None:
 def test_a_month_outside_the_year_is_refused() -> None:
     with pytest.raises(ParameterError, match='month'):
         leaf_share(OAK, 14.0)
+
+
+@pytest.mark.parametrize(('month', 'northern'), [(1.5, 7.5), (7.5, 1.5), (13.0, 7.0)])
+def test_the_south_is_half_a_year_ahead(month: float, northern: float) -> None:
+    choices = Choices('oak', month=month)
+    assert choices.northern_month == pytest.approx((month - 1.0) % 12.0 + 1.0)
+    assert replace(choices, is_south=True).northern_month == pytest.approx(northern)

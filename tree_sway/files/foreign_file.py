@@ -3,12 +3,14 @@
 """
 What a file is that none of our readers takes, and what to give instead.
 
-Its suffix tells, or in `foreign_files.csv` how a file ``begins``, without its spaces.
+Its suffix tells, or in `foreign_files.csv` how a file ``begins``, as a regular
+expression without its spaces.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+import re
 
 from tree_sway.tables import table_beside
 
@@ -23,7 +25,7 @@ def foreign_file(path: Path, head: str = '') -> tuple[str, str]:
     """
     if head:
         first = ''.join(head[:400].split())
-        found = (each for each in _FOREIGN if each['begins'] and first.startswith(each['begins']))
+        found = (each for each in _FOREIGN if each['begins'] and re.match(each['begins'], first))
     else:
         suffix = path.suffix.lower()
         found = (each for each in _FOREIGN if suffix in each['suffixes'].split())

@@ -4,10 +4,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 import json
+import re
 from typing import Any
 
 from tree_sway.errors import FormatError
+from tree_sway.files.column_names import rank_of
+
+DEEPEST = 12
+_DECIMAL = re.compile(r'-?\d+,\d+')
 
 
 def parsed(text: str, kind: str = 'JSON') -> Any:
@@ -16,6 +22,17 @@ def parsed(text: str, kind: str = 'JSON') -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         raise FormatError(f'not {kind}: {error}', cure='save it again whole') from None
+
+
+def document_of(lines: Sequence[str], kind: str = 'JSON') -> Any:
+    """Return a document of several lines, or a list of those that are one each."""
+    try:
+        return parsed('\n'.join(lines), kind)
+    except FormatError:
+        filled = [line for line in lines if line.strip()]
+        if not (filled and filled[0].rstrip().endswith('}')):
+            raise
+        return [parsed(line, kind) for line in filled]
 
 
 def cell_of(value: Any) -> str:
@@ -32,3 +49,45 @@ def object_of(value: Any) -> dict[str, Any]:
 def list_of(value: Any) -> list[Any]:
     """Return a list of JSON; an empty one in place of any other value."""
     return value if isinstance(value, list) else []
+
+
+def text_of(value: Any) -> str:
+    """Return a value as a cell with a decimal point; empty for true and false."""
+    text = '' if isinstance(value, bool) else cell_of(value)
+    return text.replace(',', '.') if _DECIMAL.fullmatch(text) else text
+
+
+def flat(
+    node: Mapping[str, Any], before: str = '', depth: int = 0, *, lists: bool = False
+) -> Iterator[tuple[str, str]]:
+    """
+    Yield name and text of each value in an object, with the names of its groups before it.
+
+    Three or four numbers in a list are those of axes. Objects in a list have values beside their
+    names, as in Frost; with ``lists`` others count as well.
+    """
+    for name, each in node.items():
+        whole = f'{before}{name}'
+        if isinstance(each, dict) and depth < DEEPEST:
+            yield from flat(each, f'{whole}.', depth + 1, lists=lists)
+        elif isinstance(each, list):
+            if len(each) in (3, 4) and not any(isinstance(item, dict | list) for item in each):
+                axes = zip('xyzw', each, strict=False)
+                yield from ((f'{whole}.{axis}', text_of(item)) for axis, item in axes)
+            for item in map(object_of, each if depth < DEEPEST else ()):
+                if 'value' in item:
+                    inside = f'{next(iter(item.values()))}.'
+                    yield from flat(item, inside, depth + 1, lists=lists)
+                elif lists:
+                    yield from flat(item, f'{whole}.', depth + 1, lists=True)
+        else:
+            yield whole, text_of(each)
+
+
+def unit_beside(record: Mapping[str, str], name: str) -> str | None:
+    """Return the unit that is beside a value, as ``unitCode`` is; of a wind it is the speed's."""
+    if rank_of(name, 'wind_direction') is not None and not name.endswith('.value'):
+        return None
+    group = name.rpartition('.')[0]
+    beside = (f'{group}.{word}' for word in ('unitCode', 'unit', 'units'))
+    return next((record[each] for each in beside if each in record), None)

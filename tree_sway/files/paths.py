@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
-from tree_sway.errors import FormatError, inside
+from tree_sway.errors import FormatError, inside, ParameterError
 
 P = ParamSpec('P')
 T = TypeVar('T')
@@ -20,8 +20,10 @@ def path_of(name: str | Path) -> Path:
     """
     Return a path from text: ``~`` is the home folder.
 
-    Raises a `FormatError` for a user that does not exist, or an impossible path.
+    Raises a `FormatError` for a user that does not exist, or an impossible path, and a
+    `ParameterError` for what is no path.
     """
+    refuse_no_path(name)
     text = str(name)
     try:
         path = Path(text).expanduser()
@@ -36,6 +38,17 @@ def path_of(name: str | Path) -> Path:
         reason = error.strerror if isinstance(error, OSError) else error
         raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
     return path
+
+
+def refuse_no_path(name: object) -> None:
+    """Raise a `ParameterError` for what is neither text nor a path."""
+    if not isinstance(name, str | os.PathLike):
+        is_table = hasattr(name, 'to_csv')
+        cure = "write it to one first: frame.to_csv('table.csv', index=False)" * is_table
+        raise ParameterError(
+            f'a {type(name).__name__}, where the path of a file is expected',
+            cure=cure or "give its name, as 'oak.yaml'",
+        )
 
 
 def of_file(read: Callable[Concatenate[Path, P], T]) -> Callable[Concatenate[str | Path, P], T]:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 import re
@@ -18,72 +18,25 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
 from tree_sway.files.time_stamps import dates, Times, times_of, unwrapped
 
-Join = Callable[[Sequence[str]], str]
-
-
-def _date_and_time(parts: Sequence[str]) -> str:
-    return f'{parts[0]} {parts[1]}'
-
-
-def _date_and_hour(parts: Sequence[str]) -> str:
-    day = parts[0].partition('T00:')[0]
-    return f'{day} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
-
-
-def _date_and_digits(parts: Sequence[str]) -> str:
-    clock = parts[1].replace(':', '').zfill(4)
-    return f'{parts[0]} {clock[:-2]}:{clock[-2:]}'
-
-
-def _day_of_year(parts: Sequence[str]) -> str:
-    year, day, clock = parts
-    if not (year.isdigit() and day.isdigit()):
-        return ''
-    return _date_and_digits((str(np.datetime64(year, 'D') + int(day) - 1), clock))
-
-
-def _date_and_clock(parts: Sequence[str]) -> str:
-    year, month, day, clock = parts
-    return f'{year}-{month}-{day} {clock}'
-
-
-def _numbers(parts: Sequence[str]) -> str:
-    if not all(part.isdigit() for part in parts):
-        return ''
-    year, month, day, hour, minute = (*map(int, parts), 0, 0)[:5]
-    century = 0 if year >= 100 else 1900 if year > 50 else 2000
-    return f'{century + year}-{month}-{day} {hour}:{minute:02d}'
-
-
-def _seconds(parts: Sequence[str]) -> str:
-    return f'{parts[0]}.{parts[1].zfill(9)}'
-
-
-_JOINS: dict[str, Join] = {
-    'seconds, nanoseconds': _seconds,
-    'numbers': _numbers,
-    'date, hour': _date_and_hour,
-    'date, digits': _date_and_digits,
-    'date, time': _date_and_time,
-    'year, month, day, time': _date_and_clock,
-    'year, day, digits': _day_of_year,
-}
-PARTS = tuple((tuple(names.split()), _JOINS[join]) for names, join in TIME_PARTS.items())
-"""Columns that make a time together, and how."""
+PARTS = {tuple(names.split()): form for names, form in TIME_PARTS.items()}
+"""Columns that make a time together, and the form of a date or of seconds with all of them."""
 _LOOKED_AT = 20
 """Rows that are looked at for which of several columns has the time."""
 
-_RATE = re.compile(r'(?:rate|frequency)\W*(\d+\.?\d*)\s*Hz|\bat (\d+\.?\d*) Hz', re.IGNORECASE)
+_RATE = re.compile(
+    r'(?:(?:rate|frequency)\W*|\bat )(\d+\.?\d*)\s*Hz|Delta_X\s+(\d+[.,]\d+)', re.IGNORECASE
+)
+"""Samples per second, or the seconds of one as in files of LabVIEW."""
 
 _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
 
 
-def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | None:
-    """Columns of the time, how they are joined, and the factor to [s]; None without a time."""
+def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
+    """Columns of the time, the form of several, and the factor to [s]; None without a time."""
     names = [folded(name_and_unit(column, 'time')[0]) for column in table.columns]
-    for wanted, join in PARTS:
+    for wanted, form in PARTS.items():
         if all(name in names for name in wanted):
-            return [names.index(name) for name in wanted], join, 1.0
+            return [names.index(name) for name in wanted], form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
     if not clocks and names[0] == '' and _are_dates(table.cells(0, first)):
@@ -92,15 +45,18 @@ def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | Non
         return None
     clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
     if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
-        return [clocks[0]], None, 1.0
+        return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
-    return [clocks[0]], None, table.known_factor('time', unit) if unit else 1.0
+    return [clocks[0]], '', table.known_factor('time', unit) if unit else 1.0
 
 
 def counted_times(table: TextTable) -> Times | None:
     """Return times by the rate that is told above the header; None without one."""
-    rate = _RATE.search('\n'.join(table.above))
-    hertz = float(rate[1] or rate[2]) if rate else 0.0
+    told = _RATE.search('\n'.join(table.above))
+    if told is None:
+        return None
+    rate, step = (float((each or '0').replace(',', '.')) for each in told.groups())
+    hertz = 1.0 / step if step else rate
     if hertz <= 0.0:
         return None
     rows = np.arange(float(len(table.texts)))
@@ -128,16 +84,21 @@ def _run_on(cells: Sequence[str]) -> bool:
 
 
 def row_times(
-    table: TextTable, columns: Sequence[int], join: Join | None, factor: float, rows: list[int]
+    table: TextTable, columns: Sequence[int], form: str, factor: float, rows: list[int]
 ) -> Times:
     """Return the times of some rows, in UTC where the table says its zone."""
     cells = [table.cells(column, rows) for column in columns]
-    stamps = cells[0] if join is None else [join(parts) for parts in zip(*cells, strict=True)]
+    stamps = [_joined(form, parts) for parts in zip(*cells, strict=True)] if form else cells[0]
     times = _of_one_year(times_of(stamps, factor))
-    if join is None and factor == 1.0 and times.epoch is None and not times.note:
+    if not form and factor == 1.0 and times.epoch is None and not times.note:
         times = replace(times, note=_doubt(table, columns[0], times))
     zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
     return times if zone is None or times.epoch is None else _in_utc(times, zone[1])
+
+
+def _joined(form: str, parts: Sequence[str]) -> str:
+    """Return the date of its parts; a date alone may have a midnight behind it."""
+    return form.format(parts[0].partition('T00:')[0], *parts[1:])
 
 
 def _of_one_year(times: Times) -> Times:

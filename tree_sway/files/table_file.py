@@ -40,6 +40,8 @@ _MAX_COLUMNS = 10_000
 _MOST_LINES = 50
 """Lines of a row at most."""
 _MOST_UNITS = 6
+_LOOKED_AT = 200
+"""Rows that are looked at for whether a column has a cell."""
 _MEND = 'correct the cell or remove the row'
 _NAME = 'write names and units of its columns above it, as time,ax [g] or time,dbh [cm]'
 _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
@@ -106,9 +108,12 @@ class TextTable:
         return Column(found[0], self.factor_of(found[0], quantity)) if found else None
 
     def find_all(self, quantity: str) -> list[int]:
-        """Places of all columns of a quantity, in the order of their names in `COLUMNS`."""
+        """Places of a quantity's columns in the order of their names, empty ones last."""
         ranks = [(rank_of(column, quantity), index) for index, column in enumerate(self.columns)]
-        return [index for _, index in sorted(each for each in ranks if each[0] is not None)]
+        found = [index for _, index in sorted(each for each in ranks if each[0] is not None)]
+        first = range(min(len(self.texts), _LOOKED_AT))
+        is_chosen = len(found) > 1
+        return sorted(found, key=lambda each: is_chosen and not any(self.cells(each, first)))
 
     def factor_of(self, index: int, quantity: str) -> float:
         """Factor to SI of a column of a quantity; a `FormatError` for an unknown unit."""

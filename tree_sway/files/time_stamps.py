@@ -3,10 +3,11 @@
 """
 Times of loggers, stations and services: dates in any usual order, 12-hour clocks, and numbers.
 
-A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024`` or ``202403011200``,
-with a time of 24 or of 12 hours, and maybe a zone. Whether ``3/1/24`` has the month first is seen
-in the whole column. Numbers are seconds, or if they are as large as the time since 1970 in s, ms,
-us or ns, that; or the days of Excel, of MATLAB, or Julian ones.
+A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024``, ``202403011200`` or
+the day of a year, ``2024-061``, with a time of 24 or of 12 hours, and maybe a zone. Whether
+``3/1/24`` has the month first is seen in the whole column. Numbers are seconds, or if they are as
+large as the time since 1970 in s, ms, us or ns, that; or the days of Excel, of MATLAB, or Julian
+ones.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ _DATES = (
     r'(?P<day>\d\d)(?P<month>\d\d)(?P<year>(19|20)\d\d)',
     r'(?P<day>\d\d?)[- ](?P<month>[A-Za-z]{3})[a-z]*[-, ]+(?P<year>\d{4}|\d\d)',
     r'(?P<month>[A-Za-z]{3})[a-z]* (?P<day>\d\d?),? (?P<year>\d{4})',
+    r'(?P<year>\d{4})-(?P<of_year>\d{3})(?!\d)',
 )
 _CLOCK = (
     r'(?:[T,_: ]*(?P<hour>\d\d?)(?::?(?P<minute>\d\d))?(?::?(?P<seconds>\d\d(?:[.,:]\d+)?))?'
@@ -254,6 +256,9 @@ def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, in
     if match.re is _ORDERED:
         one, two = int(match['first']), int(match['second'])
         return (year, one, two) if is_month_first else (year, two, one)
+    if 'of_year' in match.re.groupindex:
+        day = date(year, 1, 1) + timedelta(days=int(match['of_year']) - 1)
+        return day.year, day.month, day.day
     month = match['month'].lower()
     number = _MONTHS.index(month) + 1 if month.isalpha() else int(month)
     return year, number, int(match['day'])

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Leaves over the year, for a tree in central Europe.
+Leaves over the year, for a tree in central Europe; in the south it is half a year later.
 
 Oaks turn on 19 October (mean of 2011 to 2023, Deutscher Wetterdienst, phenological clock); leaves
 unfold in late April and fall within a month about early November, in round numbers. Every
@@ -21,6 +21,8 @@ from tree_sway.core.tree import Tree
 
 FIRST_MONTH, LAST_MONTH, SUMMER = 1.0, 13.0, 7.5
 """Begin and end of the year, and a time when trees are in full leaf, in months from 1."""
+HALF_YEAR = 6.0
+"""Time by which the seasons south of the equator are apart, in months."""
 
 _UNFOLDING = (4.6, 5.5)
 _YOUNG = (4.6, 6.2)

@@ -25,7 +25,7 @@ from tree_sway.files.export import morphing_tree
 from tree_sway.growth import BUILTIN_TREES, stem_growth
 from tree_sway.live import LiveWind, MotionFeed
 from tree_sway.newest import Newest
-from tree_sway.page.leaf_calendar import SUMMER
+from tree_sway.page.leaf_calendar import HALF_YEAR, SUMMER
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.sensors_told import sensors_told
 from tree_sway.page.server import PageServer
@@ -79,6 +79,8 @@ class Choices:
         Which of the trees of that species and height, a whole number as text.
     month
         Time of the year of a tree that is grown, in months from 1: `leaf_share`.
+    is_south
+        Whether that tree stands south of the equator, half a year ahead.
     sensor_at
         Place of the motion sensor on the tree, as `place_on` takes it; as it began if empty.
     gusts, anemometer_distance
@@ -94,9 +96,15 @@ class Choices:
     age: float = 0.0
     individual: str = '0'
     month: float = SUMMER
+    is_south: bool = False
     sensor_at: str = ''
     gusts: str = 'sample'
     anemometer_distance: float = 0.0
+
+    @property
+    def northern_month(self) -> float:
+        """Month in which trees of the north are as this one is."""
+        return (self.month + HALF_YEAR * self.is_south - 1.0) % 12.0 + 1.0
 
     @property
     def is_grown(self) -> bool:

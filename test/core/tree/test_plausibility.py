@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.preparation import prepare
 from tree_sway.core.species.species import species_keys, species_named
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.tree import Tree
@@ -20,6 +22,7 @@ from tree_sway.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway.growth.growing import grow
 
 OAK = species_named('oak')
+SHAPE = ('start', 'end', 'base_diameter', 'tip_diameter')
 
 
 @cache
@@ -131,3 +134,12 @@ def test_whatever_is_given_is_refused_or_reported_in_sentences(
     except (ParameterError, TreeError) as error:
         reported = (error.cure,)
     assert all(len(each) > 20 for each in reported)
+
+
+@pytest.mark.parametrize(('unit', 'factor'), [(1e-3, '0.001'), (1e-2, '0.01'), (1e3, '1000')])
+@pytest.mark.parametrize('make', [prepare, make_simulator])
+def test_a_tree_that_is_not_in_metres_is_no_simulator(unit, factor, make):
+    tree = oak(20.0)
+    arrays = {name: getattr(tree, name) / unit for name in SHAPE}
+    with pytest.raises(TreeError, match=f'a height of .* m, .* multiply .* by {factor}$'):
+        make(replace(tree, **arrays))

@@ -70,7 +70,7 @@ def test_a_lone_file_without_its_metadata(tmp_path):
 
 def test_topic_is_chosen(tmp_path):
     bag = write_bag(tmp_path / 'bag', dict(zip(('/a', '/b'), WIND_TYPES, strict=False)))
-    with pytest.raises(FormatError, match='wind on 2 topics; choose a topic: /a, /b'):
+    with pytest.raises(FormatError, match='choose a topic: /a, /b, as --wind-option topic=/a'):
         read_bag_wind(bag)
     with pytest.raises(FormatError, match="no wind on topic 'c'; choose a topic: /a, /b"):
         read_bag_wind(bag, topic='c')

@@ -61,31 +61,31 @@ def test_heading_and_rate():
 )
 def test_left_and_right_of_the_bow(body, velocity):
     said = parse_nmea(f'${body}*{checksum_of(body)}\r\n')
-    np.testing.assert_allclose(said.velocity, velocity, atol=1e-12)
-    x, y, _ = said.velocity
+    np.testing.assert_allclose(said.velocity(0.0), velocity, atol=1e-12)
+    x, y, _ = said.velocity(0.0)
     turned = parse_nmea(f'${body}', heading=pi / 2)
-    np.testing.assert_allclose(turned.velocity[:2], (y, -x), atol=1e-12)
+    np.testing.assert_allclose(turned.velocity(0.0)[:2], (y, -x), atol=1e-12)
 
 
 @pytest.mark.parametrize(
     ('line', 'refusal'),
     [
-        ('$IIVWR,190.0,L,5.0,M', "no usable angle up to 180: '190.0'"),
+        ('$IIVWR,190.0,L,5.0,M', "no angle up to 180: '190.0'"),
         ('$IIVWR,90.0,X,5.0,M', "no side L or R: 'X'"),
         ('$IIVWR,90.0,R,5.0,C', 'no speed with a unit'),
-        ('$IIVWT,90.0,R,-5.0,M', "no usable speed: '-5.0'"),
-        ('$IIMWV,,R,12.0,N,A', 'no angle, the field is empty'),
-        ('$IIMWV,270,R,,N,A', 'no speed, the field is empty'),
+        ('$IIVWT,90.0,R,-5.0,M', "speed is '-5.0'"),
+        ('$IIMWV,,R,12.0,N,A', "direction is ''"),
+        ('$IIMWV,270,R,,N,A', "speed is ''"),
         ('$IIMWV,270,R,12.0,X,A', "no unit K, M, N or S: 'X'"),
-        ('$IIMWD,,T,,M,10.0,N,5.1,M', 'no direction, the field is empty'),
-        ('$IIMWD,45.0,T,,M,,N,fast,M', "no usable speed: 'fast'"),
+        ('$IIMWD,,T,,M,10.0,N,5.1,M', "direction is ''"),
+        ('$IIMWD,45.0,T,,M,,N,fast,M', "speed is 'fast'"),
         ('$IIMWV,270,R,12.0,N,A*1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A*+1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A' + ',' * 2000, 'a line of 2021 characters'),
     ],
 )
 def test_refusals(line, refusal):
-    assert parse_nmea(line).refusal == refusal
+    assert parse_nmea(line).reason == refusal
 
 
 @pytest.mark.parametrize('line', ['', '$', '$IIMWV', '$IIMWV,1', '$PMWV,1,R,2,N,A', '$IIHDT,1,T'])

@@ -7,9 +7,9 @@ import random
 
 import pytest
 
+from tree_sway.files.wind.instruments import read_instrument
 from tree_sway.files.wind.nmea import parse_nmea
-from tree_sway.files.wind.sensor_line import SensorLine
-from tree_sway.files.wind.sonic_ascii import parse_sonic
+from tree_sway.files.wind.reading import Refusal, WindReading
 
 GOOD = [
     '$IIMWV,270.0,T,10.0,M,A*0C',
@@ -76,16 +76,15 @@ def fuzz(n_lines: int, seed: int) -> tuple[int, int]:
     taken = refused = 0
     for _ in range(n_lines):
         line = fuzzed(rng)
-        for said in (parse_nmea(line), parse_sonic(line)):
+        for said in (parse_nmea(line), read_instrument(line)):
             if said is None:
                 continue
-            assert isinstance(said, SensorLine)
-            if said.velocity is None:
-                assert 0 < len(said.refusal) < 200
+            if isinstance(said, Refusal):
+                assert 0 < len(said.reason) < 200
                 refused += 1
             else:
-                assert said.refusal == ''
-                assert all(math.isfinite(value) for value in said.velocity)
+                assert isinstance(said, WindReading)
+                assert all(math.isfinite(value) for value in said.velocity(0.0))
                 taken += 1
     return taken, refused
 

@@ -9,6 +9,7 @@ import math
 from typing import Protocol, runtime_checkable
 
 from tree_sway.core.species import Species, species_named, typical_root_stiffness
+from tree_sway.core.tree.plausibility import refuse_no_metres
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
@@ -38,6 +39,8 @@ def tree_and_species(
         If one of the two has a wrong type.
     SpeciesError
         A species that no table knows.
+    TreeError
+        A tree whose size is not in metres.
 
     """
     if not isinstance(tree, Tree):
@@ -46,6 +49,7 @@ def tree_and_species(
         what = f'a {type(tree).__name__}, where a tree is expected'
         cure = 'give the result of open_tree, grow or tree_from_segments'
         raise ParameterError(what, where='tree', cure=cure)
+    refuse_no_metres(tree)
     if species is None:
         return tree, species_named(tree.species)
     if not isinstance(species, Species):

@@ -22,6 +22,10 @@ from tree_sway.errors import ParameterError, TreeError
 _WOOD = {'modulus': ('Pa', 1e7, 5e11), 'density': ('kg/m^3', 40.0, 10_000.0)}
 """Unit and limits of the values of wood."""
 _HEIGHT_LIMIT = 250.0
+_SMALLEST = 0.03
+"""Height that no tree falls below [m]: a seedling of a few days."""
+_IN_MM = 3000.0
+"""Height above which numbers are millimetres rather than centimetres."""
 _DIAMETER_LIMIT = 20.0
 _SLENDERNESS_LIMIT = (2.0, 2000.0)
 _LEAN = 60.0
@@ -50,6 +54,19 @@ def refuse_implausible(tree: Tree, species: Species) -> None:
             where=tree.name,
             cure='give metres, or the units of its file: --option length_unit=0.01 if positions '
             'are in cm, --option diameter_unit=0.01 if diameters are in cm, 0.001 if in mm',
+        )
+
+
+def refuse_no_metres(tree: Tree) -> None:
+    """Raise a `TreeError` for a tree whose size is not in metres, with the likely factor."""
+    height = _size(tree)[0]
+    if not _SMALLEST <= height <= _HEIGHT_LIMIT:
+        large = 0.001 if height > _IN_MM else 0.01
+        factor = 1000.0 if height < _SMALLEST else large
+        raise TreeError(
+            f'a height of {height:.4g} m, which no tree has',
+            where=tree.name,
+            cure=f'give metres: multiply positions and diameters by {factor:g}',
         )
 
 

@@ -11,6 +11,7 @@ import sys
 from typing import Any
 
 from tree_sway.commands import refuse_unused
+from tree_sway.core.checks import within
 from tree_sway.core.settings import GUSTS
 from tree_sway.core.wind import shorter_than
 from tree_sway.errors import ParameterError
@@ -21,11 +22,11 @@ from tree_sway.files.commands.arguments import (
     add_tree_arguments,
 )
 from tree_sway.files.wind import read_wind, WindRecord
-from tree_sway.parameters import SWAY
 from tree_sway.simulation import RecordedWind, SimulatedWind
 
 _USUAL_SPEED = 6.0
 """Mean speed of the simulated wind where none is given [m/s]."""
+_FASTEST = 40.0
 
 
 def add_wind_arguments(
@@ -90,9 +91,12 @@ def distance_settings(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def simulated_speed(arguments: argparse.Namespace, usual: float = _USUAL_SPEED) -> float:
-    """Return the mean speed of the simulated wind in [m/s]."""
-    return usual if arguments.speed is None else float(arguments.speed)
+def simulated_speed(
+    arguments: argparse.Namespace, usual: float = _USUAL_SPEED, *, above: bool = False
+) -> float:
+    """Return the mean speed of the simulated wind in [m/s], from 0, or ``above`` it."""
+    speed = usual if arguments.speed is None else float(arguments.speed)
+    return within('--speed', speed, 0.0, _FASTEST, 'm/s', above=above)
 
 
 def refuse_unused_wind(arguments: argparse.Namespace) -> None:
@@ -126,7 +130,7 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
         if short := shorter_than(record.duration, getattr(arguments, 'seconds', None)):
             print(f'note: {short}', file=sys.stderr)
         return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
-    return SimulatedWind(SWAY['mean_speed'].checked(simulated_speed(arguments)))
+    return SimulatedWind(simulated_speed(arguments))
 
 
 def add_sway_arguments(

@@ -18,7 +18,16 @@ from typing import Any, NamedTuple
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import rank_of
-from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
+from tree_sway.files.json_values import (
+    cell_of,
+    DEEPEST,
+    document_of,
+    flat,
+    list_of,
+    object_of,
+    text_of,
+    unit_beside,
+)
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.long import Value, wide_table
 from tree_sway.files.layouts.station_messages import (
@@ -28,9 +37,8 @@ from tree_sway.files.layouts.station_messages import (
     tempest_values,
 )
 from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import finite
 
-_DEEPEST = 12
-_DECIMAL = re.compile(r'-?\d+,\d+')
 _BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 Cells = dict[str, str]
 
@@ -49,7 +57,7 @@ def _is_json(lines: Sequence[str]) -> bool:
 
 def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
-    document = _document(lines)
+    document = document_of(lines)
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
@@ -76,7 +84,7 @@ def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
 def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     """Return the wind of deltas of Signal K; None for other messages."""
     found = [
-        (line, each.time, each.path.removeprefix(SIGNALK_WIND), _text(each.value))
+        (line, each.time, each.path.removeprefix(SIGNALK_WIND), text_of(each.value))
         for line, message in enumerate(messages, start=1)
         for each in signalk_values(message)
     ]
@@ -95,20 +103,9 @@ def _of_deltas(messages: list[Any], source: str) -> TextTable | None:
     return None
 
 
-def _document(lines: list[str]) -> Any:
-    """Return a document of several lines, or a list of those that are one each."""
-    try:
-        return parsed('\n'.join(lines))
-    except FormatError:
-        filled = [line for line in lines if line.strip()]
-        if not filled[0].rstrip().endswith('}'):
-            raise
-        return [parsed(line) for line in filled]
-
-
 def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTable]:
     """Yield all tables of a document."""
-    if depth > _DEEPEST:
+    if depth > DEEPEST:
         return
     if isinstance(node, dict):
         quantities = list(_quantities(node, ''))
@@ -122,12 +119,34 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
         states = _lists_of_states(node)
+        node = list(_samples(node)) or node
         if states:
             yield _of_states(states, source)
         elif node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
         for each in [] if states else node:
             yield from _tables(each, units, source, depth + 1)
+
+
+def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
+    """
+    Yield the samples of messages with a time and a list of samples each, at even times.
+
+    So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list.
+    """
+    bodies = [object_of([*object_of(each).values(), None][0]) or each for each in messages]
+    names = [*object_of(bodies[0])] if bodies[1:] and all(map(object_of, bodies)) else []
+    clock = next((name for name in names if rank_of(name, 'time') is not None), '')
+    batch = next((name for name in names if list_of(bodies[0][name])[:1] != []), '')
+    told = (finite(cell_of(each.get(clock))) for each in bodies)
+    starts = [start for start in told if start is not None] if batch else []
+    if len(starts) < max(len(bodies), 2):
+        return
+    ends = [*starts[1:], 2.0 * starts[-1] - starts[-2]]
+    for body, start, end in zip(bodies, starts, ends, strict=True):
+        samples = list_of(body.get(batch))
+        for number, sample in enumerate(samples):
+            yield {clock: start + number * (end - start) / len(samples), batch: sample}
 
 
 def _said_units(node: dict[str, Any]) -> Cells:
@@ -147,7 +166,7 @@ def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | Non
         return None
     if any(isinstance(column[0], dict | list) for column in columns):
         return None
-    cells = [map(_text, column) for column in columns]
+    cells = [map(text_of, column) for column in columns]
     rows = list(zip(*cells, strict=True))
     units_of_columns = [_unit(units.get(name)) for name in names]
     return table_of_cells(names, rows, source, units=units_of_columns)
@@ -157,9 +176,9 @@ def _rows(node: dict[str, Any], source: str) -> TextTable | None:
     """Return the table of a list of rows, beside a list of its names and maybe one of units."""
     lists = [each for each in node.values() if isinstance(each, list) and each]
     for rows in (each for each in lists if isinstance(each[0], list)):
-        heads = [[*map(_text, each)] for each in lists if len(each) == len(rows[0])]
+        heads = [[*map(text_of, each)] for each in lists if len(each) == len(rows[0])]
         if any(map(any, heads)):
-            cells = [[*map(_text, list_of(row))] for row in rows]
+            cells = [[*map(text_of, list_of(row))] for row in rows]
             return table_of_cells(heads[0], cells, source, units=[*heads, []][1])
     return None
 
@@ -170,40 +189,16 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     records = []
     empty: Cells = {}
     for each in node:
-        record = dict(_flat(each, '', 0))
+        record = dict(flat(each))
         if system:
             record['units'] = system
         records.append(record)
         empty |= dict.fromkeys(record, '')
     names = list(empty)
-    units_of_columns = [_unit(_unit_beside(records[0], name)) for name in names]
+    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
     titles = [units.get(f'#{name}', name) for name in names]
     return table_of_cells(titles, rows, source, units=units_of_columns)
-
-
-def _flat(node: dict[str, Any], before: str, depth: int) -> Iterator[tuple[str, str]]:
-    """Yield name and text of each value in a record, with the names of its groups before it."""
-    for name, each in node.items():
-        whole = f'{before}{name}'
-        if isinstance(each, dict) and depth < _DEEPEST:
-            yield from _flat(each, f'{whole}.', depth + 1)
-        elif isinstance(each, list):
-            # Values beside their names, as in Frost.
-            for item in each:
-                if isinstance(item, dict) and 'value' in item:
-                    yield from _flat(item, f'{next(iter(item.values()))}.', depth + 1)
-        else:
-            yield whole, _text(each)
-
-
-def _unit_beside(record: Cells, name: str) -> str | None:
-    """Return the unit that is beside a value, as ``unitCode`` is; of a wind it is the speed's."""
-    if rank_of(name, 'wind_direction') is not None and not name.endswith('.value'):
-        return None
-    group = name.rpartition('.')[0]
-    beside = (f'{group}.{word}' for word in ('unitCode', 'unit', 'units'))
-    return next((record[each] for each in beside if each in record), None)
 
 
 def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
@@ -212,7 +207,7 @@ def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
         if not isinstance(each, dict):
             continue
         if isinstance(each.get('list'), dict):
-            yield _Quantity(f'{before}{name}', _text(each.get('unit', '')), each['list'])
+            yield _Quantity(f'{before}{name}', text_of(each.get('unit', '')), each['list'])
         else:
             yield from _quantities(each, f'{name}_')
 
@@ -220,7 +215,7 @@ def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
 def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
     """Return the table of quantities, with a row for each time that any of them has."""
     values = [
-        (0, time, each.name, _text(value))
+        (0, time, each.name, text_of(value))
         for each in quantities
         for time, value in each.by_time.items()
     ]
@@ -244,18 +239,13 @@ def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
     for states in lists:
         name = ''
         for state in states:
-            name = _text(state.get('entity_id', name))
+            name = text_of(state.get('entity_id', name))
             if attributes := object_of(state.get('attributes')):
                 unit_of.setdefault(name, _unit(attributes.get('unit_of_measurement')))
-            time = _text(state.get('last_changed', state.get('last_updated')))
+            time = text_of(state.get('last_changed', state.get('last_updated')))
             if state['state'] not in ('unavailable', 'unknown'):
-                values.append((len(values) + 1, time, name, _text(state['state'])))
+                values.append((len(values) + 1, time, name, text_of(state['state'])))
     return wide_table(values, source, 'last_changed', unit_of)
-
-
-def _text(cell: Any) -> str:
-    text = '' if isinstance(cell, bool) else cell_of(cell)
-    return text.replace(',', '.') if _DECIMAL.fullmatch(text) else text
 
 
 def _unit(cell: Any) -> str:

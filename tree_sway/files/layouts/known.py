@@ -16,14 +16,13 @@ from tree_sway.files.layouts.json_tables import JSON
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.lines import LINES
 from tree_sway.files.layouts.long import LONG
-from tree_sway.files.layouts.meteoblue import METEOBLUE
 from tree_sway.files.layouts.monitor import MONITOR
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
 from tree_sway.files.table_file import TextTable
 
 _LAYOUTS = (
-    *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, METEOBLUE, MONITOR),
+    *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, MONITOR),
     *LINES,
     *LONG,
     PLAIN,

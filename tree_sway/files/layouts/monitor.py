@@ -19,11 +19,21 @@ from tree_sway.files.table_file import SEPARATORS, TextTable
 
 _CLOCK = 'monitor_time'
 _STAMP = re.compile(r'(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?(.*)')
-_PAIR = re.compile(r'([A-Za-z]\w*)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)[,;|\s]*')
+_PAIR = re.compile(
+    r'([A-Za-z][\w ]*?)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?|[NESW]{1,3}\b)'
+    r'\s*([A-Za-z°][\w°/^²]*)?(?:[,;|\s]+|$)'
+)
+"""Name, number or point of the compass, and maybe a unit."""
+
+
+def pairs_of(line: str) -> dict[str, str]:
+    """Return the values of a line by their names, with their units behind these."""
+    found = _PAIR.findall(line)
+    return {f'{name}_{unit}' if unit else name: value for name, value, unit in found}
 
 
 def _are_pairs(line: str) -> bool:
-    return len(_PAIR.findall(line)) > 1 and _PAIR.sub('', line) == ''
+    return len(pairs_of(line)) > 1 and _PAIR.sub('', line) == ''
 
 
 def _is_monitored(lines: Sequence[str]) -> bool:
@@ -43,8 +53,8 @@ def _read(lines: list[str], source: str) -> TextTable:
         pairs = zip(clocks, texts, strict=True)
         rows = [f'{clock}{separator}{text}' if clock else text for clock, text in pairs]
         return PLAIN.read(rows, source)
-    names = [name for name, _ in _PAIR.findall(filled[-1])]
-    values = [dict(_PAIR.findall(text)) for text in texts]
+    names = [*pairs_of(filled[-1])]
+    values = [pairs_of(text) for text in texts]
     cells = [
         (number, [clocks[number - 1], *(each.get(name, '') for name in names)])
         for number, each in enumerate(values, start=1)

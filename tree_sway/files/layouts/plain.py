@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import takewhile
 import re
 
 from tree_sway.files.column_names import (
@@ -56,7 +57,7 @@ def header_line(lines: Sequence[str]) -> int | None:
         if is_comment:
             filled = _cells(_uncommented(line))
         if len(filled) > 1 and 2 * n_numbers <= len(filled):
-            count = sum(map(is_known, {*filled[:_MOST_COLUMNS]}))
+            count = sum(map(is_known, {*_without_place(filled[:_MOST_COLUMNS])}))
             (hashed if is_comment else plain)[number] = count
     found = plain if max(plain.values(), default=0) > 1 else plain | hashed
     most = max(found, key=lambda number: found[number], default=None)
@@ -100,7 +101,18 @@ def _read(lines: list[str], source: str) -> TextTable:
     header = _uncommented(lines[first])
     # Of NDBC's two columns mm and MM one is the minute.
     lines[first] = header.replace(' mm ', ' minute ') if ' MM ' in header else header
-    return _without_rows_of_units(replace(parse_table(lines, source), above=above))
+    table = parse_table(lines, source)
+    names = tuple(_without_place(table.columns))
+    return _without_rows_of_units(replace(table, columns=names, above=above))
+
+
+def _without_place(names: Sequence[str]) -> Sequence[str]:
+    """Return names without the place that all unknown ones begin with: ``Basel Wind Speed``."""
+    unknown = [name for name in names if not is_known(name)]
+    words = zip(*map(str.split, unknown), strict=False) if len(unknown) > 1 else ()
+    place = ' '.join(each[0] for each in takewhile(lambda each: len({*each}) == 1, words))
+    short = [name.removeprefix(place).strip() for name in names]
+    return short if any(map(is_known, {*short} - {*names})) else names
 
 
 def _without_rows_of_units(table: TextTable) -> TextTable:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from tree_sway.faces import face
 
 if TYPE_CHECKING:
+    from tree_sway.files.json_values import flat as flat
+    from tree_sway.files.json_values import unit_beside as unit_beside
     from tree_sway.files.motion.imu_bag import read_imu_bag as read_imu_bag
     from tree_sway.files.motion.motion_file import read_motion as read_motion
     from tree_sway.files.motion.motion_record import MotionRecord as MotionRecord

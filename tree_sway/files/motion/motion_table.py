@@ -59,6 +59,8 @@ _LARGEST = 0.999
 """Share of the rates that the largest exceeds: a few more may be faults."""
 _SLOWEST = 1.0
 """Longest time between samples that may tell a sway in [s]."""
+_OLDEST = 946_684_800.0
+"""Date before which a number is no time since 1970: 2000-01-01 [s]."""
 _FINER = {'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9}
 _USUAL_STEP = (2e-3, 0.2)
 """Times between samples that tell the unit of their times in [s]."""
@@ -297,7 +299,8 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
     step = float(np.median(steps)) if len(steps) else 0.0
     name = '' if column is None else table.columns[column]
     has_unit = column is None or table.unit_of(column, 'time') or 'sec' in name.lower()
-    for unit, factor in () if has_unit or times.epoch is not None else _FINER.items():
+    is_dated = (times.epoch or 0.0) > _OLDEST
+    for unit, factor in () if has_unit or is_dated else _FINER.items():
         if step > _SLOWEST and _USUAL_STEP[0] <= step * factor < _USUAL_STEP[1]:
             note = f'no unit of {name} in the header: taken in {unit}, a sample every {step:.4g}'
             return Times(seconds * factor, None, note)

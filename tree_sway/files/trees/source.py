@@ -18,7 +18,7 @@ from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.kinds import expected
-from tree_sway.files.paths import path_of
+from tree_sway.files.paths import path_of, refuse_no_path
 from tree_sway.files.scenes.inventory.inventory_file import lacking_columns
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
@@ -70,6 +70,7 @@ def open_tree(
         An error of reading the file.
 
     """
+    refuse_no_path(name_or_path)
     text = str(name_or_path)
     if text in BUILTIN_TREES:
         if options:

@@ -46,7 +46,7 @@ def read_bag_wind(
     WindConvention(direction_convention)  # refused before the file is read
     source = str(path)
     bag = read_bag(path, WIND_TYPES)
-    chosen = bag.chosen(topic, WIND_TYPES, 'wind', path)
+    chosen = bag.chosen(topic, WIND_TYPES, 'wind', path, '--wind-option topic=')
     kind = bag.types[chosen]
     messages = bag.messages[chosen]
     rows = WindRows(source, row_name='message')

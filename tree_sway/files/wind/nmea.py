@@ -26,17 +26,12 @@ from math import pi
 from pathlib import Path
 import re
 
-from tree_sway.core.wind import velocity_of_bearing
 from tree_sway.errors import ParameterError
 from tree_sway.files.text_file import finite
+from tree_sway.files.wind.reading import Reading, Refusal
 from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.sensor_line import (
-    degrees_to_bearing,
-    line_of,
-    read_sensor_log,
-    SensorLine,
-    Velocity,
-)
+from tree_sway.files.wind.sensor_line import read_sensor_log, why_broken
+from tree_sway.files.wind.values import bearing_of, reading_of
 
 SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
 """
@@ -48,7 +43,7 @@ _UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
 _SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
 
 
-def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> SensorLine | None:
+def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Reading | None:
     """
     Parse a line of NMEA 0183 to the wind of a kind of `SENTENCES`; None for any other line.
 
@@ -76,11 +71,11 @@ def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Sen
         name = f'MWV {reference}'
     if name == 'XDR' and not {'A', 'S'} <= set(fields[::4]):
         return None
-    sent_sum = None if check is None else check[1:].strip().upper()
-    body = line[sentence.start() + 1 : sentence.start(3)]
+    sent_sum = None if check is None else check[1:].strip()
+    if why := why_broken(len(line), sent_sum, line[sentence.start() + 1 : sentence.start(3)]):
+        return Refusal(name, why)
     own_angle = declination if name in ('MWD', 'MDA') else heading
-    read = partial(_READERS[name[:3]], fields, own_angle)
-    return line_of(name, len(line), sent_sum, [body], read)
+    return _READERS[name[:3]](name, fields, own_angle)
 
 
 def read_nmea_wind(
@@ -113,74 +108,58 @@ def read_nmea_wind(
     return record if kind in ('MWD', 'MDA') else record.with_note(bow)
 
 
-def _mwv(fields: list[str], heading: float) -> Velocity | str:
+def _mwv(kind: str, fields: list[str], heading: float) -> Reading:
     if len(fields) < 5:
-        return f'{len(fields)} fields of 5'
+        return Refusal(kind, f'{len(fields)} fields of 5')
     angle, _, speed, unit, status = fields[:5]
     if status != 'A':
-        return f"status is '{status[:8]}', not A"
+        return Refusal(kind, f"status is '{status[:8]}', not A")
     if unit not in _UNITS:
-        return f"no unit K, M, N or S: '{unit[:8]}'"
-    return _wind('angle', angle, heading, speed, _UNITS[unit])
+        return Refusal(kind, f"no unit K, M, N or S: '{unit[:8]}'")
+    return reading_of(kind, speed, angle, factor=_UNITS[unit], turn=heading, interval=0.0)
 
 
-def _mwd(fields: list[str], declination: float) -> Velocity | str:
+def _mwd(kind: str, fields: list[str], declination: float) -> Reading:
     if len(fields) < 8:
-        return f'{len(fields)} fields of 8'
+        return Refusal(kind, f'{len(fields)} fields of 8')
     true, _, magnetic, _, knots, _, speed, _ = fields[:8]
-    is_magnetic = degrees_to_bearing(finite(true)) is None and magnetic != ''
+    is_magnetic = bearing_of(true) is None and magnetic != ''
     angle, turn = (magnetic, declination) if is_magnetic else (true, 0.0)
     is_in_knots = finite(speed) is None and finite(knots) is not None
     speed, unit = (knots, _KNOT) if is_in_knots else (speed, 1.0)
-    return _wind('direction', angle, turn, speed, unit)
+    return reading_of(kind, speed, angle, factor=unit, turn=turn, interval=0.0)
 
 
-def _wind(what: str, angle: str, turn: float, speed: str, unit: float) -> Velocity | str:
-    """Wind of the fields of an angle and a speed, or which of them has none."""
-    bearing = degrees_to_bearing(finite(angle))
-    size = finite(speed)
-    if bearing is None:
-        return _lacking(what, angle)
-    if size is None or size < 0.0:
-        return _lacking('speed', speed)
-    return velocity_of_bearing(size * unit, bearing + turn)
+def _mda(kind: str, fields: list[str], declination: float) -> Reading:
+    return _mwd(kind, fields[12:], declination)
 
 
-def _mda(fields: list[str], declination: float) -> Velocity | str:
-    return _mwd(fields[12:], declination)
-
-
-def _xdr(fields: list[str], heading: float) -> Velocity | str:
+def _xdr(kind: str, fields: list[str], heading: float) -> Reading:
     """Wind of transducers in groups of kind, value, unit and name."""
     groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
     angles = [each[1] for each in groups if each[0] == 'A' and each[2] == 'D']
     speeds = [(each[1], each[2]) for each in groups if each[0] == 'S']
     if not angles or not speeds:
-        return 'no angle in degrees with a speed'
+        return Refusal(kind, 'no angle in degrees with a speed')
     speed, unit = speeds[len(speeds) > 2]
-    return _mwv([angles[len(angles) > 2], 'R', speed, unit, 'A'], heading)
+    return _mwv(kind, [angles[len(angles) > 2], 'R', speed, unit, 'A'], heading)
 
 
-def _vwr(fields: list[str], heading: float) -> Velocity | str:
+def _vwr(kind: str, fields: list[str], heading: float) -> Reading:
     """Angle up to half a turn, left or right; the first given speed is used."""
     angle, side = [*fields, ''][:2]
     pairs = zip(fields[2::2], fields[3::2], strict=False)
     speeds = [each for each in pairs if finite(each[0]) is not None and each[1] in _UNITS]
     degrees = finite(angle)
     if degrees is None or not 0.0 <= degrees <= 180.0:
-        return _lacking('angle up to 180', angle)
+        return Refusal(kind, f"no angle up to 180: '{angle[:8]}'")
     if side not in ('L', 'R'):
-        return f"no side L or R: '{side[:8]}'"
+        return Refusal(kind, f"no side L or R: '{side[:8]}'")
     if not speeds:
-        return 'no speed with a unit'
+        return Refusal(kind, 'no speed with a unit')
     speed, unit = speeds[0]
-    from_bow = angle if side == 'R' else f'{360.0 - degrees}'
-    return _wind('angle', from_bow, heading, speed, _UNITS[unit])
-
-
-def _lacking(what: str, text: str) -> str:
-    """Reason of a refusal: a field is empty, or not what it should be."""
-    return f"no usable {what}: '{text[:8]}'" if text else f'no {what}, the field is empty'
+    from_bow = degrees if side == 'R' else 360.0 - degrees
+    return reading_of(kind, speed, from_bow, factor=_UNITS[unit], turn=heading, interval=0.0)
 
 
 _READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}

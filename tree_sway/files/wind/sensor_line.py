@@ -6,9 +6,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import reduce
-from math import radians
 from operator import xor
 from pathlib import Path
 import re
@@ -16,41 +14,20 @@ import re
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.time_stamps import times_of
+from tree_sway.files.wind.reading import Reading, Refusal
 from tree_sway.files.wind.record import WindRecord, WindRows
-
-Velocity = tuple[float, float, float]
 
 _MAX_LINE = 1024
 """Largest length of a line [characters]."""
-
-
-@dataclass(frozen=True, slots=True)
-class SensorLine:
-    """
-    Result of a line: velocity [m/s], east, north, up, or the reason of a refusal.
-
-    ``kind`` is its sentence or format.
-    """
-
-    kind: str
-    velocity: Velocity | None
-    refusal: str = ''
-
-
 STAMP = re.compile(
-    r'\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
+    r'(?<!\d)\s*[\[(]?(\d{10}(?:\.\d+)?(?=\D)|\d{13}(?=\D)'
     r'|\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d(?:\.\d+)?Z?)',
     re.ASCII,
 )
 """Time since 1970 in s or ms, or date and time, that a logger puts before a line."""
 
-ParseLine = Callable[[str], SensorLine | None]
+ParseLine = Callable[[str], Reading | None]
 """Parse a line; None if it is not about the wind. Never raises."""
-
-
-def degrees_to_bearing(degrees: float | None) -> float | None:
-    """Bearing in [rad] from degrees in [0, 360]; None outside, as for a sensor's error value."""
-    return None if degrees is None or not 0.0 <= degrees <= 360.0 else radians(degrees)
 
 
 def checksum_of(body: str) -> str:
@@ -58,25 +35,17 @@ def checksum_of(body: str) -> str:
     return f'{reduce(xor, body.encode("utf-8", "replace"), 0):02X}'
 
 
-def line_of(
-    kind: str,
-    length: int,
-    sent_sum: str | None,
-    bodies: Sequence[str],
-    read: Callable[[], Velocity | str],
-) -> SensorLine:
+def why_broken(length: int, sent_sum: str | None, body: str) -> str:
     """
-    Return the result of `read` for a line of a length in characters, if length and checksum fit.
+    Say why a line of a length in characters is broken; empty if it is not.
 
-    `sent_sum` is its checksum, of one of these bodies, None without one.
+    Its checksum, None without one, is that of its body, maybe with the marks of begin or end.
     """
     if length > _MAX_LINE:
-        found: Velocity | str = f'a line of {length} characters'
-    elif sent_sum is not None and sent_sum not in map(checksum_of, bodies):
-        found = 'wrong checksum'
-    else:
-        found = read()
-    return SensorLine(kind, None, found) if isinstance(found, str) else SensorLine(kind, found)
+        return f'a line of {length} characters'
+    bodies = (body, f'{body}\x03', f'\x02{body}')
+    is_right = sent_sum is None or sent_sum.upper() in map(checksum_of, bodies)
+    return '' if is_right else 'wrong checksum'
 
 
 def read_sensor_log(
@@ -106,11 +75,11 @@ def read_sensor_log(
         if said is None:
             continue
         rows = found.setdefault(said.kind, WindRows(str(path)))
-        if said.velocity is None:
-            rows.refuse(number, said.refusal)
+        if isinstance(said, Refusal):
+            rows.refuse(number, said.reason)
         else:
-            rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
-            stamp = STAMP.match(line)
+            rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity(0.0))
+            stamp = STAMP.search(line)
             stamps.setdefault(said.kind, []).append('' if stamp is None else stamp[1])
     there = [kind for kind in kinds if kind in found]
     if not there:

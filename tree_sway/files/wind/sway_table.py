@@ -23,7 +23,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import motion_of
 from tree_sway.files.layouts.known import table_of
 from tree_sway.files.paths import of_file
-from tree_sway.files.row_times import Join, row_times, time_columns
+from tree_sway.files.row_times import row_times, time_columns
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 
@@ -109,10 +109,10 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
 
-def _times(table: TextTable, columns: list[int], join: Join | None, factor: float) -> Floats:
+def _times(table: TextTable, columns: list[int], form: str, factor: float) -> Floats:
     """Seconds of each row, from numbers or from dates."""
     rows = list(range(len(table.texts)))
-    times = row_times(table, columns, join, factor, rows).seconds
+    times = row_times(table, columns, form, factor, rows).seconds
     stamps = table.cells(columns[0], rows)
     for row in np.flatnonzero(~(np.abs(times) <= _MAX_VALUE))[:1]:
         raise table.error(

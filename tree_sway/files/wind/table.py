@@ -78,7 +78,8 @@ def read_table_wind(
     name, lines = (is_wind or tables)[0]
     whole = table_of(lines, name)
     whole.refuse_several()
-    table, note = _at_one_height(with_units_in_head(whole))
+    table, note = _at_one_height(whole)
+    table = with_units_in_head(table)
     rows = WindRows(table.source)
     notes = [note] if note else []
     time = time_columns(table)
@@ -140,13 +141,14 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
         known |= {*of_quantity.values()}
         for index, height in of_quantity.items():
             names[index] = names[index] if height == min(of_quantity.values()) else ''
-    if not known or known == {_USUAL}:
+    if not known:
         return table, ''
     of_speed = heights.get('wind_speed') or heights[next(iter(heights))]
     first = min(of_speed.values())
     others = sorted(known - {first})
     more = f'; there is one at {", ".join(f"{each:g}" for each in others)} m' if others else ''
-    return replace(table, columns=tuple(names)), f'the wind at {first:g} m{more}'
+    note = '' if known == {_USUAL} else f'the wind at {first:g} m{more}'
+    return replace(table, columns=tuple(names)), note
 
 
 def _repeated(table: TextTable, used: list[Column]) -> list[str]:

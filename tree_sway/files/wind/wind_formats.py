@@ -7,10 +7,10 @@ from __future__ import annotations
 from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.layouts.known import looks_like_wind
 from tree_sway.files.wind.bag import read_bag_wind
+from tree_sway.files.wind.instruments import is_logged, read_instrument_wind
 from tree_sway.files.wind.metar import METAR, read_metar_wind
 from tree_sway.files.wind.netcdf import read_netcdf_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
-from tree_sway.files.wind.sonic_ascii import read_sonic_wind
 from tree_sway.files.wind.table import read_table_wind
 
 _TABLES = ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip')
@@ -18,12 +18,7 @@ _TABLES = ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip')
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
     FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
-    FileFormat(
-        'sonic',
-        (),
-        contains(r'^(\d[-\d:. T]*Z?[ ,;]+)?(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
-        read_sonic_wind,
-    ),
+    FileFormat('sonic', (), is_logged, read_instrument_wind),
     FileFormat(
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),

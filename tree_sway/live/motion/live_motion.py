@@ -15,12 +15,10 @@ import math
 import time
 from typing import NamedTuple
 
-from tree_sway.errors import shown
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.motion.motion_registry import OpenedMotion
 from tree_sway.live.motion.sender_clock import SenderClock
-from tree_sway.live.one_sender import OneSender
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
@@ -31,7 +29,6 @@ _SILENT = 5.0
 """Time [s] without a good sample after which a sensor is stale."""
 _INCOMPLETE = 1.0
 """Time [s] without a sample of all quantities after which those that come are taken as all."""
-_SHOWN_LETTERS = 60
 _PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
 """Time [s] after which silence, or messages that are not understood, are told."""
 _COUNTED = 40
@@ -91,7 +88,6 @@ class LiveMotion(LiveSource):
         self._clock = SenderClock(source.ticks)
         self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
         self._arrivals: deque[float] = deque(maxlen=_COUNTED)
-        self._senders = OneSender()
         self._sent = self._refused_at = -math.inf
         self._cause = ''
 
@@ -155,15 +151,10 @@ class LiveMotion(LiveSource):
                 self._refuse(each.reason)
         if not good:
             return
-        origin = message.origin
         before = self._senders.current
-        if not self._senders.admit(origin, now):
-            cause = f'another sender, {shown(origin, _SHOWN_LETTERS)}'
-            if self._senders.refused.get(origin) == 1:
-                self._log(f'{self.name}: refused {cause}, until {before} is silent')
-            self._refuse(cause, len(good))
+        if not self._follows(message.origin):
             return
-        if origin != before:
+        if message.origin != before:
             self._clock = SenderClock(self._source.ticks)
         self._use(good, now)
 

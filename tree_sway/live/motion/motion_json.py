@@ -12,17 +12,19 @@ sensor counts its refusal.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from itertools import islice
 import math
 from typing import Any
 
 import numpy as np
 
 from tree_sway.files import dates, motion_of, rank_of
+from tree_sway.files.motion import flat
+from tree_sway.files.wind import number
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
@@ -34,8 +36,7 @@ _KIND = 'JSON'
 _MOST = 500
 """Largest number of samples in one message."""
 _LONGEST = 40
-_MOST_NAMES = 64
-_DEEPEST = 2
+_MOST_NAMES = 256
 _QUANTITIES = ('acceleration', 'rate', 'orientation')
 
 
@@ -54,8 +55,8 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     parts: dict[str, dict[str, float]] = {'acceleration': {}, 'rate': {}, 'orientation': {}}
     time: float | None = None
     has_time = False
-    for name, value in _leaves(document):
-        place = _place(name)
+    for name, value in islice(flat(document), _MOST_NAMES):
+        place = _place(name[-_LONGEST:])
         if place == ('time', ''):
             has_time = True
             time = _time(value)
@@ -87,38 +88,13 @@ def _axes(found: Mapping[str, float], names: str) -> Numbers | None:
     return tuple(found[axis] for axis in names)
 
 
-def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, Any]]:
-    """Yield values with their names, those of axes together with the axis behind it."""
-    for key, value in list(document.items())[:_MOST_NAMES]:
-        name = str(key)[:_LONGEST]
-        whole = _whole(name)
-        if whole and isinstance(value, list | tuple):
-            wanted = 'xyzw' if whole == 'orientation' else 'xyz'
-            if len(value) == len(wanted):
-                yield from (
-                    (f'{whole}.{axis}', each) for axis, each in zip(wanted, value, strict=True)
-                )
-        elif whole and isinstance(value, Mapping):
-            axes = {str(axis).lower(): each for axis, each in list(value.items())[:_MOST_NAMES]}
-            yield from ((f'{whole}.{axis}', axes[axis]) for axis in 'xyzw' if axis in axes)
-        elif isinstance(value, Mapping):
-            if depth < _DEEPEST:
-                yield from _leaves(value, depth + 1)
-        elif not isinstance(value, list):
-            yield name, value
-
-
-@lru_cache(4096)
-def _whole(name: str) -> str:
-    """Quantity of a name of all axes together, which is that of its axes without them."""
-    quantity = (motion_of(f'{name}_x') or ('',))[0]
-    return quantity if quantity in _QUANTITIES else ''
-
-
 @lru_cache(4096)
 def _place(name: str) -> tuple[str, str] | None:
     """Quantity and axis of a name; None for any other."""
     if rank_of(name, 'time') is not None:
         return 'time', ''
-    quantity, _, axis = motion_of(name) or ('', '', '')
-    return (quantity, axis) if quantity in _QUANTITIES and axis in tuple('xyzw') else None
+    for each in (name, name.rpartition('.')[2]):  # ax within data is none of "data a"
+        quantity, _, axis = motion_of(each) or ('', '', '')
+        if quantity in _QUANTITIES and axis in tuple('xyzw'):
+            return quantity, axis
+    return None

@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 import aiohttp
 
 from tree_sway.files import list_of, object_of
+from tree_sway.files.wind import number
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.values import number
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_poll import body_of

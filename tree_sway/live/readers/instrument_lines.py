@@ -13,33 +13,31 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
-import re
 
 from tree_sway.core.wind import is_wind
-from tree_sway.files.wind import KINDS, parse_nmea, parse_sonic, SensorLine, SENTENCES
+from tree_sway.files import pairs_of
+from tree_sway.files.wind import INSTRUMENTS, LOGGED, parse_nmea, read_instrument, SENTENCES
 from tree_sway.live.readers.documents import read_document
-from tree_sway.live.readers.instruments import INSTRUMENTS, read_instrument
-from tree_sway.live.readers.json_options import names_of, unit_factor
+from tree_sway.live.readers.json_options import factor_of, names_of
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.number_columns import columns_of, read_numbers
 from tree_sway.live.readers.signalk import SignalKWind
-from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
+from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
 
-_LINE_KINDS = ('auto', *SENTENCES, *KINDS)
+_LINE_KINDS = ('auto', *SENTENCES, *LOGGED)
 """Sentences that may be chosen where an instrument sends several."""
 _MOST_LINES = 64
 """Number of lines of a datagram that are read."""
 EXPECTS = ', '.join(
     (
-        'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill',
+        'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR)',
         *dict.fromkeys(map(itemgetter('name'), INSTRUMENTS)),
         'SDI-12, JSON, name=value, or numbers as 5.3,270',
     )
 )
-_PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z/]*)')
 
 
 @dataclass
@@ -103,21 +101,18 @@ class InstrumentLines:
 
     def _read(self, line: str) -> Iterator[Reading]:
         """Read a line; nothing if no reader recognises it."""
-        heading = self.heading
-        parsed = parse_nmea(line, heading, self.declination) or parse_sonic(line, heading)
-        if parsed is not None:
-            yield _of_sensor_line(parsed)
-            return
         if line.lstrip().startswith(('{', '[')):
             yield from self._read_json(line)
             return
-        reading = read_instrument(line, heading, self.factor)
-        if reading is None:
-            reading = read_numbers(line, self.columns, heading, self.factor)
+        heading = self.heading
+        reading = (
+            parse_nmea(line, heading, self.declination)
+            or read_instrument(line, heading, self.factor)
+            or read_numbers(line, self.columns, heading, self.factor)
+        )
         if reading is not None:
             yield reading
-        elif pairs := _PAIR.findall(line):
-            named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
+        elif named := pairs_of(line):
             yield from self.names.read(named, 'name=value')
 
     def _read_json(self, line: str) -> Sequence[Reading]:
@@ -126,13 +121,6 @@ class InstrumentLines:
         if isinstance(document, dict) and 'updates' in document:
             return self._signalk(Message(line.encode()))
         return read_document(document, self.names)
-
-
-def _of_sensor_line(line: SensorLine) -> Reading:
-    """Make a reading; the reason of a refusal leaves out the line's own text."""
-    if line.velocity is None:
-        return Refusal(line.kind, line.refusal.split("'")[0].rstrip(': '))
-    return of_velocity(line.kind, line.velocity)
 
 
 def lines_of(address: SourceAddress) -> InstrumentLines:
@@ -145,6 +133,6 @@ def lines_of(address: SourceAddress) -> InstrumentLines:
         address.angle('heading_degrees'),
         address.angle('declination_degrees'),
         columns_of(address.text_of('columns')),
-        unit_factor(address),
+        factor_of(address),
         names_of(address),
     )

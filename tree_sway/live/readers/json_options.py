@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from tree_sway.files import UNITS
+from tree_sway.files import unit_factor
 from tree_sway.live.readers.json_path import JsonPath
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.readers.values import speed_factor
 from tree_sway.live.source_address import SourceAddress
 
 
@@ -26,12 +25,12 @@ def names_of(address: SourceAddress, interval: float | None = None) -> WindNames
     )
 
 
-def unit_factor(address: SourceAddress) -> float:
+def factor_of(address: SourceAddress) -> float:
     """Return the option ``unit`` in [m/s]; raises a `ParameterError` for an unknown one."""
     unit = address.text_of('unit', 'm/s')
-    factor = speed_factor(unit)
+    factor = unit_factor('speed', unit)
     if factor is None:
-        raise address.error(f"unknown unit '{unit}'", f'use {", ".join(UNITS["speed"])}')
+        raise address.error(f"unknown unit '{unit}'", 'use m/s, km/h, kn, mph or ft/s')
     return factor
 
 

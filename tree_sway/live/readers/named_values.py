@@ -9,17 +9,19 @@ rtl_433 or ``windspeedmph`` of Ecowitt.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
-from tree_sway.files import folded, rank_of, SENDERS, unit_in_name
+from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
+from tree_sway.files.motion import flat, unit_beside
+from tree_sway.files.wind import number, reading_of
 from tree_sway.live.readers.json_path import JsonPath
-from tree_sway.live.readers.values import bearing_of, is_calm, number, speed_factor
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.reading import Reading, Refusal
 
-_SHORTEST, _LONGEST = 2, 60
-"""Lengths of names that are looked at: one letter may be anything in JSON."""
+_LONGEST = 120
+"""Length of names that are looked at; of one letter is none, which may be anything."""
 _MOST = 2000
 """Largest number of values of one message."""
 
@@ -48,31 +50,26 @@ class WindNames:
 
     def read(self, document: Any, kind: str) -> list[Reading]:
         """Return the wind of a document; nothing where it has no speed."""
-        leaves = dict(_leaves(document))
+        whole = document if isinstance(document, Mapping) else {'': document}
+        leaves = dict(islice(flat(whole, lists=True), _MOST))
         name, speed = _found(document, leaves, self.speed, 'wind_speed')
         if speed is _ABSENT:
             return []
         unit = self._unit_of(document, leaves, name, 'wind_speed')
-        factor = speed_factor(unit)
+        factor = unit_factor('speed', unit)
         if factor is None:
             return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
-        value = number(speed)
-        if value is None or value < 0.0:
-            return [Refusal(kind, f"speed is '{str(speed)[:20]}'")]
         _, direction = _found(document, leaves, self.direction, 'wind_direction')
-        has_vane = direction is not _ABSENT and direction is not None
-        bearing = bearing_of(direction) if has_vane else None
-        if has_vane and bearing is None and not is_calm(value * factor):
-            return [Refusal(kind, f"direction is '{str(direction)[:20]}'")]
         name, gust = _found(document, leaves, self.gust, 'gust')
         most = None if gust is _ABSENT else number(gust)
-        gust_factor = speed_factor(self._unit_of(document, leaves, name, 'gust'))
+        gust_factor = unit_factor('speed', self._unit_of(document, leaves, name, 'gust'))
         has_gust = most is not None and gust_factor is not None
         return [
-            WindReading(
+            reading_of(
                 kind,
-                value * factor,
-                bearing,
+                speed,
+                None if direction in (_ABSENT, '') else direction,
+                factor=factor,
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
                 sender=_sender(leaves),
@@ -81,16 +78,19 @@ class WindNames:
 
     def _unit(self, document: Any) -> str:
         """Text of the unit of speeds."""
-        if not self.unit or speed_factor(self.unit) is not None:
+        if not self.unit or unit_factor('speed', self.unit) is not None:
             return self.unit or 'm/s'
         found = JsonPath(self.unit).find(document)
         return found if isinstance(found, str) else self.unit
 
     def _unit_of(self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str) -> str:
         """Return the unit of a speed: that beside it, in its name, or of all."""
-        beside = leaves.get(f'{name}_unit') if name else None
-        in_name = unit_in_name(name, quantity) if name else ''
-        return beside if isinstance(beside, str) else in_name or self._unit(document)
+        if not name:
+            return self._unit(document)
+        has_parts = name.endswith('.value')
+        beside = unit_beside(leaves, name) if has_parts else leaves.get(f'{name}_unit')
+        last = name.removesuffix('.value').rpartition('.')[2]
+        return beside or unit_in_name(last, quantity) or self._unit(document)
 
 
 _ABSENT = object()
@@ -98,9 +98,8 @@ _ABSENT = object()
 
 def _sender(leaves: Mapping[str, Any]) -> str:
     """Return what a message says of its instrument; empty for nothing."""
-    named = {folded(name): value for name, value in leaves.items()}
-    found = next((named[name] for name in SENDERS if isinstance(named.get(name), str | int)), '')
-    return str(found)[:_LONGEST]
+    named = {folded(name.rpartition('.')[2]): value for name, value in leaves.items()}
+    return next((named[name] for name in SENDERS if named.get(name)), '')[:_LONGEST]
 
 
 def _found(
@@ -111,44 +110,15 @@ def _found(
         found = path.find(document)
         return '', _ABSENT if found is None else found
     # Longer names are none, and would stay in the cache.
-    short = (name for name in leaves if _SHORTEST <= len(name) <= _LONGEST)
-    ranked = ((rank_of(name, quantity), name) for name in short)
+    last_of = {name: name.rpartition('.')[2] for name in leaves if len(name) <= _LONGEST}
+    ranks = {name: rank_of(name, quantity) for name, last in last_of.items() if last[1:]}
     # A boat has a speed as well as a wind_speed.
-    known = [('wind' not in name.lower(), rank, name) for rank, name in ranked if rank is not None]
+    known = [
+        ('wind' not in name.lower(), rank, name.count('.'), name)
+        for name, rank in ranks.items()
+        if rank is not None
+    ]
     if not known:
         return '', _ABSENT
-    name = min(known)[2]
+    name = min(known)[-1]
     return name, leaves[name]
-
-
-def _leaves(document: Any) -> Iterator[tuple[str, Any]]:
-    """
-    Yield the values of a document by the last part of their name, inner levels first.
-
-    What is inside of ``wind`` is called so, as ``wind_deg``; an object with a ``value`` stands for
-    that value, with its unit beside it.
-    """
-    level: list[tuple[str, Any]] = [('', document)]
-    found = list[tuple[str, Any]]()
-    while level and len(found) < _MOST:
-        inner: list[tuple[str, Any]] = []
-        for key, value in level[:_MOST]:
-            if isinstance(value, Mapping):
-                inner += _inside(key, value)
-            elif isinstance(value, list):
-                inner += [(key, each) for each in value if isinstance(each, Mapping | list)]
-            else:
-                found.append((key, value))
-        level = inner
-    return reversed(found)
-
-
-def _inside(key: str, value: Mapping[Any, Any]) -> list[tuple[str, Any]]:
-    """Return the values inside of an object, by their names."""
-    if 'value' in value and not isinstance(value['value'], Mapping | list):
-        unit = value.get('unit', value.get('unitCode'))
-        return [(key, value['value']), (f'{key}_unit', unit)]
-    names = [str(each) for each in value]
-    if key.lower() == 'wind':
-        names = [name if 'wind' in name.lower() else f'wind_{name}' for name in names]
-    return list(zip(names, value.values(), strict=True))

@@ -17,8 +17,8 @@ import re
 
 from tree_sway.errors import ParameterError
 from tree_sway.files import finite
-from tree_sway.live.readers.values import bearing_of, is_calm
-from tree_sway.live.reading import of_velocity, Reading, Refusal, WindReading
+from tree_sway.files.wind import of_velocity, reading_of
+from tree_sway.live.reading import Reading, Refusal
 
 COLUMNS = 'speed direction gust u v w -'.split()
 """Meanings of a column; components point east, north and up, the way the air goes."""
@@ -87,14 +87,7 @@ def _reading(kind: str, values: dict[str, float], heading: float, factor: float)
         sine = math.sin(heading)
         turned = cosine * east + sine * north, cosine * north - sine * east
         return of_velocity(kind, (*turned, factor * values.get('w', 0.0)))
-    speed = values['speed']
-    if speed < 0.0 or speed >= _ERROR:
-        return Refusal(kind, f'speed is {speed:g}')
-    bearing = None
-    if 'direction' in values:
-        bearing = bearing_of(values['direction'])
-        if bearing is None and not is_calm(speed):
-            return Refusal(kind, f'direction is {values["direction"]:g} degrees')
-        bearing = 0.0 if bearing is None else bearing + heading
+    speed = values['speed'] if values['speed'] < _ERROR else 'an error'
     gust = factor * values['gust'] if 'gust' in values else None
-    return WindReading(kind, factor * speed, bearing, gust=gust)
+    direction = values.get('direction')
+    return reading_of(kind, speed, direction, factor=factor, turn=heading, gust=gust)

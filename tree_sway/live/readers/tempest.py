@@ -12,9 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tree_sway.files.wind import tempest_values
-from tree_sway.live.readers.values import bearing_of, number
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.files.wind import reading_of, tempest_values
+from tree_sway.live.reading import Reading
 
 KIND = 'rapid_wind'
 
@@ -29,11 +28,6 @@ def read_tempest(document: Any) -> Sequence[Reading]:
     found = tempest_values(document)
     if not found or document['type'] != KIND:
         return ()
-    values = found[0]
-    speed, bearing = number(values['wind_speed']), bearing_of(values['wind_direction'])
-    if speed is None or speed < 0.0:
-        return [Refusal(KIND, f'ob is {str(document.get("ob"))[:40]}')]
-    if bearing is None:
-        return [Refusal(KIND, f'direction is {str(values["wind_direction"])[:20]}')]
+    speed, direction = (str(found[0][name]) for name in ('wind_speed', 'wind_direction'))
     sender = str(document.get('serial_number', ''))
-    return [WindReading(KIND, speed, bearing, interval=0.0, sender=sender)]
+    return [reading_of(KIND, speed, direction, interval=0.0, sender=sender)]

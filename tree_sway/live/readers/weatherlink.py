@@ -13,9 +13,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from tree_sway.files import list_of, object_of
-from tree_sway.live.readers.json_path import JsonPath
+from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.reading import Reading
+from tree_sway.live.transports.transport import Message
 
 _KIND = 'WeatherLink Live'
 _STATION = 1
@@ -42,3 +43,8 @@ def read_weatherlink(document: Any) -> Sequence[Reading]:
             if found := _NAMES.read(each, _KIND):
                 return found
     return ()
+
+
+def read_conditions(message: Message) -> Sequence[Reading]:
+    """Read the answer of its local interface."""
+    return read_weatherlink(parse_json(message.data))

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 import re
 import struct
 
-from tree_sway.live.readers.values import bearing_of, is_calm
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.files.wind import reading_of
+from tree_sway.live.reading import Reading, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.modbus import KINDS, Modbus, PORT
@@ -61,17 +61,11 @@ def open_source(address: SourceAddress) -> Source:
             return [Refusal(_KIND, f'{len(words)} registers of {count}')]
         if words[speed - first] in _NO_VALUE:
             return [Refusal(_KIND, f'no speed: the register is {words[speed - first]}')]
-        value = scale * words[speed - first]
-        if value < 0.0:
-            return [Refusal(_KIND, f'speed is {value:g}')]
-        bearing = None
+        degrees: float | str | None = None
         if direction != _NO_DIRECTION:
-            degrees = turn * words[direction - first]
-            bearing = None if words[direction - first] in _NO_VALUE else bearing_of(degrees)
-            if bearing is None and not is_calm(value):
-                return [Refusal(_KIND, f'direction is {degrees:g} degrees')]
-            bearing = heading + (bearing or 0.0)
-        return [WindReading(_KIND, value, bearing)]
+            word = words[direction - first]
+            degrees = 'none' if word in _NO_VALUE else turn * word
+        return [reading_of(_KIND, scale * words[speed - first], degrees, turn=heading)]
 
     is_serial = place[1].startswith(('/', 'COM'))
     number = int(place[2] or (_BAUD if is_serial else PORT))

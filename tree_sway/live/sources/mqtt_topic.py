@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from urllib.parse import unquote
 
+from tree_sway.files.wind import bearing_of
 from tree_sway.live.readers.instrument_lines import lines_of
-from tree_sway.live.readers.values import bearing_of
 from tree_sway.live.reading import Read, Reading, WindReading
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress

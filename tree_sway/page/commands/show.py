@@ -41,7 +41,7 @@ from tree_sway.page import Choices, PageServer, PageSettings, Session
 from tree_sway.page.commands.addition import PageAddition
 from tree_sway.page.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.page.commands.page_controls import page_controls
-from tree_sway.page.leaf_calendar import is_bare, species_in_month
+from tree_sway.page.leaf_calendar import HALF_YEAR, is_bare, species_in_month, SUMMER
 from tree_sway.simulation import WindSource
 from tree_sway.stream import ControlPanel, Value
 
@@ -62,6 +62,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
+    what = 'seasons of a tree to grow are those south of the equator'
+    parser.add_argument('--south', action='store_true', help=what)
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
     add_distance_arguments(parser, 'sample')
@@ -103,6 +105,8 @@ def _serve(
         Path(arguments.tree).name,
         str(arguments.stand),
         str(arguments.model),
+        month=SUMMER - HALF_YEAR if arguments.south else SUMMER,
+        is_south=arguments.south,
         gusts=arguments.gusts,
         anemometer_distance=arguments.anemometer_distance,
     )
@@ -195,7 +199,11 @@ def build_scene(
         scene = stand(scene, count, choices.model)
     damping = choices.damping_ratio or None
     in_leaf = chosen_leaves(arguments)
-    if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
+    if (
+        not is_first
+        and choices.is_grown
+        and is_bare(species_named(choices.tree), choices.northern_month)
+    ):
         in_leaf = False
     far = distance_settings(arguments)
     far |= {'gusts': choices.gusts, 'anemometer_distance': choices.anemometer_distance}
@@ -212,7 +220,8 @@ def _grown(choices: Choices) -> Scene:
     rng = np.random.default_rng(int(choices.individual))
     diameter = stem_of_age(choices.tree, choices.age) if choices.age else None
     tree = grow(choices.tree, choices.height, diameter, rng=rng)
-    species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.month)
+    wood = rooted(tree, species_named(choices.tree))
+    species = species_in_month(wood, tree, choices.northern_month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
 

@@ -26,10 +26,10 @@ from tree_sway.files.commands import (
     add_tree_arguments,
     chosen_leaves,
     opened_scene,
+    simulated_speed,
 )
 from tree_sway.files.trees import sway_oddity
 from tree_sway.growth import BREAST_HEIGHT, breast_height_diameter
-from tree_sway.parameters import SWAY
 from tree_sway.simulation import StrengthUse
 from tree_sway.simulation.commands.exposure import (
     add_exposure_arguments,
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.speed is None:
         refuse_unused_exposure(arguments, '--speed U')
     else:
-        SWAY['mean_speed'].checked(arguments.speed)
+        simulated_speed(arguments)
     scene = opened_scene(arguments, says=False)
     kinds = scene.kinds
     if scene.is_one_tree:

@@ -141,8 +141,8 @@ def _wind(
         seconds = arguments.seconds or 60.0
         refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
         return simulate_turbulence(
-            simulated_speed(arguments), rate=arguments.rate, duration=seconds, rng=rng,
-            **exposure.turbulence,
+            simulated_speed(arguments, above=True), rate=arguments.rate, duration=seconds,
+            rng=rng, **exposure.turbulence,
         )  # fmt: skip
     with waiting(f'reading {arguments.wind}'):
         return opened_record(arguments)

@@ -5,7 +5,7 @@ JSON of trees as tables: a row per record, a column per property.
 
 So are GeoJSON (RFC 7946), whose place is a point or else the mean of the corners, OpenStreetMap's
 elements with ``tags``, ArcGIS's features with ``attributes``, and the records of the portals CKAN
-and Opendatasoft.
+and Opendatasoft, and records in a list or one in each line.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import cell_of, list_of, object_of, parsed
+from tree_sway.files.json_values import cell_of, document_of, list_of, object_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 
@@ -46,7 +46,8 @@ def read_geojson(path: Path) -> TextTable:
 
     Raises a `FormatError` for broken JSON, no records, or features of which none has a place.
     """
-    document = object_of(parsed('\n'.join(read_lines(path)), 'GeoJSON'))
+    whole = document_of(read_lines(path), 'GeoJSON')
+    document = {'records': whole} if isinstance(whole, list) else object_of(whole)
     inner = object_of(document.get('result')) or document
     listed = next((name for name in _LISTS if name in inner), '')
     found = list_of(inner[listed]) if listed else [inner]

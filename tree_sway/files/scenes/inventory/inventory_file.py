@@ -6,8 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+import re
 
 from tree_sway.errors import FormatError
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import INVENTORY
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.paths import of_file
@@ -18,6 +20,7 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.zipped import tables_in
 
 _HEAD = 60
+_NAME = re.compile(r'"([^"\n]{1,60})"\s*:')
 SPECIES = 'the species'
 
 
@@ -44,7 +47,13 @@ def _own_reader(path: Path, head: str) -> Callable[[Path], TextTable] | None:
         return read_geopackage
     if path.suffix.lower() in ('.xlsx', '.xlsm'):
         return read_spreadsheet
-    return read_geojson if looks_like_geojson(head) else None
+    return read_geojson if looks_like_geojson(head) or _has_records(head) else None
+
+
+def _has_records(head: str) -> bool:
+    """Whether the beginning of a file is JSON with the names of an inventory."""
+    names = _NAME.findall(head) if head.lstrip()[:1] in ('{', '[') else []
+    return bool(names) and not missing_columns(table_of_cells(names, [], ''))
 
 
 def _is_inventory(lines: list[str]) -> bool:

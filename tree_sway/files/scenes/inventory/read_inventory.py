@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import re
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -136,6 +136,9 @@ def inventory_of(
     is_found = fill_heights(columns, height, diameter, keys)
     kept = np.flatnonzero(columns.is_kept).tolist()
     columns.note(columns.why_left_out())
+    stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter
+    if found is not None:
+        columns.note(_double(columns, kept, [places.x, places.y, names, height, stems]))
     if not kept:
         raise FormatError(
             f'no tree is left: {columns.why_left_out() or "no row"}',
@@ -149,7 +152,6 @@ def inventory_of(
     unused = [each for i, each in enumerate(table.columns) if each and i not in columns.used]
     if unused:
         columns.note(f'columns that are not used: {", ".join(unused[:20])}')
-    stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter
 
     def of_kept(cells: Sequence[T]) -> tuple[T, ...]:
         return tuple(cells[row] for row in kept)
@@ -189,6 +191,23 @@ def _leave_out_dead(columns: InventoryColumns) -> None:
             for row, text in enumerate(columns.texts(index)):
                 if text.lower() in words:
                     columns.leave_out(row, 'dead or gone', columns.told(index, row))
+
+
+def _double(columns: InventoryColumns, kept: list[int], cells: Sequence[Any]) -> str:
+    """Tell how many trees have the place, species and size of one before; empty for none."""
+    first: dict[str, int] = {}
+    twice = [
+        (first[tree], row)
+        for row in kept
+        if first.setdefault(tree := str([each[row] for each in cells]), row) != row
+    ]
+    if not twice:
+        return ''
+    one, other = map(columns.line, twice[0])
+    return (
+        f'{len(twice)} trees have the place, species and size of another, as {one} and {other}: '
+        'remove their rows if they are the same'
+    )
 
 
 def _exposures(columns: InventoryColumns) -> list[str | None]:
