@@ -14,7 +14,8 @@ form, with what the commands of the library need, and the further parts of the o
 Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters. A later command adds
 what it lacks, unless `--with` has named it before. The environment is made again when the Python
 differs and brought up to date when a file that describes the installation has changed.
-TREE_SWAY_VENV names another place for it than .venv.
+TREE_SWAY_VENV names another place for it than .venv, and TREE_SWAY_UV a uv that installs in place
+of pip, in a fraction of the time, as `.ci/run` has it.
 
 """
 
@@ -279,11 +280,15 @@ def make_venv(environment):
 def pip(environment, *arguments):
     """Install with pip, one line of progress; its own words go to a log beside the environment."""
     log = VENV / 'setup.log'
-    command = [str(VENV / 'bin' / 'python'), '-m', 'pip', 'install', '--progress-bar', 'off']
-    # Few modules of what is installed are ever loaded, and each is compiled when it is first.
-    command += ['--disable-pip-version-check', '--no-compile', *arguments]
+    python = str(VENV / 'bin' / 'python')
+    if uv := os.environ.get('TREE_SWAY_UV'):
+        command = [uv, 'pip', 'install', '--python', python]
+    else:
+        command = [python, '-m', 'pip', 'install', '--progress-bar', 'off']
+        # Few modules of what is installed are ever loaded, and each is compiled when it is first.
+        command += ['--disable-pip-version-check', '--no-compile']
     process = subprocess.Popen(
-        command,
+        [*command, *arguments],
         cwd=str(ROOT),
         env=environment,
         stdout=subprocess.PIPE,

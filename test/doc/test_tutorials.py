@@ -30,7 +30,9 @@ TUTORIALS = [
 FIRST = 'python3 .ci/in_venv.py tree-sway --version'
 """Makes the environment as the README's first command does, without its page."""
 DEADLINE = 600.0
-NOT_OF_A_NEW_USER = ('TREE_SWAY_VENV', 'VIRTUAL_ENV', 'PYTHONPATH', 'AMENT_PREFIX_PATH')
+NOT_OF_A_NEW_USER = (
+    'TREE_SWAY_VENV', 'TREE_SWAY_UV', 'VIRTUAL_ENV', 'PYTHONPATH', 'AMENT_PREFIX_PATH',
+)  # fmt: skip
 
 pytestmark = [pytest.mark.long, pytest.mark.ros, pytest.mark.xdist_group('tutorials')]
 
