@@ -17,11 +17,11 @@ const TUFTS_BESIDE = 0.7;
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [6, 2.1, 4];
+const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
-const ROUNDED = 1.2;
+const ROUNDED = 2;
 /** How much lighter or darker a cluster is than others, and a card than others of it. */
 const UNEVEN = 0.16;
 /** Number of different small cards. */
@@ -36,7 +36,7 @@ const DEAD = 0.1;
 const [INNER, INNER_APART] = [0.75, 0.4];
 /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
  * clothed all along. */
-const [STUB, LONG] = [4, 1.6];
+const [STUB, LONG] = [1.2, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging shoots hide the boughs. */
 const [WEEPS, CURTAIN] = [0.8, 14];
 /** Orientation of a shoot that hangs straight down. */

@@ -26,7 +26,7 @@ const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
 /** Cost of a card over that of a segment, which the processor places for each frame. */
-const CARD = 0.35;
+const CARD = 0.12;
 /** Frames from one choice of levels to the next while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** Largest angle between a branch and the pointer that picks it [rad]. */
