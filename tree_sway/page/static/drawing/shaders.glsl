@@ -241,10 +241,10 @@ void main() {
   float across = dot(n, light);
   float open = flutter.z;
   // Leaves deep in the crown are darker than those at its surface.
-  float near = smoothstep(0.05, 0.95, open);
+  float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
   float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
-  vec3 up = sky * (0.1 + 0.85 * near) * (0.58 + 0.42 * n.z);
+  vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.08 + 1.9 * max(0.85 * across + 0.15, 0.0) + through);
@@ -557,13 +557,13 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float two = hash(name + 71.0);
     if (one < 0.75 - 0.75 * wooded || two < first) continue;
     float tall = (8.0 + 8.0 * hash(name + 5.0)) * (0.5 + 0.5 * wooded);
-    float wide = tall * mix(0.36, 0.5, two) + 1.0;
+    float wide = tall * mix(0.3, 0.42, two) + 0.5;
     bool isPointed = hash(name + 9.0) < 0.25;
     if (isPointed) { wide *= 0.6; tall *= 1.25; }
     float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
     float z = (up - 0.52 * tall) / (0.5 * tall);
     float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
-    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + 1.3 * (rough - 0.48) + 0.5 * (fine - 0.48);
+    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.5 : 1.3) * (rough - 0.48) + 0.5 * (fine - 0.48);
     if (edge > 1.0 && (abs(x) * wide > 0.03 * tall || z > 0.0)) continue;
     first = two;
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
@@ -608,7 +608,7 @@ void main() {
       slab.x += 0.5 * mod(floor(slab.y), 2.0);
       vec2 edge = abs(fract(slab) - 0.5);
       float joint = smoothstep(0.485, 0.495, max(edge.x, edge.y)) * (1.0 - smoothstep(0.1, 0.5, pixel / 0.12));
-      soil = vec3(0.7, 0.68, 0.64) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
+      soil = vec3(0.52, 0.505, 0.475) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
