@@ -46,7 +46,7 @@ const [WEEPS, CURTAIN, RAISED] = [0.8, 14, 0.5];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1, 0.62, 0.6, 41];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.62, 0.6, 37];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
@@ -136,12 +136,8 @@ const facesFrom = (v, corners) => (corners === 3 ? [v, v + 1, v + 2] : [v, v + 1
 
 /** A scaled vector of a frame, added to a place. @param {number[][]} axes
  * @param {number[]} vector @param {number} scale @param {number[]} [from] */
-function inFrame([a, b, c], vector, scale, from = ORIGIN) {
-  const x = scale * vector[0];
-  const y = scale * vector[1];
-  const z = scale * vector[2];
-  return [from[0] + x * a[0] + y * b[0] + z * c[0], from[1] + x * a[1] + y * b[1] + z * c[1],
-    from[2] + x * a[2] + y * b[2] + z * c[2]];
+function inFrame([a, b, c], [x, y, z], scale, from = ORIGIN) {
+  return from.map((each, k) => each + scale * (x * a[k] + y * b[k] + z * c[k]));
 }
 
 /** A cluster of the description as a shoot. @param {Kind} kind @param {Float32Array} rest

@@ -321,7 +321,7 @@ export class Scene {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.08 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
+        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
         gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };

@@ -151,22 +151,24 @@ void main() {
   if (isShadow > 0.5) { color = vec4(1.0 - 0.7 * min(high, 1.0)); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
+#ifndef PLAIN
   if (tone.x > 0.4) {
     // Ridges of thick wood have a bright and a dark side, and an upper and a lower one.
     float slope = rough.r - texture(relief, (at + vec2(0.03, 0.0)) * vec2(1.0, 0.5)).r;
     float rise = rough.r - texture(relief, (at + vec2(0.0, 0.03)) * vec2(1.0, 0.5)).r;
     n = normalize(n + tone.x * (1.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
   }
+#endif
   vec3 own = barkColor;
   if (footHeight > 0.0) {
     // Rifts of it reach up between the bark above.
     float up = high / footHeight + 1.6 * (noise(at * vec2(9.0, 1.4)) - 0.5);
     own = mix(footColor, barkColor, smoothstep(0.66, 0.78, up));
   }
+#ifndef PLAIN
   // Weather and moss: stains as long as the stem is wide, the greener the nearer to the ground.
   float stain = noise(vec2(3.0 * normal.x, 0.5 * at.y + 2.0 * normal.y));
   own *= mix(vec3(1.08, 1.05, 0.98), vec3(0.62, 0.68, 0.5) + 0.3 * min(1.0, 4.0 * high), stain);
-#ifndef PLAIN
   if (tone.x > 0.1) {
     // Lumps, scars and lichens, each of its own size; noise about the stem has no seam.
     vec2 about = 6.0 * normal.xy;
@@ -243,10 +245,10 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
+  float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
   vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
+  vec3 through = vec3(1.0, 1.05, 0.5) * (0.9 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.08 + 1.9 * max(0.85 * across + 0.15, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
@@ -402,7 +404,7 @@ void main() {
   float speed = mix(gusts[low], gusts[low + 1], place - float(low));
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w + 0.1 * max(0.0, tall - 0.7), 0.0005 * distance(eye, p));
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w + 0.3 * max(0.0, tall - 0.6), 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
   vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
@@ -555,8 +557,9 @@ vec4 treeRow(vec3 way, float round, float seed) {
     vec2 name = vec2(cell, 17.0 * seed);
     float one = hash(name);
     float two = hash(name + 71.0);
-    if (one < 0.75 - 0.75 * wooded || two < first) continue;
-    float tall = (8.0 + 8.0 * hash(name + 5.0)) * (0.5 + 0.5 * wooded);
+    float dense = smoothstep(0.28, 0.52, tiled(vec2(cell * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
+    if (one < 0.75 - 0.75 * dense || two < first) continue;
+    float tall = (8.0 + 8.0 * hash(name + 5.0)) * (0.5 + 0.5 * dense);
     float wide = tall * mix(0.3, 0.42, two) + 0.5;
     bool isPointed = hash(name + 9.0) < 0.25;
     if (isPointed) { wide *= 0.6; tall *= 1.25; }

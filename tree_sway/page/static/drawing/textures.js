@@ -362,15 +362,16 @@ class Brush {
     });
   }
 
-  /** A candle of white flowers beside the leaf, as high as the picture. */
+  /** A candle of white flowers beside the leaf, as high as the picture; its colours allow for those that green is
+   * dulled by. */
   candle() {
     const { context, random } = this;
     const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.3 * (1 / LEAF_SHARE - 1)];
     for (let i = 0; i < 240; i++) {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
-      const light = 0.5 + 0.4 * random();
-      context.fillStyle = i % 6 ? css([1, 0.97, 0.82], light) : css([0.95, 0.72, 0.6], light);
+      const light = 0.75 + 0.25 * random();
+      context.fillStyle = i % 9 ? css([0.9, 1, 0.69], light) : css([0.85, 0.74, 0.5], light);
       context.beginPath();
       context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
       context.fill();
