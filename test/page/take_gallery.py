@@ -56,7 +56,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
-_CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.18))
+_CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.08))
 _MAY = 'treeSway.scene.flower(5.5);'
 _AUTUMN = "document.getElementById('season').click();"
 
@@ -80,7 +80,10 @@ for (const each of document.querySelectorAll('.card, #tools')) each.style.displa
 treeSway.scene.hasArrow = treeSway.scene.hasPerson = false;
 treeSway.scene.camera.home();
 """
-"""Hides the instruments, the arrow of the wind and the person (key M), and fits the tree into the whole picture."""
+"""
+Hides the instruments, the arrow of the wind and the person (key M), and fits the tree into the
+whole picture.
+"""
 
 DRAWN = 300.0
 """Until the first pictures of a thousand trees are drawn in full quality on a processor [s]."""

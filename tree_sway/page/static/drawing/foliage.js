@@ -41,7 +41,7 @@ const [INNER, INNER_APART] = [0.75, 0.4];
 const [STUB, LONG] = [1.2, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
  * shoots hide the boughs; and by how much these shoots begin above their bough, over their size. */
-const [WEEPS, CURTAIN, RAISED] = [0.8, 14, 0.5];
+const [WEEPS, CURTAIN, RAISED] = [0.8, 14, 0.25];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at

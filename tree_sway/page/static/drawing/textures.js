@@ -7,7 +7,7 @@ import { grounds, outlineOf, places, seeded } from "./looks.js";
 /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
-const IN_LEAFLETS = { compound: 2.7, digitate: 1.6 };
+const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
