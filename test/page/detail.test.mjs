@@ -215,6 +215,16 @@ test("a long shoot that hangs is clothed from its foot on", () => {
   assert.ok(long.every((segment) => nearest.get(placer.slots[segment]) < mean));
 });
 
+test("a large cluster has no larger leaves than the others", () => {
+  const sizes = kind.arrays.leaf_size.map((size, i) => (i ? 1 : 6) * size);
+  const uneven = shapeOf({ ...kind, arrays: { ...kind.arrays, leaf_size: sizes } });
+  const cards = 24 * sizes.length;
+  const { mesh, isSpread } = leafMesh(uneven, placer.order, cards, cards, false);
+  assert.ok(isSpread);
+  const longs = Array.from({ length: mesh.indices.length / 6 }, (_, i) => edges(mesh, i)[0]);
+  assert.ok(Math.max(...longs) < 4 * Math.min(...longs));
+});
+
 test("a leaf with leaflets is a picture of its own, as large as it is", () => {
   const walnut = { ...average, form: "compound", leaf_size: 0.1 };
   assert.equal(wholeLeaf(average), average.leaf_size);

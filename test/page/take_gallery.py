@@ -56,7 +56,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
-_CLOSE = 'treeSway.scene.camera.zoom(0.9);'
+_CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.08))
 _MAY = 'treeSway.scene.flower(5.5);'
 _AUTUMN = "document.getElementById('season').click();"
 
@@ -77,10 +77,13 @@ class View:
 
 _BARE = """
 for (const each of document.querySelectorAll('.card, #tools')) each.style.display = 'none';
-treeSway.scene.hasArrow = false;
+treeSway.scene.hasArrow = treeSway.scene.hasPerson = false;
 treeSway.scene.camera.home();
 """
-"""Hides the instruments and the arrow of the wind, and fits the tree into the whole picture."""
+"""
+Hides the instruments, the arrow of the wind and the person (key M), and fits the tree into the
+whole picture.
+"""
 
 DRAWN = 300.0
 """Until the first pictures of a thousand trees are drawn in full quality on a processor [s]."""
@@ -92,25 +95,25 @@ FILM, EVERY, FILM_SIZE = 5.0, 0.1, (640, 400)
 """Length of a film and time between its pictures [s], and their size [px]: each is drawn anew."""
 
 VIEWS = (
-    View('benjamina', 'benjamina', script=_CLOSE, size=SQUARE),
+    View('benjamina', 'benjamina', size=SQUARE),
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
-    View('goldcrest', 'goldcrest'),
+    View('goldcrest', 'goldcrest', script=_WHOLE, size=SQUARE),
     View('oak', 'oak', script=_CLOSE, size=SQUARE),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
     View('birch', 'birch', script=_CLOSE, size=SQUARE),
     View('spruce', 'spruce', script=_CLOSE, size=SQUARE),
     View('spruce_software', 'spruce', is_full=False),
     View('fir', 'fir', script=_CLOSE, size=SQUARE),
-    View('pine', 'pine', script=_CLOSE, size=SQUARE),
+    View('pine', 'pine', size=SQUARE),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('lime', 'lime', script=_CLOSE, size=SQUARE),
     View('beech', 'beech', script=_CLOSE, size=SQUARE),
     View('horse_chestnut', 'horse_chestnut', script=_CLOSE + _MAY, size=SQUARE),
     View('willow', 'willow', script=_CLOSE, size=SQUARE),
     View('willow_sways', 'willow', is_film=True, size=FILM_SIZE),
-    View('walnut', 'walnut', script=_CLOSE, size=SQUARE),
+    View('walnut', 'walnut', script=_WHOLE, size=SQUARE),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),

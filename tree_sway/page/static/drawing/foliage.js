@@ -12,16 +12,18 @@ import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
 const LARGEST_CARDS = 2.5;
 /** Distance of a small card with a tuft from its shoot, over that of other small cards. */
-const TUFTS_BESIDE = 0.7;
+const TUFTS_BESIDE = 0.55;
 /** Least length of a small card over that of a full one. */
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [6, 2.1, 4];
+const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
-const ROUNDED = 1.2;
+const ROUNDED = 2;
+/** Largest size of a cluster over the mean one, as its leaves are larger with it. */
+const LARGEST = 1.25;
 /** How much lighter or darker a cluster is than others, and a card than others of it. */
 const UNEVEN = 0.16;
 /** Number of different small cards. */
@@ -36,14 +38,15 @@ const DEAD = 0.1;
 const [INNER, INNER_APART] = [0.75, 0.4];
 /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
  * clothed all along. */
-const [STUB, LONG] = [4, 1.6];
-/** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging shoots hide the boughs. */
-const [WEEPS, CURTAIN] = [0.8, 14];
+const [STUB, LONG] = [1.2, 1.6];
+/** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
+ * shoots hide the boughs; and by how much these shoots begin above their bough, over their size. */
+const [WEEPS, CURTAIN, RAISED] = [0.8, 14, 0.25];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.4, 0.6, 27];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.62, 0.6, 37];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
@@ -85,6 +88,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     if (dead.has(shoot.segment)) continue;
     // All of a clump or none of it: a few of its leaves would float in the air.
     if (isSpread && shoot.at[2] < lowest) continue;
+    if (isSpread) shoot.size = Math.min(shoot.size, LARGEST * meanSize);
     const row = placer.slots[hung[shoot.segment]];
     const o = STRIDE * hung[shoot.segment];
     const origin = rest.subarray(o, o + 3);
@@ -132,12 +136,8 @@ const facesFrom = (v, corners) => (corners === 3 ? [v, v + 1, v + 2] : [v, v + 1
 
 /** A scaled vector of a frame, added to a place. @param {number[][]} axes
  * @param {number[]} vector @param {number} scale @param {number[]} [from] */
-function inFrame([a, b, c], vector, scale, from = ORIGIN) {
-  const x = scale * vector[0];
-  const y = scale * vector[1];
-  const z = scale * vector[2];
-  return [from[0] + x * a[0] + y * b[0] + z * c[0], from[1] + x * a[1] + y * b[1] + z * c[1],
-    from[2] + x * a[2] + y * b[2] + z * c[2]];
+function inFrame([a, b, c], [x, y, z], scale, from = ORIGIN) {
+  return from.map((each, k) => each + scale * (x * a[k] + y * b[k] + z * c[k]));
 }
 
 /** A cluster of the description as a shoot. @param {Kind} kind @param {Float32Array} rest
@@ -227,7 +227,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
     const frame = weeps ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] + (weeps && c > 1 ? RAISED * size : 0));
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {
@@ -237,7 +237,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     for (let segment = first[branch]; segment <= end; segment++) {
       // A cluster clothes no long shoot from its foot on.
       if (radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
-      const count = Math.ceil(length[segment] / ((weeps ? 0.7 : 1.5) * size));
+      const count = Math.ceil(length[segment] / ((weeps ? 0.45 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
@@ -263,7 +263,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, SHOOT * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 3 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };

@@ -26,7 +26,7 @@ const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
 /** Cost of a card over that of a segment, which the processor places for each frame. */
-const CARD = 0.35;
+const CARD = 0.12;
 /** Frames from one choice of levels to the next while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** Largest angle between a branch and the pointer that picks it [rad]. */
@@ -321,7 +321,7 @@ export class Scene {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.cbrt(0.05 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
+        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
         gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };

@@ -7,7 +7,7 @@
  * at the top would else be in the shade of each other. */
 const CELLS = 16;
 /** Attenuation per leaf area: 1/2 for opaque leaves in all directions, less as they let some light through. */
-const EXTINCTION = 0.3;
+const EXTINCTION = 0.24;
 /** Directions of light: mostly from the sky, some from the ground. */
 const WAYS = Array.from({ length: 16 }, (_, i) => {
   const z = 1 - (1.45 * (i + 0.5)) / 16;

@@ -151,22 +151,24 @@ void main() {
   if (isShadow > 0.5) { color = vec4(1.0 - 0.7 * min(high, 1.0)); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
+#ifndef PLAIN
   if (tone.x > 0.4) {
     // Ridges of thick wood have a bright and a dark side, and an upper and a lower one.
     float slope = rough.r - texture(relief, (at + vec2(0.03, 0.0)) * vec2(1.0, 0.5)).r;
     float rise = rough.r - texture(relief, (at + vec2(0.0, 0.03)) * vec2(1.0, 0.5)).r;
     n = normalize(n + tone.x * (1.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
   }
+#endif
   vec3 own = barkColor;
   if (footHeight > 0.0) {
     // Rifts of it reach up between the bark above.
     float up = high / footHeight + 1.6 * (noise(at * vec2(9.0, 1.4)) - 0.5);
     own = mix(footColor, barkColor, smoothstep(0.66, 0.78, up));
   }
+#ifndef PLAIN
   // Weather and moss: stains as long as the stem is wide, the greener the nearer to the ground.
   float stain = noise(vec2(3.0 * normal.x, 0.5 * at.y + 2.0 * normal.y));
   own *= mix(vec3(1.08, 1.05, 0.98), vec3(0.62, 0.68, 0.5) + 0.3 * min(1.0, 4.0 * high), stain);
-#ifndef PLAIN
   if (tone.x > 0.1) {
     // Lumps, scars and lichens, each of its own size; noise about the stem has no seam.
     vec2 about = 6.0 * normal.xy;
@@ -230,7 +232,7 @@ void main() {
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
   // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.45 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
+  vec3 n = normalize(0.3 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
 #ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
@@ -241,13 +243,13 @@ void main() {
   float across = dot(n, light);
   float open = flutter.z;
   // Leaves deep in the crown are darker than those at its surface.
-  float near = smoothstep(0.05, 0.95, open);
+  float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.26, 1.0, sunlight(p, 0.009, 3.0 * flutter.y)) * (0.22 + 0.78 * near);
-  vec3 up = sky * (0.2 + 0.85 * near) * (0.72 + 0.28 * n.z);
+  float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
+  vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.05, 0.5) * (0.7 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.14 + 1.2 * max(0.65 * across + 0.35, 0.0) + through);
+  vec3 through = vec3(1.0, 1.05, 0.5) * (0.9 * max(-side * dot(flat_, light), 0.0));
+  vec3 direct = sun * sunny * (0.08 + 1.9 * max(0.85 * across + 0.15, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
@@ -389,6 +391,10 @@ out vec4 base;
 void main() {
   vec2 foot = field.xy + field.z * blade.xy;
   float tall = field.w * blade.z;
+  vec3 p = vec3(foot, ground);
+  float sunny = sunlight(p);
+  // Between the trees of a stand ferns and brambles are higher.
+  if (field.z > 150.0) tall *= mix(4.0, 1.0, sunny);
   float own = 6.2831853 * blade.w;
   // Gust fronts are curved.
   float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
@@ -397,16 +403,15 @@ void main() {
   int low = min(int(place), PLACES - 2);
   float speed = mix(gusts[low], gusts[low + 1], place - float(low));
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
-  vec3 p = vec3(foot, ground);
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w + 0.3 * max(0.0, tall - 0.6), 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
   vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-  base = vec4(tint * mix(vec3(0.43, 0.46, 0.55), vec3(1.0), sunlight(vec3(foot, ground))), clearness(p));
+  base = vec4(tint * mix(vec3(0.43, 0.46, 0.55), vec3(1.0), sunny), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -474,6 +479,7 @@ uniform float haze;
 uniform float kind;
 uniform vec3 light;
 uniform vec3 sun;
+uniform vec3 sky;
 uniform vec3 zenith;
 uniform vec3 horizon;
 uniform float dimmed;
@@ -490,12 +496,13 @@ float cloudy(vec2 p) {
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
   vec3 c = mix(horizon, zenith, 1.0 - exp(-3.6 * high));
-  // Clouds, whose sides towards the sun are brighter.
-  vec2 at = 0.9 * way.xy / (high + 0.2);
+  // Clouds, torn at their edges, whose sides towards the sun are brighter; the farther, the flatter.
+  vec2 at = 1.25 * way.xy / (high + 0.16);
+  at += 0.3 * vec2(noise(1.7 * at), noise(1.7 * at + 9.0));
   float cloud = cloudy(at);
-  float thick = smoothstep(0.42, 0.58, cloud) * smoothstep(0.02, 0.22, high);
-  float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.35 * thick, 0.0, 1.0);
-  c = mix(c, mix(horizon * 1.1, mix(horizon, zenith, 0.45), shaded), 0.85 * thick);
+  float thick = smoothstep(0.46, 0.66, cloud) * smoothstep(0.0, 0.2, high);
+  float shaded = clamp(4.0 * (cloudy(at + 0.16 * light.xy) - cloud) + 0.5 * thick, 0.0, 1.0);
+  c = mix(c, mix(horizon * 1.12, mix(horizon, zenith, 0.5), shaded), 0.9 * thick);
   float glow = max(dot(way, light), 0.0);
   c += sun * (0.1 * pow(glow, 6.0) + 0.16 * pow(glow, 60.0)) * dimmed;
   if (kind > 0.5) {
@@ -522,6 +529,62 @@ vec3 heaven(vec3 way) {
   }
   return c;
 }
+#ifndef PLAIN
+// A row of trees around the scene, over what is behind them: colour, and how much of it is seen.
+vec4 treeRow(vec3 way, float round, float seed) {
+  // Where the ray meets the cylinder on which they stand.
+  float a = dot(way.xy, way.xy);
+  float b = dot(eye.xy, way.xy);
+  float inside = round * round - dot(eye.xy, eye.xy);
+  if (inside < 0.0 || a < 1e-4) return vec4(0.0);
+  float far = (sqrt(b * b + a * inside) - b) / a;
+  vec3 p = eye + far * way;
+  float up = p.z - ground;
+  if (up < -0.5 || up > 22.0) return vec4(0.0);
+  float cells = floor(round * 0.7);
+  float along = (atan(p.y, p.x) / 6.2831853 + 0.5) * cells; // in cells of 9 m
+  vec2 outward = normalize(p.xy);
+  vec2 beside = vec2(-outward.y, outward.x);
+  vec2 leaf = vec2(9.0 * along, up);
+  float rough = cloudy(0.55 * leaf + seed);
+  float fine = cloudy(2.3 * leaf + seed);
+  // Woods, hedges and gaps.
+  float wooded = smoothstep(0.28, 0.52, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
+  vec4 best = vec4(0.0);
+  float first = -1.0;
+  for (float k = -1.0; k < 2.0; k++) {
+    float cell = mod(floor(along) + k, cells);
+    vec2 name = vec2(cell, 17.0 * seed);
+    float one = hash(name);
+    float two = hash(name + 71.0);
+    float dense = smoothstep(0.28, 0.52, tiled(vec2(cell * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
+    if (one < 0.75 - 0.75 * dense || two < first) continue;
+    float tall = (8.0 + 8.0 * hash(name + 5.0)) * (0.5 + 0.5 * dense);
+    float wide = tall * mix(0.3, 0.42, two) + 0.5;
+    bool isPointed = hash(name + 9.0) < 0.25;
+    if (isPointed) { wide *= 0.6; tall *= 1.25; }
+    float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
+    float z = (up - 0.52 * tall) / (0.5 * tall);
+    float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
+    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.5 : 1.3) * (rough - 0.48) + 0.5 * (fine - 0.48);
+    if (edge > 1.0 && (abs(x) * wide > 0.03 * tall || z > 0.0)) continue;
+    first = two;
+    float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
+    vec3 n = vec3(x * beside - deep * outward, z);
+    float shone = max(0.0, 0.25 + 0.75 * dot(normalize(n), light) + 1.5 * (fine - 0.5) + 1.2 * (rough - 0.5));
+    vec3 own = mix(isPointed ? vec3(0.1, 0.17, 0.1) : vec3(0.17, 0.24, 0.09), vec3(0.3, 0.33, 0.12), one * one * (isPointed ? 0.2 : 1.0));
+    vec3 lit = own * toned(sky * (0.3 + 0.4 * smoothstep(-0.9, 0.9, z) + 0.8 * (rough - 0.5)) + 1.3 * sun * shone);
+    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.94, edge));
+  }
+  // Bushes and nettles hide the stems.
+  float hedge = wooded * (0.8 + 3.2 * rough) - 0.6 + 0.6 * fine;
+  if (up < hedge) {
+    vec3 lit = mix(vec3(0.1, 0.14, 0.06), vec3(0.23, 0.3, 0.11), clamp(up / hedge + 1.2 * (fine - 0.5), 0.0, 1.0));
+    if (first < 0.6 || best.a < 1.0) best = vec4(lit, 1.0);
+  }
+  return best;
+}
+#endif
 // Blades of grass as they stand before each other, towards the eye: across and along the way of sight.
 float blades(vec2 p, float far, float size) {
   float up = log(far) * (eye.z - ground) / (4.0 * size);
@@ -548,7 +611,7 @@ void main() {
       slab.x += 0.5 * mod(floor(slab.y), 2.0);
       vec2 edge = abs(fract(slab) - 0.5);
       float joint = smoothstep(0.485, 0.495, max(edge.x, edge.y)) * (1.0 - smoothstep(0.1, 0.5, pixel / 0.12));
-      soil = vec3(0.7, 0.68, 0.64) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
+      soil = vec3(0.52, 0.505, 0.475) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
@@ -566,6 +629,15 @@ void main() {
     // Far meadows stay green up to the edge of the wood.
     c = mix(horizon, soil, max(0.6 * kind, exp(-haze * far)));
   }
+#ifndef PLAIN
+  if (kind > 0.5) {
+    // Rows of trees stand on it, the far one first.
+    for (float row = 2.0; row > 0.0; row--) {
+      vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
+      c = mix(c, mix(dimmed * trees.rgb, horizon, 0.06 + 0.13 * row), trees.a);
+    }
+  }
+#endif
   color = vec4(c, 1.0);
 }
 

@@ -7,7 +7,7 @@ import { grounds, outlineOf, places, seeded } from "./looks.js";
 /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
 /** Length of a whole leaf in leaflets. @type {Record<string, number>} */
-const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
+const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
 /** Width over length of a leaf with leaflets. @type {Record<string, number>} */
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
@@ -362,15 +362,16 @@ class Brush {
     });
   }
 
-  /** A candle of white flowers beside the leaf, as high as the picture. */
+  /** A candle of white flowers beside the leaf, as high as the picture; its colours allow for those that green is
+   * dulled by. */
   candle() {
     const { context, random } = this;
-    const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.4 * (1 / LEAF_SHARE - 1)];
+    const [middle, half] = [0.5 * (1 + 1 / LEAF_SHARE), 0.3 * (1 / LEAF_SHARE - 1)];
     for (let i = 0; i < 240; i++) {
       const up = random();
-      const reach = half * (1 - up) ** 0.7;
-      const light = 0.78 + 0.22 * random();
-      context.fillStyle = i % 6 ? css([1, 0.98, 0.9], light) : css([0.95, 0.72, 0.6], light);
+      const reach = half * (1 - up) ** 0.6;
+      const light = 0.75 + 0.25 * random();
+      context.fillStyle = i % 9 ? css([0.9, 1, 0.69], light) : css([0.85, 0.74, 0.5], light);
       context.beginPath();
       context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
       context.fill();
