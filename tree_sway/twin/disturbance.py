@@ -4,20 +4,26 @@
 Model of the forces on a tree that the wind at one place does not explain.
 
 An anemometer measures one place, and limbs apart from each other meet gusts of their own. Two
-places r apart share gusts of a frequency f by the coherence ``exp(-C f r / U)``, C near 8
+places r apart share gusts of a frequency f by the root coherence ``exp(-C f r / U)``, C near 8
 (Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211): of those that
 shake a tree at its first frequency, a mast some metres away tells nothing. The wind of each limb
-is therefore unknown, correlated among limbs by that law at the first frequency of the tree.
+is therefore unknown, and correlated among limbs by the mean of that coherence over the motion.
 
-Its spectrum is that of gusts (Kaimal et al. 1972, same journal 98, 563-589), ``4 s^2 T / (1 + 6 f
-T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f t)^2)`` with t = 0.31 T
-is within 40 % of it from 0.05 to 2 Hz.
+The motion has two parts (Davenport 1967, Journal of the Structural Division 93, 11-34): a lean in
+the gusts that are slower than the first frequency f1, with their spectrum S(f), and a resonance
+with those near it, as large as by ``pi f1 S(f1) / (4 z)`` of their variance, z the damping ratio.
+A stiff crown leans more than it swings, its limbs together.
+
+The spectrum is that of gusts (Kaimal et al. 1972, same journal as of 1961, 98, 563-589),
+``4 s^2 T / (1 + 6 f T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f
+t)^2)`` with t = 0.31 T is within 40 % of it from 0.05 to 2 Hz.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import math
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 
@@ -35,8 +41,17 @@ GUST = 0.3
 _LENGTH = 60.0
 """Integral length L of gusts in [m], that of IEC 61400-1 at 10 m."""
 
-_SHARED = 0.1
-"""Variance of an unknown wind of the whole crown over that of a limb [-]."""
+_SHORTER = 0.31
+"""Time constant of the first-order process over L / U [-]."""
+
+_AWAY = 12.0
+"""Distance of an anemometer in [m]: what it shares with the tree is not unknown."""
+
+_SLOWEST, _N_SLOW, _N_APART = 0.005, 16, 129
+"""
+Frequency over the first one from which on gusts are counted, their number, and that of distances
+for which a coherence is found.
+"""
 
 _LIFT = 0.3
 """Variance of the vertical unknown wind over that of the horizontal one [-]."""
@@ -55,13 +70,26 @@ class Disturbance:
     """
     Unknown forces on the first coordinates of a model in a mean wind.
 
-    ``covariance`` is of the modal forces, (m, m), and ``apart`` what it would be if each limb met
-    gusts of its own that move each coordinate as much; ``time_constant`` is the time in [s] after
-    which they have decayed to 1/e, ``air_damping`` the damping of each coordinate by the mean wind
-    in [1/s], (m,), and ``speed`` that wind in [m/s]; ``drag`` is the force on each coordinate of
-    the model against the rate of another in [1/s], (all, all). Of each limb, the stem first,
-    ``limb_slopes`` are the force on each coordinate per wind, (l, 3, m), and ``reach`` how far it
-    is from the middle of the crown over the farthest one, 0 for the stem, (l,).
+    Parameters
+    ----------
+    covariance
+        Covariance of the modal forces, (m, m).
+    apart
+        What it would be if each limb met gusts of its own that move each coordinate as much.
+    time_constant
+        Time in [s] after which they have decayed to 1/e.
+    air_damping
+        Damping of each coordinate by the mean wind in [1/s], (m,).
+    speed
+        That wind in [m/s].
+    drag
+        Force on each coordinate of the model against the rate of another in [1/s], (all, all).
+    limb_slopes
+        Force on each coordinate per wind of each limb, the stem first, (l, 3, m).
+    reach
+        How far each limb is from the middle of the crown over the farthest one, 0 for the stem,
+        (l,).
+
     """
 
     covariance: Floats
@@ -76,45 +104,111 @@ class Disturbance:
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
-    branches = simulator.banks[0].branches
     n_all = simulator.banks[0].oscillators.shapes.shape[1]
-    all_slopes, moved = _branch_slopes(simulator, speed, n_all)
-    drag = np.tensordot(all_slopes, moved, axes=((0, 1), (0, 1)))
+    slopes, moved = _branch_slopes(simulator, speed, n_all)
+    drag = np.tensordot(slopes, moved, axes=((0, 1), (0, 1)))
     air_damping = np.diag(drag)[:count].copy()
-    slope = all_slopes[:, :, :count]
+    limbs = _limbs(simulator, slopes[:, :, :count])
 
-    tree = simulator.tree
-    limb = limbs_of(tree.branch_parent)[tree.branch_of_segment[branches['first']]]
+    tunable = simulator.banks[0].oscillators.tunable
+    slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
+    circular = math.sqrt((tunable.stiffness / tunable.inertia)[slowest])
+    loss = (tunable.damping / tunable.inertia)[slowest] + drag[slowest, slowest]
+    damping_ratio = float(loss) / (2.0 * circular)
+    between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
+    frequency = float(simulator.frequencies(1)[0])
+    shared = shared_gusts(between, speed, frequency, damping_ratio)
+    covariance = np.square(GUST * speed) * _forces_by(limbs.slopes, shared)
+    apart = _forces_by(limbs.slopes, np.eye(len(between)))
+    scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
+    return Disturbance(
+        covariance,
+        apart * np.outer(scale, scale),
+        time_constant=_SHORTER * _LENGTH / speed,
+        air_damping=air_damping,
+        speed=speed,
+        drag=drag,
+        limb_slopes=limbs.slopes,
+        reach=limbs.reach,
+    )
+
+
+def shared_gusts(between: Floats, speed: float, frequency: float, damping_ratio: float) -> Floats:
+    """
+    Find how much limbs share of the gusts that move a tree.
+
+    Parameters
+    ----------
+    between
+        Distances of limbs in [m], (l, l).
+    speed
+        Mean wind in [m/s].
+    frequency, damping_ratio
+        Those of the first mode of the tree, in [Hz] and [-].
+
+    Returns
+    -------
+    Floats
+        Correlation of their winds [-], (l, l).
+
+    """
+    per_metre = DECAY / max(speed, 1.0)
+    slow = frequency * np.geomspace(_SLOWEST, 1.0, _N_SLOW)
+    known = np.exp(-per_metre * _AWAY * slow)
+    width = slow * math.log(slow[1] / slow[0])
+    leaning = width * _gust_spectrum(slow, speed) * (1.0 - known**2)
+    at_first = frequency * float(_gust_spectrum(np.array([frequency]), speed)[0])
+    swinging = math.pi / (4.0 * damping_ratio) * at_first
+    weight = np.append(leaning, swinging)
+    weight /= weight.sum()
+    apart = np.linspace(0.0, max(float(between.max()), 1e-9), _N_APART)
+    coherence = np.exp(-per_metre * np.outer(apart, np.append(slow, frequency)))
+    return np.interp(between, apart, coherence @ weight)
+
+
+def _gust_spectrum(frequency: Floats, speed: float) -> Floats:
+    """Spectrum of gusts of unit variance at frequencies [Hz], in [1/Hz]."""
+    time = _LENGTH / max(speed, 1.0)
+    return np.asarray(4.0 * time / (1.0 + 6.0 * time * frequency) ** (5.0 / 3.0))
+
+
+class _Limbs(NamedTuple):
+    """Of each limb its slopes, (l, 3, m), the middle of its load [m], (l, 3), and its reach."""
+
+    slopes: Floats
+    middle: Floats
+    reach: Floats
+
+
+def _limbs(simulator: SwaySimulator, slopes: Floats) -> _Limbs:
+    """Sum what moves branches, with slopes (b, 3, m), over their limbs."""
+    tree, branches = simulator.tree, simulator.banks[0].branches
+    branch = tree.branch_of_segment[branches['first']]
+    limb = limbs_of(tree.branch_parent)[branch]
     n_limbs = int(limb.max()) + 1
     area = branches['area'][:, None]
-    by_limb, load, moment = (
-        _summed(each, limb, n_limbs) for each in (slope, area, area * branches['centre'])
-    )
+    load = _summed(area, limb, n_limbs)
+    moment = _summed(area * branches['centre'], limb, n_limbs)
     middle = moment / np.maximum(load, 1e-12)
-    between = np.linalg.norm(middle[:, None] - middle, axis=2)
-    frequency = float(simulator.frequencies(1)[0])
-    shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
-    covariance = np.square(GUST * speed) * _forces_by(by_limb, _SHARED + shared)
-    apart = _forces_by(by_limb, np.eye(n_limbs))
-    scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
-    apart *= np.outer(scale, scale)
-    reach = np.linalg.norm(middle - load[:, 0] @ middle / load.sum(), axis=1)
+    of_crown = load[:, 0] @ middle / load.sum()
+    reach = np.linalg.norm(middle - of_crown, axis=1)
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
-    return Disturbance(
-        covariance, apart, 0.31 * _LENGTH / speed, air_damping, speed, drag, by_limb, reach
-    )  # fmt: skip
+    return _Limbs(_summed(slopes, limb, n_limbs), middle, reach)
 
 
 def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
     """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
-    axes = zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True)
-    return np.asarray(sum(share * along.T @ correlation @ along for share, along in axes))
+    found = np.zeros((slopes.shape[2], slopes.shape[2]))
+    for variance, along in zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True):
+        found += variance * (along.T @ correlation @ along)
+    return found
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     """Slope of the modal forces by the wind of the whole crown in a mean wind [m/s], (3, m)."""
-    return np.asarray(_branch_slopes(simulator, speed, count)[0].sum(axis=0))
+    slopes, _ = _branch_slopes(simulator, speed, count)
+    return np.asarray(slopes.sum(axis=0))
 
 
 def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
@@ -122,7 +216,8 @@ def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     tree = simulator.tree
     slopes, _ = _branch_slopes(simulator, speed, count)
     branch = tree.branch_of_segment[simulator.banks[0].branches['first']]
-    return _summed(slopes, parts_of(tree).of_branch[branch], N_DELAYS)
+    part = parts_of(tree).of_branch[branch]
+    return _summed(slopes, part, N_DELAYS)
 
 
 def _summed(values: Floats, group: Ints, n_groups: int) -> Floats:
@@ -137,10 +232,13 @@ def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[
     branches = simulator.banks[0].branches
     shapes = np.ascontiguousarray(simulator.banks[0].oscillators.shapes[:, :count])
     bases = base_motion(branches, shapes)
-    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
-    pushed = at + own_motion(branches, 'load_mode', shapes)
+    carried = branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
+    base = bases[:, :3] + carried
+    pushed = base + own_motion(branches, 'load_mode', shapes)
+    moved = base + own_motion(branches, 'damping_mode', shapes)
+    density = drag_density(speed, *simulator.models[0].drag_law)
+    per_area = _SLOPE * density * speed * branches['speed']
+    per_speed = per_area * branches['area']
     projector = branches['projector'][:, _PROJECTOR].reshape(-1, 3, 3)
-    per_speed = drag_density(speed, *simulator.models[0].drag_law) * speed
-    area = _SLOPE * per_speed * branches['speed'] * branches['area']
-    moved = at + own_motion(branches, 'damping_mode', shapes)
-    return area[:, None, None] * (projector @ pushed), moved
+    slopes = per_speed[:, None, None] * (projector @ pushed)
+    return slopes, moved
