@@ -180,7 +180,8 @@ def fit_of(
     told = np.zeros((2, *table.shape))
     for i, stiff in enumerate(_STIFFNESSES.tolist()):
         for j, damped in enumerate(_DAMPINGS.tolist()):
-            damping_there = damped * damping + drag * air_damping
+            # A damping ratio that stays is a damping that goes with the root of the stiffness.
+            damping_there = damped * math.sqrt(stiff) * damping + drag * air_damping
             for each in sensors:
                 with one_thread():
                     misfit, drags, known = each.of(stiff, damping_there)
