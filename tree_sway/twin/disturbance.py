@@ -7,22 +7,16 @@ An anemometer measures one place, and limbs apart from each other meet gusts of 
 places r apart share gusts of a frequency f by the root coherence ``exp(-C f r / U)``, C near 8
 (Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211): of those that
 shake a tree at its first frequency, a mast some metres away tells nothing. The wind of each limb
-is therefore unknown, and correlated among limbs by the mean of that coherence over the motion.
+is therefore unknown, correlated among limbs by that law at the first frequency of the tree.
 
-The motion has two parts (Davenport 1967, Journal of the Structural Division 93, 11-34): a lean in
-the gusts that are slower than the first frequency f1, with their spectrum S(f), and a resonance
-with those near it, as large as by ``pi f1 S(f1) / (4 z)`` of their variance, z the damping ratio.
-A stiff crown leans more than it swings, its limbs together.
-
-The spectrum is that of gusts (Kaimal et al. 1972, same journal as of 1961, 98, 563-589),
-``4 s^2 T / (1 + 6 f T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f
-t)^2)`` with t = 0.31 T is within 40 % of it from 0.05 to 2 Hz.
+Its spectrum is that of gusts (Kaimal et al. 1972, same journal 98, 563-589), ``4 s^2 T / (1 + 6 f
+T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f t)^2)`` with t = 0.31 T
+is within 40 % of it from 0.05 to 2 Hz.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-import math
 from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
@@ -44,14 +38,8 @@ _LENGTH = 60.0
 _SHORTER = 0.31
 """Time constant of the first-order process over L / U [-]."""
 
-_AWAY = 12.0
-"""Distance of an anemometer in [m]: what it shares with the tree is not unknown."""
-
-_SLOWEST, _N_SLOW, _N_APART = 0.005, 16, 129
-"""
-Frequency over the first one from which on gusts are counted, their number, and that of distances
-for which a coherence is found.
-"""
+_SHARED = 0.1
+"""Variance of an unknown wind of the whole crown over that of a limb [-]."""
 
 _LIFT = 0.3
 """Variance of the vertical unknown wind over that of the horizontal one [-]."""
@@ -110,15 +98,10 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     air_damping = np.diag(drag)[:count].copy()
     limbs = _limbs(simulator, slopes[:, :, :count])
 
-    tunable = simulator.banks[0].oscillators.tunable
-    slowest = int(np.argmin(tunable.stiffness / tunable.inertia))
-    circular = math.sqrt((tunable.stiffness / tunable.inertia)[slowest])
-    loss = (tunable.damping / tunable.inertia)[slowest] + drag[slowest, slowest]
-    damping_ratio = float(loss) / (2.0 * circular)
     between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
-    shared = shared_gusts(between, speed, frequency, damping_ratio)
-    covariance = np.square(GUST * speed) * _forces_by(limbs.slopes, shared)
+    shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
+    covariance = np.square(GUST * speed) * _forces_by(limbs.slopes, _SHARED + shared)
     apart = _forces_by(limbs.slopes, np.eye(len(between)))
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     return Disturbance(
@@ -131,45 +114,6 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
         limb_slopes=limbs.slopes,
         reach=limbs.reach,
     )
-
-
-def shared_gusts(between: Floats, speed: float, frequency: float, damping_ratio: float) -> Floats:
-    """
-    Find how much limbs share of the gusts that move a tree.
-
-    Parameters
-    ----------
-    between
-        Distances of limbs in [m], (l, l).
-    speed
-        Mean wind in [m/s].
-    frequency, damping_ratio
-        Those of the first mode of the tree, in [Hz] and [-].
-
-    Returns
-    -------
-    Floats
-        Correlation of their winds [-], (l, l).
-
-    """
-    per_metre = DECAY / max(speed, 1.0)
-    slow = frequency * np.geomspace(_SLOWEST, 1.0, _N_SLOW)
-    known = np.exp(-per_metre * _AWAY * slow)
-    width = slow * math.log(slow[1] / slow[0])
-    leaning = width * _gust_spectrum(slow, speed) * (1.0 - known**2)
-    at_first = frequency * float(_gust_spectrum(np.array([frequency]), speed)[0])
-    swinging = math.pi / (4.0 * damping_ratio) * at_first
-    weight = np.append(leaning, swinging)
-    weight /= weight.sum()
-    apart = np.linspace(0.0, max(float(between.max()), 1e-9), _N_APART)
-    coherence = np.exp(-per_metre * np.outer(apart, np.append(slow, frequency)))
-    return np.interp(between, apart, coherence @ weight)
-
-
-def _gust_spectrum(frequency: Floats, speed: float) -> Floats:
-    """Spectrum of gusts of unit variance at frequencies [Hz], in [1/Hz]."""
-    time = _LENGTH / max(speed, 1.0)
-    return np.asarray(4.0 * time / (1.0 + 6.0 * time * frequency) ** (5.0 / 3.0))
 
 
 class _Limbs(NamedTuple):
