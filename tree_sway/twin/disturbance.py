@@ -101,7 +101,8 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
-    covariance = np.square(GUST * speed) * _forces_by(limbs.slopes, _SHARED + shared)
+    variance = np.square(GUST * speed)
+    covariance = variance * _forces_by(limbs.slopes, _SHARED + shared)
     apart = _forces_by(limbs.slopes, np.eye(len(between)))
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     return Disturbance(
@@ -145,7 +146,8 @@ def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
     """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
     found = np.zeros((slopes.shape[2], slopes.shape[2]))
     for variance, along in zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True):
-        found += variance * (along.T @ correlation @ along)
+        forces = along.T @ correlation @ along
+        found += variance * forces
     return found
 
 

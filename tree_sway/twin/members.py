@@ -96,7 +96,8 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     middles = (np.arange(count) + 0.5) / count
     strata = ndtri(middles)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
-    covariance = np.cov(drawn) + 1e-9 * np.eye(n_values)
+    least = 1e-9 * np.eye(n_values)
+    covariance = np.cov(drawn) + least
     root = np.linalg.cholesky(covariance)
     uncorrelated = np.linalg.solve(root, drawn)
     order = uncorrelated.argsort(axis=1)
@@ -112,8 +113,9 @@ def most_of(found: Floats) -> Floats:
     low = int(rank)
     high = -low - 1
     share = rank - low
-    from_below = (1.0 - share) * ordered[..., low] + share * ordered[..., low + 1]
-    from_above = (1.0 - share) * ordered[..., high] + share * ordered[..., high - 1]
+    rest = 1.0 - share
+    from_below = rest * ordered[..., low] + share * ordered[..., low + 1]
+    from_above = rest * ordered[..., high] + share * ordered[..., high - 1]
     return np.stack([from_below, from_above])
 
 
@@ -196,7 +198,9 @@ class Members:
         else:
             late = self._far_gusts(self._far[0])
         in_still_air = force + self._air * rate
-        self._force = in_still_air * self._drag + self._gust + late
+        self._force = in_still_air * self._drag
+        self._force += self._gust
+        self._force += late
         state = np.stack([*self.motion, self._force])
         parts = self._step * state
         self.motion = parts.sum(axis=1)
@@ -232,7 +236,8 @@ class Members:
         self._air = forces.air_damping[:, None]
         self._damp = np.outer(unknown.all_damping[:n], of_wood)
         self._damp += self._air * self._drag
-        step = held_propagator(self._damp.ravel(), self._stiff.ravel(), self._dt)
+        damping, stiffness = self._damp.ravel(), self._stiff.ravel()
+        step = held_propagator(damping, stiffness, self._dt)
         self._step = step.reshape(2, 3, n, _N_MEMBERS)
         self._find_patterns(forces)
         if self._far is None:
@@ -248,7 +253,8 @@ class Members:
         kept = values > 1e-4 * values[-1]
         self._decay = math.exp(-self._dt / forces.time_constant)
         driven = math.sqrt(1.0 - self._decay**2)
-        self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
+        deviations = np.sqrt(values[kept])
+        self._gusts = driven * vectors[:, kept] * deviations
         self._unit = forces.speed * GUST
 
     def _find_delays(self, slopes: Floats, reach: Floats) -> None:
@@ -284,7 +290,8 @@ class Members:
 
     def _late_gusts(self, apart: Floats) -> Floats:
         """Find forces of gusts that reach the limbs after the delays of each member, (n, e)."""
-        ahead = self._slow / max(math.hypot(*self._slow), 1e-9)
+        speed = math.hypot(*self._slow)
+        ahead = self._slow / max(speed, 1e-9)
         along = apart[:, :2] @ ahead
         winds = _ACROSS * apart
         winds[:, :2] += (_ALONG - _ACROSS) * np.outer(along, ahead)
@@ -296,7 +303,8 @@ class Members:
         """Find forces of what is drawn beside the expected wind, a stretch for each, (n, e)."""
         winds = wind.others(self._offsets, _ALONG, _ACROSS)
         by_member = winds.reshape(_N_MEMBERS, -1)
-        return np.asarray((self._per_part @ by_member.T) * self._drag)
+        found = self._per_part @ by_member.T
+        return np.asarray(found * self._drag)
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
@@ -307,11 +315,13 @@ class Members:
         estimate[:] = moved.sum(axis=1)
         beyond = self._beyond(eta, rate, force)
         flat = estimate.reshape(len(beyond), -1)
-        innovation = self._measure(gains.sensed @ beyond) - gains.sensed @ flat
+        measured = self._measure(gains.sensed @ beyond)
+        innovation = measured - gains.sensed @ flat
         correction = gains.gain @ innovation
         estimate += correction.reshape(estimate.shape)
         ahead = beyond[: self._count]
-        self.errors = ahead - estimate[0] * self._observer.trust[:, None]
+        trust = self._observer.trust[:, None]
+        self.errors = ahead - estimate[0] * trust
 
     def _beyond(self, eta: Floats, rate: Floats, force: Floats) -> Floats:
         """Displacement, rate and force of each member beyond those of the model, (3 n, e)."""
