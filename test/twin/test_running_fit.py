@@ -34,7 +34,7 @@ def test_air_and_forces_are_weighted_by_the_motion_of_their_stretches() -> None:
             filled += 1
             spectrum.native.filled = filled
             spectrum.count += step
-            spectrum._products[0, 0, 0] += step * power
+            spectrum._power[0] += step * power
             fit.note(speed, 0.0)
     assert fit._weight == pytest.approx(100.0)
     np.testing.assert_allclose(fit._air / fit._weight, 0.9 * 0.8 + 0.1 * 0.2)

@@ -57,6 +57,14 @@ def test_too_little_or_half_of_a_sensor_tells_nothing() -> None:
     assert not said(moved)
 
 
+def test_a_limb_that_turns_about_other_points_at_other_frequencies_is_not_told() -> None:
+    moved, model = sway(1.5, 1.0, 2), sway(3.0, 1.0, 1)
+    assert other_lever(moved, model, 1.0, DT, GRAVITY)
+    model += sway(1.0, 1.5, 3)
+    moved += sway(0.6, 1.5, 4)
+    assert not other_lever(moved, model, 1.0, DT, GRAVITY)
+
+
 @pytest.mark.parametrize('lever', [1.5, 3.0])
 def test_it_is_noted_when_a_mounting_is_found(lever: float) -> None:
     track = SensorTrack(MotionSensor('phone', SensorPlace(0, 0.5)), 1.0, DT)

@@ -75,6 +75,14 @@ def test_another_frequency_is_seen_and_stays_said(ratio: float) -> None:
         assert 'sways differently' in str(watch.change)
 
 
+def test_leaves_that_have_dried_are_no_change_any_more() -> None:
+    frequencies = [1.0] * 5 + [0.9] * 2
+    assert has_changed(watched(frequencies, seed=7))
+    dried = watched([*frequencies, 1.0, 1.0, 1.0], seed=7)
+    assert not has_changed(dried)
+    assert 'as before' in str(dried.change)
+
+
 def test_another_mode_of_a_limb_is_seen_in_its_band() -> None:
     watch = watched([1.0] * 8, seed=9, limb=3.6)
     assert watch.change is not None

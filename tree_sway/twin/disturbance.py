@@ -4,7 +4,7 @@
 Model of the forces on a tree that the wind at one place does not explain.
 
 An anemometer measures one place, and limbs apart from each other meet gusts of their own. Two
-places r apart share gusts of a frequency f by the coherence ``exp(-C f r / U)``, C near 8
+places r apart share gusts of a frequency f by the root coherence ``exp(-C f r / U)``, C near 8
 (Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211): of those that
 shake a tree at its first frequency, a mast some metres away tells nothing. The wind of each limb
 is therefore unknown, correlated among limbs by that law at the first frequency of the tree.
@@ -17,7 +17,7 @@ is within 40 % of it from 0.05 to 2 Hz.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 
@@ -34,6 +34,9 @@ GUST = 0.3
 
 _LENGTH = 60.0
 """Integral length L of gusts in [m], that of IEC 61400-1 at 10 m."""
+
+_SHORTER = 0.31
+"""Time constant of the first-order process over L / U [-]."""
 
 _SHARED = 0.1
 """Variance of an unknown wind of the whole crown over that of a limb [-]."""
@@ -55,13 +58,26 @@ class Disturbance:
     """
     Unknown forces on the first coordinates of a model in a mean wind.
 
-    ``covariance`` is of the modal forces, (m, m), and ``apart`` what it would be if each limb met
-    gusts of its own that move each coordinate as much; ``time_constant`` is the time in [s] after
-    which they have decayed to 1/e, ``air_damping`` the damping of each coordinate by the mean wind
-    in [1/s], (m,), and ``speed`` that wind in [m/s]; ``drag`` is the force on each coordinate of
-    the model against the rate of another in [1/s], (all, all). Of each limb, the stem first,
-    ``limb_slopes`` are the force on each coordinate per wind, (l, 3, m), and ``reach`` how far it
-    is from the middle of the crown over the farthest one, 0 for the stem, (l,).
+    Parameters
+    ----------
+    covariance
+        Covariance of the modal forces, (m, m).
+    apart
+        What it would be if each limb met gusts of its own that move each coordinate as much.
+    time_constant
+        Time in [s] after which they have decayed to 1/e.
+    air_damping
+        Damping of each coordinate by the mean wind in [1/s], (m,).
+    speed
+        That wind in [m/s].
+    drag
+        Force on each coordinate of the model against the rate of another in [1/s], (all, all).
+    limb_slopes
+        Force on each coordinate per wind of each limb, the stem first, (l, 3, m).
+    reach
+        How far each limb is from the middle of the crown over the farthest one, 0 for the stem,
+        (l,).
+
     """
 
     covariance: Floats
@@ -76,45 +92,69 @@ class Disturbance:
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
-    branches = simulator.banks[0].branches
     n_all = simulator.banks[0].oscillators.shapes.shape[1]
-    all_slopes, moved = _branch_slopes(simulator, speed, n_all)
-    drag = np.tensordot(all_slopes, moved, axes=((0, 1), (0, 1)))
+    slopes, moved = _branch_slopes(simulator, speed, n_all)
+    drag = np.tensordot(slopes, moved, axes=((0, 1), (0, 1)))
     air_damping = np.diag(drag)[:count].copy()
-    slope = all_slopes[:, :, :count]
+    limbs = _limbs(simulator, slopes[:, :, :count])
 
-    tree = simulator.tree
-    limb = limbs_of(tree.branch_parent)[tree.branch_of_segment[branches['first']]]
-    n_limbs = int(limb.max()) + 1
-    area = branches['area'][:, None]
-    by_limb, load, moment = (
-        _summed(each, limb, n_limbs) for each in (slope, area, area * branches['centre'])
-    )
-    middle = moment / np.maximum(load, 1e-12)
-    between = np.linalg.norm(middle[:, None] - middle, axis=2)
+    between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
     frequency = float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
-    covariance = np.square(GUST * speed) * _forces_by(by_limb, _SHARED + shared)
-    apart = _forces_by(by_limb, np.eye(n_limbs))
+    variance = np.square(GUST * speed)
+    covariance = variance * _forces_by(limbs.slopes, _SHARED + shared)
+    apart = _forces_by(limbs.slopes, np.eye(len(between)))
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
-    apart *= np.outer(scale, scale)
-    reach = np.linalg.norm(middle - load[:, 0] @ middle / load.sum(), axis=1)
+    return Disturbance(
+        covariance,
+        apart * np.outer(scale, scale),
+        time_constant=_SHORTER * _LENGTH / speed,
+        air_damping=air_damping,
+        speed=speed,
+        drag=drag,
+        limb_slopes=limbs.slopes,
+        reach=limbs.reach,
+    )
+
+
+class _Limbs(NamedTuple):
+    """Of each limb its slopes, (l, 3, m), the middle of its load [m], (l, 3), and its reach."""
+
+    slopes: Floats
+    middle: Floats
+    reach: Floats
+
+
+def _limbs(simulator: SwaySimulator, slopes: Floats) -> _Limbs:
+    """Sum what moves branches, with slopes (b, 3, m), over their limbs."""
+    tree, branches = simulator.tree, simulator.banks[0].branches
+    branch = tree.branch_of_segment[branches['first']]
+    limb = limbs_of(tree.branch_parent)[branch]
+    n_limbs = int(limb.max()) + 1
+    area = branches['area'][:, None]
+    load = _summed(area, limb, n_limbs)
+    moment = _summed(area * branches['centre'], limb, n_limbs)
+    middle = moment / np.maximum(load, 1e-12)
+    of_crown = load[:, 0] @ middle / load.sum()
+    reach = np.linalg.norm(middle - of_crown, axis=1)
     reach[0] = 0.0
     reach /= max(float(reach.max()), 1e-9)
-    return Disturbance(
-        covariance, apart, 0.31 * _LENGTH / speed, air_damping, speed, drag, by_limb, reach
-    )  # fmt: skip
+    return _Limbs(_summed(slopes, limb, n_limbs), middle, reach)
 
 
 def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
     """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
-    axes = zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True)
-    return np.asarray(sum(share * along.T @ correlation @ along for share, along in axes))
+    found = np.zeros((slopes.shape[2], slopes.shape[2]))
+    for variance, along in zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True):
+        forces = along.T @ correlation @ along
+        found += variance * forces
+    return found
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     """Slope of the modal forces by the wind of the whole crown in a mean wind [m/s], (3, m)."""
-    return np.asarray(_branch_slopes(simulator, speed, count)[0].sum(axis=0))
+    slopes, _ = _branch_slopes(simulator, speed, count)
+    return np.asarray(slopes.sum(axis=0))
 
 
 def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
@@ -122,7 +162,8 @@ def part_slopes(simulator: SwaySimulator, speed: float, count: int) -> Floats:
     tree = simulator.tree
     slopes, _ = _branch_slopes(simulator, speed, count)
     branch = tree.branch_of_segment[simulator.banks[0].branches['first']]
-    return _summed(slopes, parts_of(tree).of_branch[branch], N_DELAYS)
+    part = parts_of(tree).of_branch[branch]
+    return _summed(slopes, part, N_DELAYS)
 
 
 def _summed(values: Floats, group: Ints, n_groups: int) -> Floats:
@@ -137,10 +178,13 @@ def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[
     branches = simulator.banks[0].branches
     shapes = np.ascontiguousarray(simulator.banks[0].oscillators.shapes[:, :count])
     bases = base_motion(branches, shapes)
-    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
-    pushed = at + own_motion(branches, 'load_mode', shapes)
+    carried = branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
+    base = bases[:, :3] + carried
+    pushed = base + own_motion(branches, 'load_mode', shapes)
+    moved = base + own_motion(branches, 'damping_mode', shapes)
+    density = drag_density(speed, *simulator.models[0].drag_law)
+    per_area = _SLOPE * density * speed * branches['speed']
+    per_speed = per_area * branches['area']
     projector = branches['projector'][:, _PROJECTOR].reshape(-1, 3, 3)
-    per_speed = drag_density(speed, *simulator.models[0].drag_law) * speed
-    area = _SLOPE * per_speed * branches['speed'] * branches['area']
-    moved = at + own_motion(branches, 'damping_mode', shapes)
-    return area[:, None, None] * (projector @ pushed), moved
+    slopes = per_speed[:, None, None] * (projector @ pushed)
+    return slopes, moved

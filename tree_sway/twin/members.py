@@ -93,9 +93,11 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
     of its wood and drag. Ranks are taken from draws whose correlation is removed (Iman & Conover
     1982, Communications in Statistics B11, 311-334).
     """
-    strata = ndtri((np.arange(count) + 0.5) / count)
+    middles = (np.arange(count) + 0.5) / count
+    strata = ndtri(middles)
     drawn = np.stack([rng.permutation(strata) for _ in range(n_values)])
-    covariance = np.cov(drawn) + 1e-9 * np.eye(n_values)
+    least = 1e-9 * np.eye(n_values)
+    covariance = np.cov(drawn) + least
     root = np.linalg.cholesky(covariance)
     uncorrelated = np.linalg.solve(root, drawn)
     order = uncorrelated.argsort(axis=1)
@@ -106,11 +108,14 @@ def uncorrelated_draws(count: int, n_values: int, rng: np.random.Generator) -> F
 def most_of(found: Floats) -> Floats:
     """Find the bounds of the middle 80 %, (2, ...), of a value of each member, (..., e)."""
     ordered = np.sort(found, axis=-1)
-    rank = 0.5 * (1.0 - SHARE_WITHIN) * (_N_MEMBERS + 1) - 1.0
+    beyond = 0.5 * (1.0 - SHARE_WITHIN)
+    rank = beyond * (_N_MEMBERS + 1) - 1.0
     low = int(rank)
-    share = rank - int(rank)
-    from_below = (1.0 - share) * ordered[..., low] + share * ordered[..., low + 1]
-    from_above = (1.0 - share) * ordered[..., -low - 1] + share * ordered[..., -low - 2]
+    high = -low - 1
+    share = rank - low
+    rest = 1.0 - share
+    from_below = rest * ordered[..., low] + share * ordered[..., low + 1]
+    from_above = rest * ordered[..., high] + share * ordered[..., high - 1]
     return np.stack([from_below, from_above])
 
 
@@ -138,71 +143,32 @@ class Members:
         spreads: Uncertainty,
         far: tuple[FarWind, SwaySimulator] | None = None,
     ) -> None:
+        self._observer = observer
+        self._dt = dt
         self._far = far
-        self._offsets = SAMPLES // _N_MEMBERS * np.arange(_N_MEMBERS)
-        self._observer, self._dt = observer, dt
         self.spreads = spreads
         n = self._count = observer.count
         self._rng = np.random.default_rng(0)
         self._drawn = uncorrelated_draws(_N_MEMBERS, len(spreads), self._rng)
+        apart = SAMPLES // _N_MEMBERS
+        self._offsets = apart * np.arange(_N_MEMBERS)
         self._limb_draws = np.zeros((0, _N_MEMBERS))
         self._per_delay = np.zeros((n * _N_MEMBERS, 3 * N_DELAYS))
-        self._late = np.zeros((n, _N_MEMBERS))
         self.motion = np.zeros((2, n, _N_MEMBERS))
         """Displacement and rate of each, (2, n, e)."""
-        self._gust, self._force = np.zeros((2, n, _N_MEMBERS))
+        self._force = np.zeros((n, _N_MEMBERS))
+        self._gust = np.zeros((n, _N_MEMBERS))
         self._estimate = np.zeros((3, n, _N_MEMBERS))
         self._bias = np.zeros((0, _N_MEMBERS))
         self._slow = np.zeros(2)
         self._fast = 0.0
-        self._steps = self._measured = 0
+        self._steps = 0
+        self._measured = 0
         self._filled_for: tuple[object, object, object] = (None, None, None)
         self.stiffness = np.ones(_N_MEMBERS)
         """Stiffness of each over the model's, (e,)."""
         self.errors = np.zeros((n, _N_MEMBERS))
         """Displacement of each member less the filter's estimate of it, (n, e)."""
-
-    def _fill(self) -> None:
-        """Find propagator, drag and gusts of each member for the present wind and spreads."""
-        n, unknown = self._count, self._observer.unknown
-        forces = self._forces()
-        factors = np.exp(np.array(self.spreads)[:, None] * self._drawn)
-        self.stiffness, loss, self._drag = factors
-        self._stiff = np.outer(unknown.stiffness, self.stiffness)
-        self._air = forces.air_damping[:, None]
-        self._damp = np.outer(unknown.all_damping[:n], loss * np.sqrt(self.stiffness))
-        self._damp += self._air * self._drag
-        step = held_propagator(self._damp.ravel(), self._stiff.ravel(), self._dt)
-        self._step = step.reshape(2, 3, n, _N_MEMBERS)
-        values, vectors = np.linalg.eigh(forces.covariance)
-        kept = values > 1e-4 * values[-1]
-        self._decay = math.exp(-self._dt / forces.time_constant)
-        driven = math.sqrt(1.0 - self._decay**2)
-        self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
-        self._unit = forces.speed * GUST
-        if self._far is None:
-            self._draw_delays(forces.limb_slopes, forces.reach)
-        else:
-            slopes = part_slopes(self._far[1], forces.speed, n)
-            self._per_part = np.ascontiguousarray(slopes.reshape(-1, n).T)
-
-    def _forces(self) -> Disturbance:
-        """Return what the wind does not tell, in the present wind."""
-        return self._observer.unknown.present_forces(keeps_old=self._observer.is_active)
-
-    def _draw_delays(self, slopes: Floats, reach: Floats) -> None:
-        """Find the force on each member per wind of each delay, summed over its limbs."""
-        if len(self._limb_draws) != len(reach):
-            self._limb_draws = self._rng.random((len(reach), _N_MEMBERS))
-        drawn_reach = self._limb_draws * reach[:, None]
-        delays = np.rint(drawn_reach * (N_DELAYS - 1)).astype(np.intp)
-        n = self._count
-        by_member = np.zeros((_N_MEMBERS, N_DELAYS, 3, n))
-        for forces, of_limb in zip(by_member, delays.T, strict=True):
-            np.add.at(forces, of_limb, slopes)
-        by_member *= self._drag[:, None, None, None]
-        by_coordinate = by_member.transpose(3, 0, 2, 1)
-        self._per_delay = by_coordinate.reshape(n * _N_MEMBERS, -1).copy()
 
     def step(self, swing: tuple[Floats, ...], wind: tuple[float, float], apart: Floats) -> None:
         """
@@ -219,25 +185,25 @@ class Members:
 
         """
         eta, rate, force = (each[: self._count, None] for each in swing)
-        present = self._forces(), self._observer.stiffness, self.spreads
-        if any(now is not then for now, then in zip(present, self._filled_for, strict=True)):
-            self._fill()
-            self._filled_for = present
+        self._fill_anew()
         self._steps += 1
         if self._steps == 1:
             self.motion[:] = eta, rate
             self._slow = np.array(wind)
             self.errors[:] = 0.0
             return
-        if self._far is not None:
-            winds = self._far[0].others(self._offsets, _ALONG, _ACROSS)
-            self._late = (self._per_part @ winds.reshape(_N_MEMBERS, -1).T) * self._drag
-        else:
+        if self._far is None:
             self._blow(np.array(wind))
-            self._reach_limbs(apart)
-        self._force = (force + self._air * rate) * self._drag + self._gust + self._late
-        moved = self._step * [*self.motion, self._force]
-        self.motion = moved.sum(axis=1)
+            late = self._late_gusts(apart)
+        else:
+            late = self._far_gusts(self._far[0])
+        in_still_air = force + self._air * rate
+        self._force = in_still_air * self._drag
+        self._force += self._gust
+        self._force += late
+        state = np.stack([*self.motion, self._force])
+        parts = self._step * state
+        self.motion = parts.sum(axis=1)
         if self._observer.is_active:
             self._filter(eta, rate, force)
         else:
@@ -245,49 +211,141 @@ class Members:
             self._measured = 0
             self.errors = self.motion[0] - eta
 
+    def _fill_anew(self) -> None:
+        """Find the law of the members again where wind, model or spreads have changed."""
+        forces = self._present_forces()
+        now = forces, self._observer.stiffness, self.spreads
+        is_same = [one is other for one, other in zip(now, self._filled_for, strict=True)]
+        if not all(is_same):
+            self._fill(forces)
+            self._filled_for = now
+
+    def _present_forces(self) -> Disturbance:
+        """Return what the wind does not tell, in the present wind."""
+        unknown = self._observer.unknown
+        return unknown.present_forces(keeps_old=self._observer.is_active)
+
+    def _fill(self, forces: Disturbance) -> None:
+        """Find propagator, drag and gusts of each member for the present wind and spreads."""
+        n, unknown = self._count, self._observer.unknown
+        deviations = np.array(self.spreads)[:, None]
+        factors = np.exp(deviations * self._drawn)
+        self.stiffness, loss, self._drag = factors
+        self._stiff = np.outer(unknown.stiffness, self.stiffness)
+        of_wood = loss * np.sqrt(self.stiffness)
+        self._air = forces.air_damping[:, None]
+        self._damp = np.outer(unknown.all_damping[:n], of_wood)
+        self._damp += self._air * self._drag
+        damping, stiffness = self._damp.ravel(), self._stiff.ravel()
+        step = held_propagator(damping, stiffness, self._dt)
+        self._step = step.reshape(2, 3, n, _N_MEMBERS)
+        self._find_patterns(forces)
+        if self._far is None:
+            self._find_delays(forces.limb_slopes, forces.reach)
+        else:
+            slopes = part_slopes(self._far[1], forces.speed, n)
+            by_part = slopes.reshape(-1, n)
+            self._per_part = np.ascontiguousarray(by_part.T)
+
+    def _find_patterns(self, forces: Disturbance) -> None:
+        """Find the patterns of the gusts that an anemometer averages away, and their decay."""
+        values, vectors = np.linalg.eigh(forces.covariance)
+        kept = values > 1e-4 * values[-1]
+        self._decay = math.exp(-self._dt / forces.time_constant)
+        driven = math.sqrt(1.0 - self._decay**2)
+        deviations = np.sqrt(values[kept])
+        self._gusts = driven * vectors[:, kept] * deviations
+        self._unit = forces.speed * GUST
+
+    def _find_delays(self, slopes: Floats, reach: Floats) -> None:
+        """Find the force on each member per wind of each delay, summed over its limbs."""
+        n, n_limbs = self._count, len(reach)
+        if len(self._limb_draws) != n_limbs:
+            self._limb_draws = self._rng.random((n_limbs, _N_MEMBERS))
+        drawn_reach = self._limb_draws * reach[:, None]
+        delays = np.rint(drawn_reach * (N_DELAYS - 1)).astype(np.intp)
+        by_member = np.zeros((_N_MEMBERS, N_DELAYS, 3, n))
+        for forces, of_limb in zip(by_member, delays.T, strict=True):
+            np.add.at(forces, of_limb, slopes)
+        by_member *= self._drag[:, None, None, None]
+        by_coordinate = by_member.transpose(3, 0, 2, 1)
+        self._per_delay = by_coordinate.reshape(n * _N_MEMBERS, -1).copy()
+
     def _blow(self, wind: Floats) -> None:
         """Step the forces of the gusts that an anemometer averages away, in a wind [m/s], (2,)."""
-        self._slow = self._slow + (1.0 - self._decay) * (wind - self._slow)
-        fast = 0.5 * float(np.square(wind - self._slow).sum())
-        self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
+        nearer = (1.0 - self._decay) * (wind - self._slow)
+        self._slow = self._slow + nearer
+        beyond = wind - self._slow
+        variance = 0.5 * float(np.square(beyond).sum())
+        share = max(self._dt / _AVERAGED, 1.0 / self._steps)
+        self._fast += share * (variance - self._fast)
         self._gust *= self._decay
-        missing = (_LEAST_FAST * math.hypot(*self._slow)) ** 2 - self._fast
+        least = _LEAST_FAST * math.hypot(*self._slow)
+        missing = least**2 - self._fast
         if missing > 0.0:
             size = (1.0 - USUAL_COHERENCE) * math.sqrt(missing) / self._unit
-            drawn = self._rng.standard_normal((self._gusts.shape[1], _N_MEMBERS))
+            n_patterns = self._gusts.shape[1]
+            drawn = self._rng.standard_normal((n_patterns, _N_MEMBERS))
             self._gust += size * (self._gusts @ drawn)
 
-    def _reach_limbs(self, apart: Floats) -> None:
-        """Find the forces of gusts that reach the limbs of each member after its own delays."""
-        ahead = self._slow / max(math.hypot(*self._slow), 1e-9)
+    def _late_gusts(self, apart: Floats) -> Floats:
+        """Find forces of gusts that reach the limbs after the delays of each member, (n, e)."""
+        speed = math.hypot(*self._slow)
+        ahead = self._slow / max(speed, 1e-9)
+        along = apart[:, :2] @ ahead
         winds = _ACROSS * apart
-        winds[:, :2] += (_ALONG - _ACROSS) * np.outer(apart[:, :2] @ ahead, ahead)
-        self._late = (self._per_delay @ winds.T.ravel()).reshape(self._late.shape)
+        winds[:, :2] += (_ALONG - _ACROSS) * np.outer(along, ahead)
+        by_axis = winds.T.ravel()
+        found = self._per_delay @ by_axis
+        return np.asarray(found.reshape(self._count, _N_MEMBERS))
+
+    def _far_gusts(self, wind: FarWind) -> Floats:
+        """Find forces of what is drawn beside the expected wind, a stretch for each, (n, e)."""
+        winds = wind.others(self._offsets, _ALONG, _ACROSS)
+        by_member = winds.reshape(_N_MEMBERS, -1)
+        found = self._per_part @ by_member.T
+        return np.asarray(found * self._drag)
 
     def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Correct the estimate of each member by the simulated measurement of its motion."""
-        gains, unknown = self._observer.gains, self._observer.unknown
+        gains = self._observer.gains
         assert gains is not None
-        n, estimate = self._count, self._estimate
-        stiffness, damping = unknown.stiffness[:, None], unknown.all_damping[:n, None]
-        estimate[:] = (gains.law.step[..., None] * estimate).sum(axis=1)
-        ahead, faster = self.motion - [eta, rate]
+        estimate = self._estimate
+        moved = gains.law.step[..., None] * estimate
+        estimate[:] = moved.sum(axis=1)
+        beyond = self._beyond(eta, rate, force)
+        flat = estimate.reshape(len(beyond), -1)
+        measured = self._measure(gains.sensed @ beyond)
+        innovation = measured - gains.sensed @ flat
+        correction = gains.gain @ innovation
+        estimate += correction.reshape(estimate.shape)
+        ahead = beyond[: self._count]
+        trust = self._observer.trust[:, None]
+        self.errors = ahead - estimate[0] * trust
+
+    def _beyond(self, eta: Floats, rate: Floats, force: Floats) -> Floats:
+        """Displacement, rate and force of each member beyond those of the model, (3 n, e)."""
+        unknown = self._observer.unknown
+        stiffness, damping = unknown.stiffness[:, None], unknown.all_damping[: self._count, None]
+        displacement, own_rate = self.motion
+        ahead, faster = displacement - eta, own_rate - rate
         # The force that makes a sensor's rows give the difference of the two accelerations.
-        more = self._force - self._stiff * self.motion[0] - self._damp * self.motion[1]
+        more = self._force - self._stiff * displacement - self._damp * own_rate
         more -= force - damping * rate - stiffness * eta
         more += stiffness * ahead + unknown.damped[:, None] * faster
-        told = gains.sensed @ np.concatenate([ahead, faster, more])
+        return np.concatenate([ahead, faster, more])
+
+    def _measure(self, told: Floats) -> Floats:
+        """Return what sensors tell, (p, e), about its mean and with their noise."""
         if len(self._bias) != len(told):
             self._bias = np.zeros_like(told)
             self._measured = 0
         self._measured += 1
         share = max(self._dt / _BIAS_TIME, 1.0 / self._measured)
         self._bias += share * (told - self._bias)
-        told -= self._bias
-        told += self._observer.noise[:, None] * self._rng.standard_normal(told.shape)
-        told -= gains.sensed @ estimate.reshape(3 * n, -1)
-        estimate += (gains.gain @ told).reshape(estimate.shape)
-        self.errors = ahead - estimate[0] * self._observer.trust[:, None]
+        drawn = self._rng.standard_normal(told.shape)
+        noise = self._observer.noise[:, None] * drawn
+        return np.asarray(told - self._bias + noise)
 
     def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
         """

@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of stiffness and damping while the sensors measure, beside the steps."""
+"""
+Fits of stiffness and damping while the sensors measure, beside the steps.
+
+From `_KEPT_FROM` of motion on, what a fit tells is kept, and the next one is of later motion
+alone, in the air and the leaves of that.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +19,7 @@ from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.sway_watch import SwayWatch
-from tree_sway.twin.tree_fit import fit_of, N_CANDIDATES, Spectrum, TreeFit
+from tree_sway.twin.tree_fit import fit_of, Known, N_CANDIDATES, Spectrum, TreeFit
 from tree_sway.twin.unknown_motion import UnknownMotion
 
 _FIRST, _LATER, _LATEST = 40.0, 1.4, 600.0
@@ -22,6 +27,9 @@ _FIRST, _LATER, _LATEST = 40.0, 1.4, 600.0
 Motion in [s] from which the tree is first fitted, how much more there is each time, and most that
 is awaited.
 """
+
+_KEPT_FROM = 600.0
+"""Motion in [s] from which on what it tells is kept for the fits of later motion."""
 
 _SOON = 5.0
 """Time in [s] that a fit waits for the first stretch of further sensors."""
@@ -65,7 +73,9 @@ class RunningFit:
         self._weight, self._air, self._forces = 0.0, np.zeros(n), np.zeros((n, n))
         self._east = self._north = 0.0
         self._n_winds = 0
-        self._work: LaterWork[TreeFit] | None = None
+        self._work: LaterWork[tuple[TreeFit, Known]] | None = None
+        self._known: Known | None = None
+        self._is_kept = False
         self._fit_after = _FIRST
         self.found: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
@@ -73,7 +83,7 @@ class RunningFit:
     def follow(self, before: RunningFit) -> None:
         """Go on from a fit before, whose model is as it was made."""
         self._stiffness, self._damping = before._stiffness, before._damping
-        self.found = before.found
+        self.found, self._known = before.found, before._known
 
     def note(self, east: float, north: float) -> None:
         """Note the wind of a step in [m/s], and go on with the spectra of what was read."""
@@ -126,12 +136,15 @@ class RunningFit:
         if self._work is not None:
             found = self._work.advance()
             if found is not None:
-                self.found, self._work = found, None
+                self._work = None
+                self.found, known = found
+                if self._is_kept:
+                    self._known = known.later()
             return
         longest = max([each.seconds for each in self._spectra])
         if longest < self._fit_after:
             return
-        measured = [k for k in used if self._spectra[k].count]
+        measured = [k for k in used if self._spectra[k].new_stretches]
         seconds = max((self._spectra[k].seconds for k in measured), default=0.0)
         if seconds < self._fit_after or not self._weight:
             return
@@ -147,8 +160,15 @@ class RunningFit:
             self._air / self._weight,
             self._forces / self._weight,
             1.0 if self.found is None else self.found.drag,
+            self._known,
         )
         self._work = LaterWork(find, N_CANDIDATES * len(measured) + 1)
+        self._is_kept = any(self._spectra[k].new_seconds >= _KEPT_FROM for k in measured)
+        if self._is_kept:
+            for each in self._spectra:
+                each.take_products()
+            self._weight = 0.0
+            self._air[:], self._forces[:] = 0.0, 0.0
 
     def _spectrum(self, which: int) -> Spectrum:
         """Spectrum of a sensor, and its rows by the model as it was made."""
@@ -160,6 +180,7 @@ class RunningFit:
             felt[3 * track.fitted : 3 * track.fitted + 3],
             measured.products,
             measured.circular,
-            measured.count,
-            measured.seconds,
+            measured.new_stretches,
+            measured.new_seconds,
+            measured.power_of_noise(track.fitted_noise),
         )

@@ -89,6 +89,7 @@ class SensorSpectrum:
         shape = (n_frequencies, self._n_products)
         self._waves = np.zeros(shape, dtype=np.complex128)
         self._products = np.zeros((*shape, self._n_products), dtype=np.complex128)
+        self._power = np.zeros(n_frequencies)
         low, high = (edge * frequency for edge in WATCHED_BAND)
         self._is_watched = (axis > low) & (axis < high)
         self.watched_frequencies: Floats = np.asarray(axis[self._is_watched], dtype=np.float64)
@@ -99,6 +100,7 @@ class SensorSpectrum:
         self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
+        self._taken = 0, 0.0
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
 
@@ -142,12 +144,13 @@ class SensorSpectrum:
         self._next += 1
         if self._next == self._n_series:
             self._products += self._waves[:, :, None] * self._waves[:, None].conj()
+            self._power += np.square(np.abs(self._waves[:, :2])).sum(axis=1)
             self.count += 1
 
     @property
     def power(self) -> float:
         """Power of east and north at all frequencies, a sum over the stretches."""
-        return float(self._products[:, (0, 1), (0, 1)].real.sum())
+        return float(self._power.sum())
 
     @property
     def block_seconds(self) -> float:
@@ -156,8 +159,7 @@ class SensorSpectrum:
 
     def end_block(self) -> SpectrumBlock:
         """Begin a block; return the last one."""
-        before = self._block
-        power = self._products[:, (0, 1), (0, 1)].real.sum(axis=1)
+        before, power = self._block, self._power.copy()
         self._block = SpectrumBlock(power, self._watched.copy(), self.count, self.seconds)
         return SpectrumBlock(
             power - before.power,
@@ -171,6 +173,25 @@ class SensorSpectrum:
         return deviation**2 * float(np.square(self._window).sum())
 
     @property
+    def new_stretches(self) -> int:
+        """Number of stretches since products were taken last."""
+        return self.count - self._taken[0]
+
+    @property
+    def new_seconds(self) -> float:
+        """Length of the motion since products were taken last [s]."""
+        return self.seconds - self._taken[1]
+
+    def take_products(self) -> None:
+        """Begin the products anew."""
+        self._products[:] = 0.0
+        self._taken = self.count, self.seconds
+
+    @property
     def products(self) -> Waves:
-        """Mean products of east, north and each force with the conjugates of all, (f, k, k)."""
-        return self._products / max(self.count, 1)
+        """
+        Mean products of east, north and each force with the conjugates of all, (f, k, k).
+
+        They are of the new stretches.
+        """
+        return self._products / max(self.new_stretches, 1)

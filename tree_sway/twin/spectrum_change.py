@@ -11,6 +11,8 @@ and a part is by chance. What the blocks of motion before foretell for the mean 
 has an error by this law. For a rise of all bands of a window the most likely size over its error
 is ``z = t' S^-1 r / sqrt(t' S^-1 t)``, r the difference, S its covariance and t the window. The
 largest of all windows is the change. In winds unlike all of those before, the error is large.
+
+A change is told until the window is again as before it, as surely as it was told.
 """
 
 from __future__ import annotations
@@ -75,12 +77,17 @@ CHANGED = 6.0
 
 
 class BandChange(NamedTuple):
-    """A change of power by a factor from ``low`` to ``high`` [Hz]; ``size`` is over its error."""
+    """
+    A change of power by a factor from ``low`` to ``high`` [Hz].
+
+    ``size`` is over its error, and ``window`` the number of the window of bands.
+    """
 
     power: float
     low: float
     high: float
     size: float
+    window: int = 0
 
 
 class Block(NamedTuple):
@@ -121,6 +128,8 @@ class SpectrumChange:
         self._windows = _windows(n_bands)
         self._blocks: list[Block] = []
         self._squares: list[float] = []
+        self._told: BandChange | None = None
+        self._n_past = 0
 
     def add(
         self, power: Floats, noise: float, seconds: float, wind: tuple[float, float]
@@ -146,19 +155,44 @@ class SpectrumChange:
 
         """
         self._blocks.append(self._block(power, noise, seconds, wind))
-        largest = BandChange(1.0, 0.0, 0.0, 0.0)
         n_blocks = len(self._blocks)
+        past = n_blocks - 1 if self._told is None else self._n_past
+        last = self._change(past, self._blocks[-1:]).size if past else _USUAL
+        self._squares.append((last / _USUAL) ** 2)
+        if self._told is not None:
+            return self._followed(self._told)
+        largest = BandChange(1.0, 0.0, 0.0, 0.0)
         for n_recent in _RECENT:
             first = n_blocks - n_recent
             if first < _LEAST_PAST:
                 break
-            found = self._change(first, self._blocks[first:])
-            usual = (1.0 + sum(self._squares[:first])) / (1.0 + first)
-            found = found._replace(size=found.size / math.sqrt(usual))
+            found = self._over_usual(first, self._change(first, self._blocks[first:]))
+            if found.size > max(largest.size, CHANGED):
+                self._told, self._n_past = found, first
             largest = max(largest, found, key=lambda each: each.size)
-        last = self._change(n_blocks - 1, self._blocks[-1:]).size if n_blocks > 1 else _USUAL
-        self._squares.append((last / _USUAL) ** 2)
         return largest
+
+    def _over_usual(self, n_past: int, found: BandChange) -> BandChange:
+        """Return a change whose size is over that which is usual among the first blocks."""
+        usual = (1.0 + sum(self._squares[:n_past])) / (1.0 + n_past)
+        return found._replace(size=found.size / math.sqrt(usual))
+
+    def _followed(self, told: BandChange) -> BandChange:
+        """Return the change that was told, or what is there now if that is no change."""
+        n_recent = _RECENT[0]
+        recent = self._blocks[-n_recent:]
+        now = self._over_usual(self._n_past, self._change(self._n_past, recent, told.window))
+        if now.size > CHANGED:
+            return told
+        # Its error [-] follows from its size.
+        change = math.log(now.power)
+        error = abs(change) / max(now.size, 1e-9)
+        if abs(change - math.log(told.power)) <= CHANGED * error:
+            return told
+        self._told = None
+        for each in (self._blocks, self._squares):
+            del each[self._n_past : -n_recent]
+        return now
 
     def _block(
         self, power: Floats, noise: float, seconds: float, wind: tuple[float, float]
@@ -186,8 +220,10 @@ class SpectrumChange:
             found = found + self._by_chance + np.diag(one.variance)
         return found
 
-    def _change(self, n_past: int, recent: Sequence[Block]) -> BandChange:
-        """Compare the mean of some blocks with those of the first blocks in like winds."""
+    def _change(
+        self, n_past: int, recent: Sequence[Block], window: int | None = None
+    ) -> BandChange:
+        """Compare the mean of some blocks with the first blocks in like winds, in a window."""
         blocks = self._blocks[:n_past]
         blocks.sort(key=lambda each: min(_unlike(each, other) for other in recent))
         past = blocks[:_MOST_PAST]
@@ -204,12 +240,12 @@ class SpectrumChange:
             weighted = np.linalg.solve(covariance, self._windows.T)
         information = (self._windows.T * weighted).sum(axis=0)
         sizes = beyond @ weighted / np.sqrt(information)
-        which = int(np.abs(sizes).argmax())
+        which = int(np.abs(sizes).argmax()) if window is None else window
         n_bands = len(self._bands)
         bands = np.flatnonzero(self._windows[which]) % n_bands
         low, high = self._edges[[bands.min(), bands.max() + 1]].tolist()
         power = math.exp(float(sizes[which]) / math.sqrt(information[which]))
-        return BandChange(power, low, high, abs(float(sizes[which])))
+        return BandChange(power, low, high, abs(float(sizes[which])), which)
 
 
 def _unlike(one: Block, other: Block) -> float:

@@ -10,6 +10,9 @@ slow modes more. The middle of the last blocks is therefore compared with the on
 before foretell for their wind, by a line over the logarithm of the mean wind whose slope is known
 roughly before anything is measured.
 
+A change is told until the tree sways as before again, as when wet leaves have dried: as surely
+otherwise than with the change as it was told. Blocks of a changed tree foretell nothing.
+
 The loss of a small limb moves the middle by less than chance does. It changes the power in narrow
 bands, which `spectrum_change` compares.
 """
@@ -143,9 +146,10 @@ class SwayWatch:
         self._bands = SpectrumChange(spectrum.watched_frequencies, frequency)
         self._work: LaterWork[BandChange] | None = None
         self._blocks: list[_Middle] = []
+        self._n_past = 0
         self._began = (0.0, 0.0, 0)
         self.change: SwayChange | None = None
-        """The first change, else the last comparison; None before any."""
+        """The change that lasts, else the last comparison; None before any."""
 
     @property
     def is_due(self) -> bool:
@@ -189,23 +193,31 @@ class SwayWatch:
             self._work = LaterWork(find, _COMPARED_AFTER)
 
     def _take(self, band: BandChange) -> None:
-        """Take the largest change of a band; once a band has changed, that stays."""
-        before = None if self.change is None else self.change.band
-        if self.change is not None and (before is None or before.size <= CHANGED):
+        """Take the largest change of a band."""
+        if self.change is not None:
             self.change = replace(self.change, band=band)
 
     def _compare(self, last: _Middle) -> None:
-        """Add a block, and compare; once the middle has changed, that stays."""
+        """Add a block, and compare the last ones with those before any change."""
         self._blocks.append(last)
-        past, recent = self._blocks[:-_RECENT], self._blocks[-_RECENT:]
         before = self.change
-        if len(past) < _LEAST_PAST or (before is not None and before.of_middle > 1.0):
+        is_changed = before is not None and before.of_middle > 1.0
+        if not is_changed:
+            self._n_past = len(self._blocks) - _RECENT
+        past, recent = self._blocks[: self._n_past], self._blocks[-_RECENT:]
+        if len(past) < _LEAST_PAST:
             return
         found, wind = np.mean(recent, axis=0).tolist()
         foretold, error = _foretold(np.array(past), wind)
         hours = len(past) * BLOCK / 3600.0
         band = None if before is None else before.band
-        self.change = SwayChange(math.exp(found - foretold), error, hours, band)
+        now = SwayChange(math.exp(found - foretold), error, hours, band)
+        if is_changed and before is not None and now.of_middle <= 1.0:
+            apart = abs(math.log(now.ratio / before.ratio))
+            if apart <= _CHANGED * error:  # in this wind the change would not be seen
+                return
+            del self._blocks[self._n_past : -_RECENT]
+        self.change = now
 
 
 def _foretold(past: Floats, wind: float) -> tuple[float, float]:

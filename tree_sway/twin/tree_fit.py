@@ -15,6 +15,11 @@ Electroacoustics 15, 70-73). Level and a are those of highest likelihood. Stiffn
 have spreads of their own before anything is measured: those of wood within a species, and of
 damping among trees. The result is a mean over a grid of both, weighted by the likelihood.
 
+The noise of a sensor is part of S: without it, the flat spectrum of a calm is that of a tree whose
+damping is large. One stretch of time is fitted after another, each with the air and the leaves of
+its own. What is known from those before goes on, but for a little that the stiffness changes from
+one to the next: wet leaves make a tree as slow as soft wood does.
+
 The phase between wind and motion tells a frequency far better than the height of a spectrum. Where
 the anemometer is so far away that its wind explains nothing, a is zero and the spectrum remains.
 """
@@ -55,6 +60,9 @@ _GUST_ERROR = 0.15
 
 _LEAST = 1e-4
 """Least variance of a pattern of static bends that counts, over the largest [-]."""
+
+_LEAST_SWAY = 1e-3
+"""Least power of the sway over all that is measured [-]."""
 
 _INDEPENDENT = 0.02
 """
@@ -99,8 +107,9 @@ class Spectrum(NamedTuple):
     """
     A measured spectrum, and the sensor's rows on displacement, rate and force, (3, 3 m).
 
-    ``products`` are those of `SensorSpectrum` at circular frequencies (f,), averaged over a
-    ``count`` of stretches, from an amount of motion in [s].
+    ``products`` are those of `SensorSpectrum` at circular frequencies (f,), averaged over a number
+    of stretches, from an amount of motion in [s]. ``noise`` is the power of the sensor's noise at
+    each of them, of one axis.
     """
 
     rows: Floats
@@ -108,6 +117,33 @@ class Spectrum(NamedTuple):
     circular: Floats
     n_stretches: int
     seconds: float
+    noise: float = 0.0
+
+
+class Known(NamedTuple):
+    """
+    What is known from motion of an amount in [s].
+
+    ``chances`` are those of each stiffness and damping, (s, d). ``drag`` is the information on the
+    logarithm of the drag, and that times the logarithm.
+    """
+
+    chances: Floats
+    drag: tuple[float, float]
+    seconds: float
+
+    def later(self) -> Known:
+        """Return what is left of it for motion that comes later."""
+        beside = np.vstack([self.chances[:1], self.chances, self.chances[-1:]])
+        return self._replace(chances=(beside[:-2] + beside[1:-1] + beside[2:]) / 3.0)
+
+
+def _known_before() -> Known:
+    """Return what is known of trees of a species before any measurement."""
+    stiffness = np.log(_STIFFNESSES) / _STIFFNESS_SPREAD
+    damping = np.log(_DAMPINGS) / _DAMPING_SPREAD
+    unlikely = np.square(stiffness)[:, None] + np.square(damping)
+    return Known(np.exp(-0.5 * unlikely), (0.0, 0.0), 0.0)
 
 
 def fit_of(
@@ -117,9 +153,10 @@ def fit_of(
     air_damping: Floats,
     covariance: Floats,
     drag: float = 1.0,
-) -> TreeFit:
+    before: Known | None = None,
+) -> tuple[TreeFit, Known]:
     """
-    Try all candidates on all sensors.
+    Try all candidates on all sensors; return what is known then, too.
 
     Parameters
     ----------
@@ -131,8 +168,11 @@ def fit_of(
         Covariance of the unknown forces, (m, m).
     drag
         Factor on the damping by the air, as the drag of the last fit.
+    before
+        What is known from earlier motion; that of the species if None.
 
     """
+    before = before or _known_before()
     bends, sizes = _patterns(covariance, stiffness)
     sensors = [_Misfit(each, bends * sizes, stiffness) for each in spectra]
     table = np.zeros((len(_STIFFNESSES), len(_DAMPINGS), len(_SLOPES)))
@@ -140,31 +180,34 @@ def fit_of(
     told = np.zeros((2, *table.shape))
     for i, stiff in enumerate(_STIFFNESSES.tolist()):
         for j, damped in enumerate(_DAMPINGS.tolist()):
-            damping_there = damped * damping + drag * air_damping
+            # A damping ratio that stays is a damping that goes with the root of the stiffness.
+            damping_there = damped * math.sqrt(stiff) * damping + drag * air_damping
             for each in sensors:
                 with one_thread():
                     misfit, drags, known = each.of(stiff, damping_there)
                 table[i, j] += misfit
                 told[0, i, j] += known
                 told[1, i, j] += known * np.log(np.maximum(drags, _LEAST_DRAG))
-            prior = (math.log(stiff) / _STIFFNESS_SPREAD) ** 2
-            table[i, j] += 0.5 * (prior + (math.log(damped) / _DAMPING_SPREAD) ** 2)
-    weight_of_slope = np.exp(table.min() - table)
-    weight_of_slope /= weight_of_slope.sum()
-    weight = weight_of_slope.sum(axis=2)
-    hours = max(each.seconds for each in spectra) / 3600.0
-    first = _mean(np.log(_STIFFNESSES), weight.sum(axis=1))
-    second = _mean(np.log(_DAMPINGS), weight.sum(axis=0))
-    third = _drag(*(told * weight_of_slope).reshape(2, -1).sum(axis=1).tolist())
-    return TreeFit(
+    likelihood = np.exp(table.min() - table)
+    chances = before.chances * likelihood.sum(axis=2)
+    chances /= chances.sum()
+    weight = before.chances[..., None] * likelihood
+    found = (told * weight).reshape(2, -1).sum(axis=1) / weight.sum()
+    information, weighted = (found + before.drag).tolist()
+    seconds = before.seconds + max(each.seconds for each in spectra)
+    first = _mean(np.log(_STIFFNESSES), chances.sum(axis=1))
+    second = _mean(np.log(_DAMPINGS), chances.sum(axis=0))
+    third = _drag(information, weighted)
+    fit = TreeFit(
         math.exp(first[0]),
         math.exp(second[0]),
         first[1],
         second[1],
         math.exp(third[0]),
         third[1],
-        hours,
+        seconds / 3600.0,
     )
+    return fit, Known(chances, (information, weighted), seconds)
 
 
 def _drag(information: float, weighted: float) -> tuple[float, float]:
@@ -212,6 +255,7 @@ class _Misfit:
 
     def __init__(self, measured: Spectrum, unknown: Floats, stiffness: Floats) -> None:
         self._n_stretches = measured.n_stretches
+        self._noise = measured.noise
         self._circular = measured.circular
         self._stiffness = stiffness
         self._n_unknown = unknown.shape[1]
@@ -251,7 +295,7 @@ class _Misfit:
         # The window spreads the power of a frequency to its neighbours.
         spread = level[:, :-2] + 4.0 * level[:, 1:-1] + level[:, 2:]
         level[:, 1:-1] = spread / 6.0
-        shaped = np.maximum(level * self._weaker, 1e-300)
+        shaped = self._with_noise(np.maximum(level * self._weaker, 1e-300))
         powers = self._powers(motion[:, self._n_unknown :])
         told, common, alone = ((each / shaped).mean(axis=2) for each in powers)
         # The factor of the drag, and the level of what it leaves.
@@ -266,6 +310,14 @@ class _Misfit:
         count = _INDEPENDENT * self._n_stretches
         known = (alone / left).sum(axis=1)
         return count * logs, factor, count * n_frequencies * factor**2 * known
+
+    def _with_noise(self, shaped: Floats) -> Floats:
+        """Add the noise of the sensor to spectra of the sway up to their level, (s, 2, f)."""
+        if not self._noise:
+            return shaped
+        total = float(self._power.sum())
+        sway = max(total - self._noise * self._power.size, _LEAST_SWAY * total)
+        return np.asarray(shaped * (sway / shaped.sum(axis=(1, 2), keepdims=True)) + self._noise)
 
     def _motion(self, stiff: float, damping: Floats) -> Waves:
         """East and north motion of a candidate by each pattern, (2, patterns, f)."""
