@@ -12,6 +12,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.wind.nmea import parse_nmea
+from tree_sway.files.wind.reading import Refusal, WindReading
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.wind_file import read_wind
@@ -128,15 +129,13 @@ def test_reports_of_airports(tmp_path: Path) -> None:
 )
 def test_further_sentences_of_weather_stations(body: str, expected: tuple[float, ...]) -> None:
     said = parse_nmea(f'${body}*{checksum_of(body)}')
-    assert said is not None
-    np.testing.assert_allclose(said.velocity, expected, atol=1e-3)
+    assert isinstance(said, WindReading)
+    np.testing.assert_allclose(said.velocity(0.0), expected, atol=1e-3)
 
 
 def test_other_transducers_are_no_wind() -> None:
     assert parse_nmea('$WIXDR,C,20.5,C,TEMP,P,1.01,B,BARO') is None
-    said = parse_nmea('$WIMDA,29.9,I,1.01,B')
-    assert said is not None
-    assert said.velocity is None
+    assert isinstance(parse_nmea('$WIMDA,29.9,I,1.01,B'), Refusal)
 
 
 def test_a_direction_that_is_none_costs_its_row(tmp_path: Path) -> None:

@@ -124,8 +124,9 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield _of_states(states, source)
         elif node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        for each in [] if states else node:
-            yield from _tables(each, units, source, depth + 1)
+        if not states:
+            for each in node:
+                yield from _tables(each, units, source, depth + 1)
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -134,13 +135,17 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
 
     So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list.
     """
-    bodies = [object_of([*object_of(each).values(), None][0]) or each for each in messages]
-    names = [*object_of(bodies[0])] if bodies[1:] and all(map(object_of, bodies)) else []
-    clock = next((name for name in names if rank_of(name, 'time') is not None), '')
-    batch = next((name for name in names if list_of(bodies[0][name])[:1] != []), '')
-    told = (finite(cell_of(each.get(clock))) for each in bodies)
-    starts = [start for start in told if start is not None] if batch else []
-    if len(starts) < max(len(bodies), 2):
+    bodies = []
+    for message in map(object_of, messages):
+        inner = next(iter(message.values()), None)
+        bodies.append(object_of(inner) or message)
+    if len(bodies) < 2 or not all(bodies):
+        return
+    clock = next((name for name in bodies[0] if rank_of(name, 'time') is not None), '')
+    batch = next((name for name, each in bodies[0].items() if list_of(each)), '')
+    told = (finite(cell_of(body.get(clock))) for body in bodies)
+    starts = [start for start in told if start is not None]
+    if not batch or len(starts) < len(bodies):
         return
     ends = [*starts[1:], 2.0 * starts[-1] - starts[-2]]
     for body, start, end in zip(bodies, starts, ends, strict=True):

@@ -20,8 +20,9 @@ from tree_sway.files.table_file import SEPARATORS, TextTable
 _CLOCK = 'monitor_time'
 _STAMP = re.compile(r'(\d\d:\d\d:\d\d(?:\.\d+)?) -> ?(.*)')
 _PAIR = re.compile(
-    r'([A-Za-z][\w ]*?)\s*[:=]\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?|[NESW]{1,3}\b)'
-    r'\s*([A-Za-z°][\w°/^²]*)?(?:[,;|\s]+|$)'
+    r'(?<!\w)([A-Za-z][\w ]{0,60}?)\s{0,9}[:=]\s{0,9}'
+    r'([-+]?[\d.]{1,40}(?:[eE][-+]?\d{1,3})?|[NESW]{1,3}\b)'
+    r'\s{0,9}([A-Za-z°][\w°/^²]{0,20})?(?:[,;|\s]+|$)'
 )
 """Name, number or point of the compass, and maybe a unit."""
 

@@ -33,7 +33,6 @@ INSTRUMENTS = [
 ]
 LOGGED = tuple(dict.fromkeys(each['name'] for each in INSTRUMENTS if each['logged']))
 """Instruments whose lines are read from files."""
-_SPACES = re.compile(r'\s*,\s*')
 
 
 def read_instrument(line: str, heading: float = 0.0, factor: float = 1.0) -> Reading | None:
@@ -44,7 +43,8 @@ def read_instrument(line: str, heading: float = 0.0, factor: float = 1.0) -> Rea
     """
     stamp = STAMP.match(line)
     begin = max(stamp.end() if stamp else 0, line.rfind('\x02'))
-    text = _SPACES.sub(',', line[begin:].strip(' ,;\t\r\n'))
+    parts = line[begin:].strip(' ,;\t\r\n').split(',')
+    text = ','.join(map(str.strip, parts))
     for each in INSTRUMENTS:
         if found := each['line'].fullmatch(text):
             return _reading(each, found.groupdict(), heading, factor, len(line))
