@@ -393,8 +393,8 @@ void main() {
   float tall = field.w * blade.z;
   vec3 p = vec3(foot, ground);
   float sunny = sunlight(p);
-  // Between the trees of a stand ferns and brambles are higher.
-  if (field.z > 150.0) tall *= mix(4.0, 1.0, sunny);
+  // Between the trees of a stand ferns and brambles are higher, but for near ones, whose blades would be seen.
+  if (field.z > 400.0) tall *= 1.0 + 3.0 * (1.0 - sunny) * smoothstep(20.0, 45.0, distance(eye, p));
   float own = 6.2831853 * blade.w;
   // Gust fronts are curved.
   float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
@@ -621,7 +621,8 @@ void main() {
       soil = mix(vec3(0.3, 0.39, 0.17), vec3(0.46, 0.49, 0.26), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
       soil = mix(soil, vec3(0.32, 0.43, 0.22), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
       vec2 seen = p - eye.xy;
-      float size = max(0.012, 1.3 * far * length(fwidth(ray)));
+      float fine = far * length(fwidth(ray));
+      float size = min(max(0.012, 1.3 * fine), 4.0 * fine);
       soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);
       soil *= 1.0 + 0.3 * (cloudy(vec2(0.2, 1.0) * p / 90.0) - 0.5);
     }
