@@ -1,8 +1,8 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Products and solutions of small dense matrices, T is double or float. Rows are filled up with zeros
-// to whole multiples of sixteen numbers, and counts are of these.
+// Products and solutions of small dense matrices. Rows are filled up with zeros to whole multiples
+// of sixteen numbers, and counts are of these.
 #pragma once
 
 #include "vec.h"
@@ -10,20 +10,20 @@
 namespace {
 
 // The sum of the lanes, in pairs.
-template <class V> INLINE double total(V value) {
-  for (int apart = sizeof(V) / sizeof(value[0]) / 2; apart > 0; apart /= 2)
+INLINE double total(Vec value) {
+  for (int apart = LANES / 2; apart > 0; apart /= 2)
     for (int lane = 0; lane < apart; lane++) value[lane] += value[lane + apart];
   return value[0];
 }
 
 // Products of some rows and some others from a number on; each number that is read serves several.
-template <int ROWS, int OTHERS, class T>
-INLINE void block_products(const T *const *rows, const T *others, int64_t stride, int64_t first,
-                           int64_t end, double *out, int64_t out_stride) {
-  decltype(load(others)) sums[ROWS][OTHERS] = {};
-  for (int64_t i = first; i < end; i += sizeof(sums[0][0]) / sizeof(T))
+template <int ROWS, int OTHERS>
+INLINE void block_products(const double *const *rows, const double *others, int64_t stride,
+                           int64_t first, int64_t end, double *out, int64_t out_stride) {
+  Vec sums[ROWS][OTHERS] = {};
+  for (int64_t i = first; i < end; i += LANES)
     for (int other = 0; other < OTHERS; other++) {
-      const auto value = load(others + other * stride + i);
+      const Vec value = load(others + other * stride + i);
       for (int row = 0; row < ROWS; row++) sums[row][other] += load(rows[row] + i) * value;
     }
   for (int row = 0; row < ROWS; row++)
@@ -33,9 +33,10 @@ INLINE void block_products(const T *const *rows, const T *others, int64_t stride
     }
 }
 
-template <int ROWS, int OTHERS, class T>
-INLINE void row_products(const T *const *rows, int64_t n_rows, const T *others, int64_t stride,
-                         int64_t first, int64_t end, double *out, int64_t out_stride) {
+template <int ROWS, int OTHERS>
+INLINE void row_products(const double *const *rows, int64_t n_rows, const double *others,
+                         int64_t stride, int64_t first, int64_t end, double *out,
+                         int64_t out_stride) {
   for (; n_rows >= ROWS; n_rows -= ROWS, rows += ROWS, out += ROWS * out_stride)
     block_products<ROWS, OTHERS>(rows, others, stride, first, end, out, out_stride);
   if constexpr (ROWS > 1)
@@ -43,12 +44,12 @@ INLINE void row_products(const T *const *rows, int64_t n_rows, const T *others, 
 }
 
 // Write the scalar product of each row and each of `n_others` rows of a matrix.
-template <class T>
-void multiply_rows(const T *const *rows, int64_t n_rows, const T *others, int64_t n_others,
-                   int64_t stride, int64_t count, double *out, int64_t out_stride) {
+void multiply_rows(const double *const *rows, int64_t n_rows, const double *others,
+                   int64_t n_others, int64_t stride, int64_t count, double *out,
+                   int64_t out_stride) {
   constexpr int TOGETHER = LANES < 8 ? 2 : 4;  // as many as there are registers for
   // Of so many numbers all rows stay in the nearest cache.
-  constexpr int64_t NEAREST = 4096 / sizeof(T);
+  constexpr int64_t NEAREST = 512;
   for (int64_t first = 0; first < count; first += NEAREST) {
     const int64_t end = first + NEAREST < count ? first + NEAREST : count;
     int64_t other = 0;
@@ -62,8 +63,7 @@ void multiply_rows(const T *const *rows, int64_t n_rows, const T *others, int64_
 }
 
 // Write the product of a matrix of `n_rows` rows and a vector.
-template <class T>
-INLINE void multiply(const T *matrix, int64_t n_rows, int64_t stride, const T *vector,
+INLINE void multiply(const double *matrix, int64_t n_rows, int64_t stride, const double *vector,
                      int64_t count, double *out) {
   multiply_rows(&vector, 1, matrix, n_rows, stride, count, out, 0);
 }

@@ -46,7 +46,7 @@ struct CoupledStep {
 
 // What a limp tree has beside its `State`: none of it is needed to go on from a state.
 struct LimpTree {
-  float *columns;                // J (m, places)
+  double *columns;               // J (m, places)
   double *change;                // inertia less 1 (q, row)
   double *weight;                // force of the weight beyond the linear (row)
   double *last_eta, *last_rate;  // as the last step left them (padded)
@@ -61,12 +61,11 @@ struct LimpTree {
 struct LimpRoom {
   double *turned, *turning, *keys;            // key rotations, their rates, others (keys)
   double *here, *ahead, *behind;              // places
-  float *bend;                                // of the motion (places)
   double *tangent;                            // of the segments (places)
-  float *force;                               // on them (places)
+  double *force;                              // on them (places)
   double *gust;                               // (places)
   double *products;                           // of rows and columns (m + 2, row)
-  const float **rows;                         // (m + 2)
+  const double **rows;                        // (m + 2)
   double *momentum, *across, *along;          // (row)
   double *matrix, *block, *coupled, *solved;  // (q, row), (q, row), (8, row), (3, row)
   double *eta, *rate, *new_force, *by_wind, *wanted, *sloped;  // (padded)

@@ -20,6 +20,19 @@ extern "C" {
  * Whoever calls what is declared here compares it, as memory is shared. */
 SWAY_API uint32_t sway_interface(void);
 
+/* The first tree of a stand, whose frames take so little time that arguments would tell. */
+typedef struct sway_first {
+  sway_stand *stand;
+  const double *wind; /* mean over a step [m/s] (3) */
+  double *poses;      /* (n, 7) */
+} sway_first;
+
+/* `sway_step` of the first tree, in the first room. */
+SWAY_API int sway_step_first(const sway_first *first);
+
+/* `sway_place` of the first tree, in the first room. */
+SWAY_API void sway_place_first(const sway_first *first);
+
 /* Coefficients of oscillators q'' + k2 q' + k1 q = f of stiffness k1 [1/s^2] and damping k2 [1/s]
  * (count) over a step of dt [s] under a constant force, and over half of it, to where the load of the
  * wind is found: rows (6, count) for the displacement by displacement, rate and force, then for the

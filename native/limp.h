@@ -56,8 +56,7 @@ void find_drag(const Limp &limp, LimpRoom &own, double per_time, const double wi
       square += air[axis] * air[axis];
     }
     const Vec factor = load(limp.area + i) * ::root(square) / root;
-    for (int axis = 0; axis < 3; axis++)
-      store_singles(own.force + axis * each + i, factor * air[axis]);
+    for (int axis = 0; axis < 3; axis++) store(own.force + axis * each + i, factor * air[axis]);
   }
 }
 
@@ -147,10 +146,9 @@ bool take_part(const sway_model &model, const double *stiffness, const CoupledSt
   place_along(model, room, -ahead, own.turning, own.behind);
   find_drag(limp, own, ahead > 0.0 ? 0.5 / ahead : 0.0, wind);
   for (int64_t i = 0; i < limp.places; i += LANES)
-    store_singles(own.bend + i,
-                  load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
+    store(own.ahead + i, load(own.ahead + i) + load(own.behind + i) - 2.0 * load(own.here + i));
   own.rows[0] = own.force;
-  own.rows[1] = own.bend;
+  own.rows[1] = own.ahead;
   const int64_t count = columns_due(m, turned + law.part.dt * fastest, speed);
   find_columns(model, tree, room, count, room.middle);
   renew(model, tree, room, count, own.rate);

@@ -152,7 +152,7 @@ bool lay_out_limp(sway_model &model, const Arrays &a) {
   limp.each = whole(POINTS * model.sizes.segments, 16);
   limp.places = 3 * limp.each;
   limp.keys = whole(N, 32);
-  memory.take(m * limp.keys, limp.directions);
+  memory.take(m * limp.keys, limp.shapes, limp.directions);
   memory.take(m * limp.places, limp.columns);
   memory.take(q * limp.row, limp.factor);
   memory.take(m * M, limp.slopes, limp.all_slopes);
@@ -167,7 +167,9 @@ bool lay_out_limp(sway_model &model, const Arrays &a) {
   if (!memory.is_short) {
     lay_out_segments(a, limp);
     for (int64_t key = 0; key < N; key++)
-      for (int64_t i = 0; i < m; i++) limp.directions[i * limp.keys + key] = a.shapes[key * m + i];
+      for (int64_t i = 0; i < m; i++)
+        limp.shapes[(key / 32 * m + i) * 32 + key % 32] = limp.directions[i * limp.keys + key] =
+            a.shapes[key * m + i];
     place_at_rest(model, limp, room);
   }
   scratch.release();

@@ -101,6 +101,7 @@ struct Limp {
   int64_t leading;  // q: coordinates whose inertia is that of the pose
   int64_t row;      // q and three right-hand sides, up to whole vectors
   int64_t each, places, keys;  // up to whole vectors
+  double *shapes;        // (keys / 32, m, 32)
   double *directions;    // key rotations per unit of each coordinate (m, keys)
   double *amount;        // of each coordinate for the difference of its column (m)
   double *columns;       // places per unit of each coordinate, J (m, places)

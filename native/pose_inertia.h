@@ -68,11 +68,11 @@ void turn(const sway_model &model, const double *eta, const double *rate, double
   const int64_t m = model.sizes.coordinates;
   constexpr int PARTS = 4;
   for (int64_t first = 0; first < limp.keys; first += PARTS * LANES) {
-    const float *shapes = model.shapes + first / 64 * m * 64 + first % 64;
+    const double *shapes = limp.shapes + first / 32 * m * 32 + first % 32;
     Vec of_eta[PARTS] = {}, of_rate[PARTS] = {};
     for (int64_t i = 0; i < m; i++)
       for (int part = 0; part < PARTS; part++) {
-        const Vec shape = load_singles(shapes + 64 * i + part * LANES);
+        const Vec shape = load(shapes + 32 * i + part * LANES);
         of_eta[part] += eta[i] * shape;
         of_rate[part] += rate[i] * shape;
       }
@@ -87,7 +87,7 @@ void turn(const sway_model &model, const double *eta, const double *rate, double
 void return_to_rest(const sway_model &model, LimpTree &tree) {
   const Limp &limp = model.limp;
   for (int64_t i = 0; i < model.sizes.coordinates * limp.places; i++)
-    tree.columns[i] = float(limp.columns[i]);
+    tree.columns[i] = limp.columns[i];
   memset(tree.change, 0, limp.leading * limp.row * sizeof(double));
   memset(tree.weight, 0, limp.row * sizeof(double));
   tree.next = 0;
@@ -135,18 +135,15 @@ void find_columns(const sway_model &model, LimpTree &tree, Room &room, int64_t c
     const int64_t number = (tree.next + k) % m;
     const double amount = limp.amount[number];
     place_along(model, room, amount, limp.directions + number * limp.keys, own.behind);
-    float *column = tree.columns + number * limp.places;
+    double *column = tree.columns + number * limp.places;
     const double per_amount = 1.0 / amount;
-    for (int64_t i = 0; i < limp.places; i += LANES) {
-      const Vec moved = per_amount * (load(own.behind + i) - load(own.here + i));
-      store(own.behind + i, moved);
-      store_singles(column + i, moved);
-    }
+    for (int64_t i = 0; i < limp.places; i += LANES)
+      store(column + i, per_amount * (load(own.behind + i) - load(own.here + i)));
     own.rows[2 + k] = column;
     if (number >= limp.leading) continue;
     const double linear =
         limp.weight[number] + dot(limp.slopes + number * model.padded, eta, model.padded);
-    tree.weight[number] = dot(own.behind + 2 * limp.each, limp.gravity, limp.each) - linear;
+    tree.weight[number] = dot(column + 2 * limp.each, limp.gravity, limp.each) - linear;
   }
 }
 

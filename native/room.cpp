@@ -10,8 +10,7 @@ using namespace sway;
 
 void open_limp_room(Memory &memory, const Limp &limp, int64_t m, int64_t padded, LimpRoom &room) {
   memory.take(limp.keys, room.turned, room.turning, room.keys);
-  memory.take(limp.places, room.here, room.ahead, room.behind, room.bend, room.tangent, room.force,
-              room.gust);
+  memory.take(limp.places, room.here, room.ahead, room.behind, room.tangent, room.force, room.gust);
   memory.take((m + 2) * limp.row, room.products);
   memory.take(m + 2, room.rows);
   memory.take(limp.row, room.momentum, room.across, room.along);

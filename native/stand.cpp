@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "gusts.h"
+#include "library.h"
 #include "propagate.h"
 #include "text.h"
 #include "threads.h"
@@ -391,6 +392,15 @@ int sway_step(sway_stand *stand, size_t room, size_t first, size_t count, const 
 void sway_place(sway_stand *stand, size_t room, const int64_t *rows, size_t count, double *poses) {
   Places places = {stand, rows, poses};
   do_parts(*stand, room, count, place_part, &places);
+}
+
+int sway_step_first(const sway_first *first) {
+  return sway_step(first->stand, 0, 0, 1, first->wind, nullptr);
+}
+
+void sway_place_first(const sway_first *first) {
+  const int64_t row[2] = {};
+  sway_place(first->stand, 0, row, 1, first->poses);
 }
 
 void sway_keys(sway_stand *stand, size_t room, size_t tree, double *keys) {

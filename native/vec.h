@@ -55,10 +55,6 @@ INLINE Vec load_singles(const float *from) {
 #endif
 }
 
-INLINE void store_singles(float *to, Vec value) {
-  *reinterpret_cast<HalfSinglesAt *>(to) = __builtin_convertvector(value, HalfSingles);
-}
-
 INLINE Vec all(double value) { return value - Vec{}; }
 
 INLINE Vec least(Vec a, Vec b) { return a < b ? a : b; }

@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0xB5F4D4D1
+INTERFACE = 0x8C50FC15
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -47,6 +47,8 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_set_step': (_status, (_pointer, _number)),
     'sway_step': (_status, (_pointer, _size, _size, _size, _pointer, _pointer)),
     'sway_place': (None, (_pointer, _size, _pointer, _size, _pointer)),
+    'sway_step_first': (_status, (_pointer,)),
+    'sway_place_first': (None, (_pointer,)),
     'sway_keys': (None, (_pointer, _size, _size, _pointer)),
     'sway_place_keys': (None, (_pointer, _size, _size, _pointer, _pointer)),
     'sway_past_winds': (

@@ -47,6 +47,12 @@ def _value(field: float | NDArray[Any]) -> float:
     return contiguous(field)
 
 
+class NativeFirst(Structure):
+    """``sway_first``."""
+
+    _fields_ = _fields('stand wind poses')
+
+
 class NativeSeries(Structure):
     """``sway_series``."""
 
