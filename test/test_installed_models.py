@@ -95,6 +95,9 @@ def test_rotations_of_another_number_are_refused_before_they_are_read(installed,
 def test_an_unknown_model_is_refused_with_those_that_there_are(installed) -> None:
     with pytest.raises(ParameterError, match="unknown model 'mine'"):
         Settings(model='mine')
+    installed['mine'] = None
+    with pytest.raises(ParameterError, match=r"'mien'; did you mean 'mine'.* one of: .*mine"):
+        Settings(model='mien')
 
 
 def test_the_parameter_takes_an_installed_model(monkeypatch) -> None:

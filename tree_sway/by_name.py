@@ -4,14 +4,17 @@
 
 from __future__ import annotations
 
+from inspect import signature
 from pathlib import Path
 from typing import Any
 import warnings
 
 from numpy.typing import ArrayLike
 
+from tree_sway.core.settings import Settings
 from tree_sway.core.species import species_keys
 from tree_sway.core.tree import GrownTree, oddities, refuse_implausible, Tree, tree_and_species
+from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.trees import open_tree
 from tree_sway.files.wind import read_wind
 from tree_sway.growth import BUILTIN_TREES, grow
@@ -47,6 +50,11 @@ def simulate(
         An error of reading, or of `tree_sway.simulation.simulate`.
 
     """
+    known = {**signature(simulate_tree).parameters, **Settings.__dataclass_fields__}
+    del known['changes']
+    for name in options.keys() - known:
+        cure = nearest(name, known) or f'there are: {", ".join(known)}'
+        raise ParameterError(f"unknown argument '{name}'", cure=cure)
     if isinstance(tree, str) and tree in _GROWN and not Path(tree).exists():
         tree = grow(tree, HEIGHT, name=f'{tree} of {HEIGHT:g} m')
     elif isinstance(tree, str | Path):

@@ -14,8 +14,9 @@
 #include "sway.h"
 
 int main(int argc, char **argv) {
-  FILE *file = argc > 1 ? fopen(argv[1], "rb") : NULL;
-  if (!file) return fprintf(stderr, "give a .sway file\n"), 1;
+  if (argc < 2) return fprintf(stderr, "give a .sway file\n"), 1;
+  FILE *file = fopen(argv[1], "rb");
+  if (!file) return perror(argv[1]), 1;
   fseek(file, 0, SEEK_END);
   const size_t size = (size_t)ftell(file);
   rewind(file);

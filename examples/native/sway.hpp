@@ -27,6 +27,7 @@ public:
   // Read a file, once; if this is false, `error` says why.
   bool open(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
+    if (!file) return error = path + ": cannot be opened", false;
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     char why[300] = "";
     model = sway_model_open(bytes.data(), bytes.size(), why, sizeof why);

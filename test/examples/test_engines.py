@@ -106,6 +106,14 @@ def test_the_wood_is_where_python_has_it(fork, engine, tmp_path):
     assert np.abs(start - at_rest).max() > 0.01
 
 
+@pytest.mark.parametrize('engine', ['unreal', 'gazebo'])
+def test_a_file_that_is_not_there_is_named(engine, tmp_path):
+    environment = {'LD_LIBRARY_PATH': str(tmp_path), 'PATH': '/usr/bin:/bin'}
+    command = [*compiled(engine, tmp_path), str(tmp_path)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+    assert 'tree.sway: cannot be opened' in done.stderr
+
+
 @pytest.mark.parametrize('engine', AXES)
 def test_a_file_that_is_no_tree_is_named(engine, tmp_path):
     command = compiled(engine, tmp_path)

@@ -29,7 +29,7 @@ def test_beaufort_is_that_of_the_table() -> None:
     assert {speed: beaufort(speed) for speed in forces} == forces
 
 
-@pytest.mark.parametrize('text', ['windy', '', '1,2,3', '0', 'nan', '5,99', '-3'])
+@pytest.mark.parametrize('text', ['windy', '', '1,2,3', '0', 'nan', '5,99', '-3', '22,5'])
 def test_what_is_no_climate_is_refused(text: str) -> None:
     with pytest.raises(ParameterError, match='climate'):
         climate_of(text)

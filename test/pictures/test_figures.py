@@ -55,6 +55,10 @@ def test_a_notebook_shows_a_line_and_a_picture() -> None:
         assert base64.b64decode(data).startswith(b'\x89PNG')
 
 
+def test_a_notebook_shows_a_figure_that_a_cell_ends_with() -> None:
+    assert WIND.plot()._repr_png_().startswith(b'\x89PNG')
+
+
 def test_without_matplotlib_a_notebook_shows_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, 'matplotlib.figure', None)
     assert WIND._repr_html_() is None
@@ -69,6 +73,12 @@ def test_what_is_missing_is_named_with_what_to_install(monkeypatch: pytest.Monke
             each.plot()
     with pytest.raises(sway.TreeSwayError, match=r"'pandas'; .*pip install pandas"):
         record.to_dataframe()
+
+
+@pytest.mark.parametrize(('name', 'cure'), [('second', "'seconds'"), ('duration', 'seconds')])
+def test_a_mistyped_argument_is_told_its_name(name: str, cure: str) -> None:
+    with pytest.raises(sway.TreeSwayError, match=f"unknown argument '{name}'; .*{cure}"):
+        sway.simulate('benjamina', WIND, **{name: 10})
 
 
 @pytest.mark.parametrize('wind', [8.0, (8.0, 0.0, 0.0), [8, 0]])

@@ -237,15 +237,15 @@ def model_of(given: object) -> int | str:
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
         return number
-    if isinstance(given, str):
-        from tree_sway.installed_models import installed_models
+    from tree_sway.installed_models import installed_models
 
-        if given in installed_models():
-            return given
-    near = nearest(str(given), MODELS)
+    models = dict.fromkeys((*MODELS, *installed_models()))
+    if isinstance(given, str) and given in models:
+        return given
+    near = nearest(str(given), models)
     raise ParameterError(
         f"unknown model '{given}'",
         where='model',
-        cure=f'{near + ", or " if near else ""}use one of: {", ".join(MODELS)}, or a number of '
+        cure=f'{near + ", or " if near else ""}use one of: {", ".join(models)}, or a number of '
         f'coordinates from 0 to {MOST}',
     )

@@ -28,6 +28,8 @@ SUMMER = 0.84
 _K = 0.2
 _HOURS = 8766.0
 _REDUCED_50 = -math.log(-math.log(0.98))
+_MOST_SCALE = 20.0
+"""Largest scale of a Weibull distribution [m/s]: above it stands a comma for a point."""
 _BEAUFORT = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 """Least mean wind of the forces 1 to 12 in [m/s] (WMO no. 306, table 1100)."""
 
@@ -74,6 +76,10 @@ def climate_of(text: str) -> Climate:
     within('--climate', climate.speed, 0.5, 80.0, 'm/s')
     if climate.shape is not None:
         within('--climate', climate.shape, 0.5, 10.0)
+        if climate.speed > _MOST_SCALE:
+            what = f"'{text}' is hours of a Weibull distribution, and no place is as windy"
+            cure = 'give a basic wind with a point, 22.5'
+            raise ParameterError(what, where='--climate', cure=cure)
     return climate
 
 

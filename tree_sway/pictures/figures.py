@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import base64
 from html import escape
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -84,7 +83,5 @@ def as_html(drawn: Drawn) -> str | None:
         figure = drawn.plot()
     except MissingDependencyError:
         return None
-    picture = io.BytesIO()
-    figure.savefig(picture, format='png', dpi=80)
-    data = base64.b64encode(picture.getvalue()).decode()
+    data = base64.b64encode(figure._repr_png_()).decode()
     return f'{escape(repr(drawn))}<br><img src="data:image/png;base64,{data}">'

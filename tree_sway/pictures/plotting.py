@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,11 @@ _DOTS_PER_INCH = 110.0
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib."""
+    """
+    Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib.
+
+    A notebook shows it, with no need of ``%matplotlib inline``.
+    """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
@@ -27,7 +32,13 @@ def new_figure(width: float, height: float) -> Figure:
         cure = cure_of_missing('matplotlib', 'plot')
         raise MissingDependencyError(str(error), cure=cure) from None
 
-    figure = Figure(figsize=(width, height), facecolor='white')
+    class Shown(Figure):
+        def _repr_png_(self) -> bytes:
+            picture = io.BytesIO()
+            self.savefig(picture, format='png', dpi=80)
+            return picture.getvalue()
+
+    figure = Shown(figsize=(width, height), facecolor='white')
     FigureCanvasAgg(figure)
     return figure
 

@@ -426,5 +426,9 @@ def _refusal_of(error: Exception, url: str) -> TransportError | None:
         return TransportError(what, where=url, cure=cure)
     if isinstance(error, aiohttp.WSServerHandshakeError) and error.status in _DENIED:
         what = f'it refuses the connection (HTTP {error.status})'
-        return TransportError(what, where=url, cure='give the token of its page')
+        return TransportError(
+            what,
+            where=url,
+            cure='give the token of its page: --token-file, or ?token=... in its address',
+        )
     return None

@@ -50,6 +50,14 @@ def test_it_gives_the_poses_of_python(fork, program, tmp_path, kind):
     assert np.ptp(found, axis=0).max() > 0.01
 
 
+def test_a_file_that_is_not_there_is_named(program, tmp_path):
+    done = subprocess.run(
+        [program, tmp_path / 'no.sway'], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 1
+    assert 'no.sway: No such file' in done.stderr
+
+
 def test_a_damaged_file_is_refused_by_name(fork, program, tmp_path):
     path = tmp_path / 'fork.sway'
     arrays = make_simulator(fork(), model=12).models[0].native_arrays()
