@@ -207,8 +207,8 @@ def make_ready(environment, extras):
     began = time.monotonic()
     if made_from[0] != wanted()[0]:
         there = set()
-        size = 'two minutes and 0.8 GB' if 'ros' in extras else 'a minute and 0.7 GB'
-        say(f'setting up {VENV}, once: about {size}{" and the tests" * ("test" in extras)}')
+        size = 0.8 if 'ros' in extras else 0.7
+        say(f'setting up {VENV}, once: some minutes and {size} GB{" and the tests" * ("test" in extras)}')
         make_venv(environment)
         pip(environment, 'setuptools>=70.1,<81')
     elif made_from[:3] == wanted():

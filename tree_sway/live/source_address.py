@@ -135,7 +135,7 @@ def _meant(text: str) -> str:
     return 'one such as udp:5006, http://host:port/ or serial:/dev/ttyUSB0'
 
 
-def read_source_address(text: str) -> SourceAddress:
+def read_source_address(text: str, where: str = 'sensor', cure: str = '') -> SourceAddress:
     """
     Read an address.
 
@@ -151,8 +151,8 @@ def read_source_address(text: str) -> SourceAddress:
     if scheme is None:
         raise ParameterError(
             f"'{text}' does not begin with a kind of source",
-            where='sensor',
-            cure=f'give {_meant(text)}',
+            where=where,
+            cure=cure or f'give {_meant(text)}',
         )
     options = dict(parse_qsl(parts.fragment or parts.query, keep_blank_values=True))
     return SourceAddress(text, scheme[1], parts, options)

@@ -217,7 +217,7 @@ def test_a_phone_whose_gyroscope_stops_is_told_and_then_done_without(
             assert 'acceleration alone' in said[-1]
     assert live.accepted > 3050
     assert live.quantities == ('acceleration',)
-    assert said[-1].endswith(': acceleration come')
+    assert said[-1].endswith(': samples of acceleration come')
 
 
 def test_a_sensor_of_which_all_is_refused_is_not_live(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -266,6 +266,7 @@ def test_too_few_samples_are_told_with_the_cure() -> None:
     [
         ('serial:/dev/ttyUSB0', 'is no live motion sensor'),
         ('motion.csv', 'does not begin with a kind of source'),
+        ('192.168.1.23:8080', '^--motion: .*; give one of http://PHONE'),
         ('udp:', 'a port from 1 to 65535'),
         ('udp:70000', 'a port from 1 to 65535'),
         ('http://phone:8080/get', "a path '/get'"),

@@ -183,7 +183,7 @@ class LiveMotion(LiveSource):
             if not self.quantities or not is_whole:
                 self.quantities = each.quantities
                 measured = ' and '.join(_WORDS[name] for name in self.quantities)
-                self._log(f'{self.name}: {measured} come')
+                self._log(f'{self.name}: samples of {measured} come')
             self._samples.append(sample)
             if self._heard is not None:
                 self._heard(sample)

@@ -45,7 +45,8 @@ def open_motion(text: str) -> OpenedMotion:
         A library that it needs is not installed.
 
     """
-    address = read_source_address(text)
+    forms = f'give one of {", ".join(FORMS)}'
+    address = read_source_address(text, '--motion', forms)
     known = {
         'http': _phyphox, 'https': _phyphox, 'udp': _udp, 'mqtt': _mqtt, 'mqtts': _mqtt,
     }  # fmt: skip
@@ -53,9 +54,7 @@ def open_motion(text: str) -> OpenedMotion:
         raise ParameterError(
             f"'{text}' is no live motion sensor",
             where='--motion',
-            cure='; '.join(
-                filter(None, (nearest(address.scheme, known), f'give one of {", ".join(FORMS)}'))
-            ),
+            cure='; '.join(filter(None, (nearest(address.scheme, known), forms))),
         )
     source = known[address.scheme](address)
     name = address.name
