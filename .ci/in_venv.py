@@ -207,8 +207,9 @@ def make_ready(environment, extras):
     began = time.monotonic()
     if made_from[0] != wanted()[0]:
         there = set()
-        size = 0.8 if 'ros' in extras else 0.7
-        say(f'setting up {VENV}, once: some minutes and {size} GB{" and the tests" * ("test" in extras)}')
+        size = '0.8 GB' if 'ros' in extras else '0.7 GB'
+        more = ' and the tests' * ('test' in extras)
+        say(f'setting up {VENV}, once: some minutes and {size}{more}')
         make_venv(environment)
         pip(environment, 'setuptools>=70.1,<81')
     elif made_from[:3] == wanted():
