@@ -43,9 +43,6 @@ spectrum of strain of grown trees decreases above their first frequency as that 
 N_DELAYS = 16
 """Number of delays of limbs."""
 
-LONGEST_DELAY = 8.0
-"""Longest delay in [s], that of a wide crown in a light wind."""
-
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 _APART = 48
