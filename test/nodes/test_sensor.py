@@ -38,7 +38,7 @@ def test_a_westerly_of_an_instrument_blows_to_the_east(compose, observer, status
     sensor = nodes['sensor']
     wind = sensor._wind
     observer.until(lambda: wind.other >= 2 and wind.refused, 'what is refused')
-    assert list(wind.refused) == ['status is']
+    assert list(wind.refused) == ["status is 'V', not A"]
     status = sensor._report()[0]
     assert (status.level, status.values['reading']) == (0, 'MWV R')
 

@@ -136,8 +136,8 @@ def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
 
 @pytest.mark.parametrize('model', ['branch', 12, *FULL])
 def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
-    """Half a millimetre across and a kilometre long, with its weight left out."""
-    nodes = np.array([(0, 0, 0), (0, 0, 2), (0, 0, 4), (1e3, 0, 4)], float)
+    """Half a millimetre across and 240 m long, with its weight left out."""
+    nodes = np.array([(0, 0, 0), (0, 0, 2), (0, 0, 4), (240.0, 0, 4)], float)
     tree = tree_from_segments(
         nodes[:-1], nodes[1:], np.array([0.1, 0.08, 5e-4]), parent=np.array([-1, 0, 1])
     )
