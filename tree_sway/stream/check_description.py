@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.checks import GREATEST
+from tree_sway.core.model import MAX_COORDINATES
 from tree_sway.core.species import SPECIES
 from tree_sway.errors import FormatError, inside
 
@@ -144,9 +145,6 @@ def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
 
 def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
     """Refuse branches whose key rotations, or rows of turns, are not in the arrays."""
-    # Here, as it loads the compiler, which is not needed before a description.
-    from tree_sway.core.model import MAX_COORDINATES
-
     keys = arrays['branch_keys'].astype(np.int64)
     coordinate = arrays['branch_coordinate'].astype(np.int64)
     base_turn = arrays['branch_base_turn'].astype(np.int64)
