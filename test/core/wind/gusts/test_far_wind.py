@@ -82,6 +82,16 @@ def test_a_sample_has_the_spectrum_of_turbulence_and_is_the_same_for_a_seed() ->
     assert fast[0] == pytest.approx(fast[1], rel=0.2)
 
 
+def test_a_crown_in_a_sample_is_as_lively_wherever_the_anemometer_stands() -> None:
+    untold = winds(far(1000.0, 1), WIND)[0][4000:, 0]
+    beside = winds(far(0.1, 1), WIND)[0][4000:, 0]
+    half_seconds = [np.diff(each.reshape(-1, 10).mean(axis=1)).std() for each in (beside, untold)]
+    assert half_seconds[0] == pytest.approx(half_seconds[1], rel=0.05)
+    # Upwind it tells more than across the wind, and less is drawn.
+    upwind, aside = (winds(far(12.0, 1, bearing=each), WIND)[0][4000:, 0] for each in (UPWIND, 0.0))
+    assert upwind.std() == pytest.approx(aside.std(), rel=0.06)
+
+
 def test_parts_share_slow_gusts_and_not_fast_ones() -> None:
     _, parts = winds(far(12.0, 1), WIND)
     along = parts[4000:, :2, 0]

@@ -28,6 +28,7 @@ def by_equations(wind: FarWind, measured: Floats, dts: Floats) -> tuple[Floats, 
     run = span = 0.0
     wholes, aparts = [], []
     for air, dt in zip(measured, dts, strict=True):
+        nearest = round(math.degrees(math.atan2(mean[1], mean[0])) / 10.0) % 36
         span = min(span + dt, 600.0)
         mean = mean + dt / span * (air - mean)
         variance = variance + dt / span * (np.square(air - mean) - variance)
@@ -46,7 +47,9 @@ def by_equations(wind: FarWind, measured: Floats, dts: Floats) -> tuple[Floats, 
         if wind._native.is_sample:
             assert wind._rest is not None
             row, share = int(run / 0.25), run / 0.25 % 1.0
-            low, high = (wind._rest[(row + k) % SAMPLES].astype(float) for k in (0, 1))
+            more = np.float32(wind._mixes[nearest if len(wind._weights) > 1 else 0])
+            rows = [(row + k) % SAMPLES for k in (0, 1)]
+            low, high = np.float64(wind._least[rows] + more * wind._more[rows])
             along = np.array([*mean[:2], 0.0]) / math.hypot(*mean[:2])
             axes = np.stack([along, TURNED @ along, [0.0, 0.0, 1.0]])
             deviations = np.sqrt(np.square(axes) @ variance)

@@ -11,19 +11,24 @@ the way x along the wind (Taylor 1938)::
 
 Everything is a law of the wavenumber, so that the run of the wind [m] takes the place of time and
 nothing depends on the wind speed. The expected wind of a limb, given that of the anemometer up to
-now, is its mean and a sum of low-passed deviations from it, of the lengths `LENGTHS`. Their
-weights have the least error in turbulence of Kaimal's spectrum S::
+now, is its mean and a sum of low-passed deviations from it, of the lengths `LENGTHS`,
+``E(k) = sum_j w_j / (1 + 2 pi i k L_j)``. Their weights have the least error of the sway in
+turbulence of Kaimal's spectrum S::
 
-    integral S(k) |G(k) - sum_j w_j / (1 + 2 pi i k L_j)|^2 dk
+    integral S(k) |H(k)|^2 |G(k) - E(k)|^2 dk
 
 the projection of Wiener's causal filter (1949, Extrapolation, Interpolation, and Smoothing of
-Stationary Time Series) on these stages; five of them are within 1 % of its error. What it does not
-know still loads the tree: where the wind is the expected one, its missing variance is added to the
-square of the speed, as E[U^2] = E[U]^2 + var U.
+Stationary Time Series) on these stages. |H|^2 is the response of the first mode to the wind, mean
+over the winds of `_WINDS`: gusts near its frequency move the tree most, and those that are faster
+hardly. What it does not know still loads the tree: where the wind is the expected one, its missing
+variance is added to the square of the speed, as E[U^2] = E[U]^2 + var U.
 
-A sample adds what may be: a drawn field, whose limbs share gusts by the same law, of the spectrum
-``S (1 - |sum_j w_j / (1 + 2 pi i k L_j)|^2)``. With it the wind of each limb has the spectrum of
-turbulence, and follows the measured one as far as that tells.
+A sample adds what may be: a drawn field. Limbs share gusts by the same law, C, and of those what
+is expected, which all limbs share, is no more to be drawn: its cross spectra are
+``S (C_ij - |E_i| |E_j|)``. With it the wind of each limb has the spectrum of turbulence, that of
+the crown no more than it, and both follow the measured one as far as that tells. An anemometer
+tells more in a wind along the way to it than across it: a field is drawn for either, by the same
+numbers, and mixed by the direction of the mean wind.
 
 Of gusts that are smaller than what they move ``1 / (1 + C k l)`` of the power acts. Up to the
 first frequency of the tree that is a whole part, and above it less: the frequency of a branch
@@ -60,6 +65,12 @@ SAMPLES = 1 << 14
 """Number of samples of a drawn field, after which it repeats: 4 km of wind."""
 
 _SPACING = 0.25
+_WINDS = 3.5, 5.0, 7.0, 10.0, 14.0
+"""Winds in which the weights have the least error [m/s]."""
+
+_DAMPED = 0.12
+"""Damping ratio of a first mode whose frequency is known to a tenth [-]."""
+
 _USUAL = 7.0
 """Wind [m/s] in which a wavenumber is the frequency at which it shakes the tree."""
 
@@ -107,13 +118,21 @@ class FarWind:
         self._share = share
         self._places = places
         self._mast = distance, bearing
-        self._weights = _weights(places, distance, bearing)
+        self._weights = _weights(places, distance, bearing, frequency)
         self._memory = np.zeros((len(LENGTHS) + 4, 3))
         self._mean, self._variance, _, self._run = self._memory[len(LENGTHS) :]
         self._whole = np.zeros(3)
         self._rest: Singles | None = None
         if seed is not None:
-            self._rest = _drawn_rest(places, size, self._weights, frequency / _USUAL, seed)
+            by_direction = self._told_by_direction()
+            least, most = int(by_direction.argmin()), int(by_direction.argmax())
+            ends = self._weights[[least, most]]
+            self._least, more = _drawn_rest(places, size, ends, frequency / _USUAL, seed)
+            self._more = more - self._least
+            above = by_direction - by_direction[least]
+            self._mixes = above / max(float(above[most]), 1e-12)
+            self._mixed_for = 0
+            self._rest = self._least + np.float32(self._mixes[0]) * self._more
         self._native = NativeFarWind(
             parts=len(share),
             stages=len(LENGTHS),
@@ -133,11 +152,14 @@ class FarWind:
     @property
     def told(self) -> float:
         """Share of the variance of the crown's gusts that the anemometer tells [-]."""
+        return float(self._told_by_direction().mean())
+
+    def _told_by_direction(self) -> Floats:
+        """Share of the variance of gusts that the anemometer tells, by the wind's way, (d,)."""
         power = _power_along()
-        in_each = [_told(_WAVENUMBERS, each) for each in self._weights]
-        known = np.mean(in_each, axis=0)
-        told = power @ known @ self._share
-        return float(told / power.sum())
+        expected = _low_passes(_WAVENUMBERS) @ self._weights.swapaxes(1, 2)
+        known = np.square(np.abs(expected)) @ self._share
+        return np.asarray(known @ power / power.sum())
 
     def push(self, x: float, y: float, z: float, dt: float, apart: Floats) -> Floats:
         """
@@ -145,11 +167,27 @@ class FarWind:
 
         The array is reused. What the wind of each part is beside it is written to `apart`, (g, 3).
         """
+        if self._rest is not None and len(self._weights) > 1:
+            self._mix(self._rest)
         if apart is not self._apart:
             self._apart_at = contiguous(apart, (len(self._share), 3))
             self._apart = apart
         LIBRARY.sway_push_farwind(self._native.at, x, y, z, dt, self._apart_at)
         return self._whole
+
+    def _mix(self, rest: Singles) -> None:
+        """Mix the drawn fields for the direction of the mean wind, where that has changed."""
+        nearest = self._nearest(self.mean)
+        if nearest != self._mixed_for:
+            self._mixed_for = nearest
+            np.multiply(self._more, np.float32(self._mixes[nearest]), out=rest)
+            rest += self._least
+
+    def _nearest(self, mean: tuple[float, float]) -> int:
+        """Return the number of the direction nearest to that of a mean wind."""
+        east, north = mean
+        towards = math.atan2(north, east) * len(self._weights) / (2.0 * np.pi)
+        return round(towards) % len(self._weights)
 
     def others(self, offsets: Ints, along: float, across: float) -> Floats:
         """
@@ -190,11 +228,8 @@ class FarWind:
         east, north = mean
         angle = math.atan2(north, east)
         (true,) = _coherences(self._places, distance, bearing, wavenumbers, [angle])
-        n_directions = len(self._weights)
-        towards = angle * n_directions / (2.0 * np.pi)
-        nearest = round(towards) % n_directions
         stages = _low_passes(wavenumbers)
-        expected = stages @ self._weights[nearest].T @ self._share
+        expected = stages @ self._weights[self._nearest(mean)].T @ self._share
         of_crown = true @ self._share
         turn = of_crown * expected.conj()
         if bearing is None:
@@ -246,10 +281,23 @@ def _low_passes(wavenumbers: Floats) -> Complexes:
     return np.asarray(1.0 / (1.0 + 1j * phases))
 
 
-def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
-    """Weights of the low-passes in winds from every direction, or in all alike, (d, g, k)."""
+def _sway_per_gust(frequency: float) -> Floats:
+    """Response of the first mode [Hz] to gusts of `_WAVENUMBERS`, squared, mean over winds."""
+    ratio = _WAVENUMBERS * np.array(_WINDS)[:, None] / frequency
+    impedance = 1.0 - np.square(ratio) + 2j * _DAMPED * ratio
+    return np.asarray(np.square(1.0 / np.abs(impedance)).mean(axis=0))
+
+
+def _weights(
+    places: Floats, distance: float, bearing: float | None, frequency: float
+) -> Floats:
+    """
+    Weights of the low-passes in winds from every direction, or in all alike, (d, g, k).
+
+    The first frequency of the tree is in [Hz].
+    """
     stages = _low_passes(_WAVENUMBERS)
-    weighed = stages.conj().T * _power_along()
+    weighed = stages.conj().T * (_power_along() * _sway_per_gust(frequency))
     square = (weighed @ stages).real
     return np.array(
         [
@@ -257,12 +305,6 @@ def _weights(places: Floats, distance: float, bearing: float | None) -> Floats:
             for coherence in _coherences(places, distance, bearing, _WAVENUMBERS, _ANGLES)
         ]
     )
-
-
-def _told(wavenumbers: Floats, weights: Floats) -> Floats:
-    """Share of the power of each part that low-passes by weights (g, k) tell, (n, g)."""
-    expected = _low_passes(wavenumbers) @ weights.T
-    return np.asarray(np.square(np.abs(expected)))
 
 
 def _coherences(
@@ -301,35 +343,43 @@ def _coherence(
     return np.asarray(np.exp(-wavenumbers[:, None] * per_wavenumber))
 
 
-def _drawn_rest(places: Floats, size: Floats, weights: Floats, first: float, seed: int) -> Singles:
+def _drawn_rest(
+    places: Floats, size: Floats, weights: Floats, first: float, seed: int
+) -> tuple[Singles, ...]:
     """
     Draw what is not expected at each place, over its deviation, (samples, g, 3).
 
-    The first mode of the tree is at the wavenumber `first` [1/m].
+    It is drawn for each of the weights of the low-passes, (w, g, k), by the same numbers. The
+    first mode of the tree is at the wavenumber `first` [1/m].
     """
     count = len(places)
     run = SAMPLES * _SPACING
     wavenumbers = np.arange(1, SAMPLES // 2) / run
-    in_each = [_told(wavenumbers, each) for each in weights]
-    told = np.mean(in_each, axis=0)
     column = wavenumbers[:, None]
     beyond = np.square(column / first)
     extent = size * np.minimum(1.0, 2.0 / (1.0 + beyond))
-    acting = 1.0 / (1.0 + _WITHIN * column * extent)
-    untold = np.maximum(1.0 - told, 0.0)
-    missing = np.sqrt(untold * acting)
+    acting = 1.0 / np.sqrt(1.0 + _WITHIN * column * extent)
     apart = np.linalg.norm(places[:, None] - places, axis=2)
     shared = np.exp(-_WITHIN * column[..., None] * apart)
-    root = np.linalg.cholesky(shared + 1e-9 * np.eye(count))
+    root = acting[..., None] * np.linalg.cholesky(shared + 1e-9 * np.eye(count))
     spectra = Turbulence(1.0, _HEIGHT, 1.0).spectrum(wavenumbers)
     power = spectra / spectra.sum(axis=0)
     amplitudes = SAMPLES * np.sqrt(0.5 * power)
     turns = np.random.default_rng(seed).random((3, len(wavenumbers), count))
     phases = np.exp(2j * np.pi * turns)
-    rest = np.empty((SAMPLES, count, 3), dtype=np.float32)
-    for axis, phase in enumerate(phases):
-        lines = np.zeros((SAMPLES // 2 + 1, count), dtype=np.complex128)
-        drawn = np.einsum('kij,kj->ki', root, phase)
-        lines[1:-1] = drawn * missing * amplitudes[:, axis, None]
-        rest[..., axis] = np.fft.irfft(lines, SAMPLES, axis=0)
-    return rest
+    fields = []
+    for each in weights:
+        # The root of ``root root^T - e e^T`` is ``root (1 - less v v^T)`` with ``root v = e``.
+        expected = np.abs(_low_passes(wavenumbers) @ each.T)
+        within = np.linalg.solve(root, expected[..., None])[..., 0]
+        told = np.square(within).sum(axis=1)
+        less = (1.0 - np.sqrt(np.maximum(1.0 - told, 0.0))) / np.maximum(told, 1e-12)
+        rest = np.empty((SAMPLES, count, 3), dtype=np.float32)
+        for axis, phase in enumerate(phases):
+            by_told = less * np.einsum('kj,kj->k', within, phase)
+            lines = np.zeros((SAMPLES // 2 + 1, count), dtype=np.complex128)
+            drawn = np.einsum('kij,kj->ki', root, phase - by_told[:, None] * within)
+            lines[1:-1] = drawn * amplitudes[:, axis, None]
+            rest[..., axis] = np.fft.irfft(lines, SAMPLES, axis=0)
+        fields.append(rest)
+    return tuple(fields)
