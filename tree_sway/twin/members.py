@@ -42,6 +42,7 @@ from scipy.special import ndtri
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.oscillators import held_propagator
+from tree_sway.core.run import WOOD_SPREAD
 from tree_sway.core.wind.gusts import FarWind, N_DELAYS, SAMPLES, USUAL_COHERENCE
 from tree_sway.twin.disturbance import GUST, part_slopes
 
@@ -53,8 +54,8 @@ if TYPE_CHECKING:
 _N_MEMBERS = 64
 """Number of members."""
 
-_WOOD_SPREAD, _DAMPING_SPREAD = 0.22, 0.5
-"""Log-deviations of Young's modulus within a species, and of damping among trees."""
+_DAMPING_SPREAD = 0.5
+"""Log-deviation of damping among trees."""
 
 _LEAST_FAST = 0.04
 """
@@ -74,7 +75,7 @@ _BIAS_TIME = 60.0
 class Uncertainty(NamedTuple):
     """Log-deviations of a tree's stiffness, damping and drag area over the model's."""
 
-    stiffness: float = _WOOD_SPREAD
+    stiffness: float = WOOD_SPREAD
     damping: float = _DAMPING_SPREAD
     drag: float = DRAG
 

@@ -32,7 +32,7 @@ from tree_sway.core.checks import (
     within,
 )
 from tree_sway.core.model import ModelCache, PREPARED
-from tree_sway.core.run import FarCrown, Outcome, SwaySimulator
+from tree_sway.core.run import damp_by_unknown_wood, FarCrown, Outcome, SwaySimulator, WOOD_SPREAD
 from tree_sway.core.settings import Settings, settings_with
 from tree_sway.core.setup import prepared, TreeReductions
 from tree_sway.core.species import Species
@@ -191,6 +191,10 @@ class ObservedTree(SwaySimulator):
         self._tips: Floats | None = None
         self.learned_before: LearnedTree | None = getattr(tree, 'learned', None)
         """What sensors told in earlier runs, in the species already; None without."""
+        if chosen.is_far and not at:  # sensors tell the wood
+            known = self.learned_before
+            spread = WOOD_SPREAD if known is None else known.stiffness_error
+            damp_by_unknown_wood(tunable, spread)
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
 

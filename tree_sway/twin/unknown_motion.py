@@ -70,7 +70,7 @@ class UnknownMotion:
         tunable = self._simulator.banks[0].oscillators.tunable
         self.all_stiffness = np.array(tunable.stiffness) / tunable.inertia
         """Stiffness of every coordinate of the model [1/s^2], (m,)."""
-        self.all_damping = np.array(tunable.damping) / tunable.inertia
+        self.all_damping = tunable.of_wood / tunable.inertia
         """Damping of every coordinate of the model by its wood [1/s], (m,)."""
         self.stiffness = self.all_stiffness[: self.count].copy()
         """Stiffness of each [1/s^2], (count,)."""

@@ -216,11 +216,8 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
         places = [each.at for each in advised]
     model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
     trees = [around]
-    if arguments.drawn and arguments.easy:
+    if arguments.drawn:
         trees = drawn(around, arguments.drawn, in_leaf=in_leaf)
-    elif not arguments.easy:
-        count = max(arguments.drawn, 1)
-        trees = [replace(around, seed=around.seed + k, upwind=0.0) for k in range(count)]
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
     for each in trees:
@@ -235,7 +232,10 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 seconds=each.seconds,
                 seed=each.seed,
             ).drawn(tree)
-            each = replace(each, wood=outside.wood, damping=outside.damping, drag=outside.drag)
+            factors = each if arguments.drawn else outside
+            wood, damping, drag = factors.wood, factors.damping, factors.drag
+            outside = replace(outside, wood=wood, damping=damping, drag=drag)
+            each = replace(each, wood=wood, damping=damping, drag=drag, upwind=0.0)
             true = gusty_motion(tree, species, places, outside, in_leaf=in_leaf)
             distance, bearing = mast_of(outside)
             apart |= {'anemometer_distance': distance, 'anemometer_bearing': bearing}

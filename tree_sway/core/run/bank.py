@@ -19,16 +19,28 @@ class Tunable(NamedTuple):
     Arrays that a tuning writes, one number per oscillator, and their parts.
 
     ``weight`` is the part of the stiffness by gravity, negative where it softens; ``inertia`` is 1
-    of modes; ``others`` are proportional to a power of the stiffness of the wood; ``loss`` is the
-    damping ratio of each over that of the tree.
+    of modes; ``unknown`` is the damping ratio that stands for wood which is not known
+    (`unknown_wood`); ``others`` are proportional to a power of the stiffness of the wood;
+    ``loss`` is the damping ratio of each over that of the tree.
     """
 
     stiffness: Floats
     damping: Floats
     inertia: Floats | float
     weight: Floats
+    unknown: Floats
     others: tuple[tuple[Floats, float], ...] = ()
     loss: Floats | float = 1.0
+
+    @property
+    def critical(self) -> Floats:
+        """Critical damping of each oscillator."""
+        return np.asarray(2.0 * np.sqrt(self.stiffness * self.inertia))
+
+    @property
+    def of_wood(self) -> Floats:
+        """Damping of each oscillator by its wood alone."""
+        return np.asarray(self.damping - self.unknown * self.critical)
 
 
 class Oscillators(Protocol):

@@ -47,7 +47,8 @@ class BranchOscillators:
         """Records of `BranchBlock`."""
         self.state = self._blocks.state
         self.x, self.v = self.state
-        self.tunable = Tunable(self.stiffness, self.damping, self.inertia, model.weight)
+        unknown = np.zeros(len(self.stiffness))
+        self.tunable = Tunable(self.stiffness, self.damping, self.inertia, model.weight, unknown)
         """Arrays that change with stiffness, damping and gravity."""
 
     def set_step(self, dt: float) -> None:

@@ -42,6 +42,7 @@ class ModalCoordinates:
             self.damping,
             1.0,
             model.weight,
+            np.zeros(len(self.stiffness)),
             ((self.limit, 1.0), *((each, -1.0) for each in self.compliance)),
             model.relative_damping,
         )

@@ -104,6 +104,10 @@ class SwaySimulator(NotCopied):
             from tree_sway.core.run.far_crown import FarCrown
 
             self._far = FarCrown(prepared, self._bank, self._gusts, self.settings)
+            if self.settings.gusts == 'expected':
+                from tree_sway.core.run.unknown_wood import damp_by_unknown_wood
+
+                damp_by_unknown_wood(self._bank.oscillators.tunable)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan

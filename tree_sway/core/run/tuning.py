@@ -139,8 +139,8 @@ class LiveTuning:
     def _apply(self, tuning: Tuning) -> None:
         stiffness = self._stiffness(tuning)
         tunable = self._tunable
-        critical = 2.0 * np.sqrt(stiffness * tunable.inertia)
-        tunable.damping[:] = tuning.damping_ratio * tunable.loss * critical
         tunable.stiffness[:] = stiffness
+        ratio = tuning.damping_ratio * tunable.loss + tunable.unknown
+        tunable.damping[:] = ratio * tunable.critical
         for (array, power), made in zip(tunable.others, self._others, strict=True):
             array[:] = made * math.pow(tuning.stiffness_factor, power)

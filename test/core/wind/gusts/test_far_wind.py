@@ -88,7 +88,9 @@ def test_a_crown_in_a_sample_is_as_lively_wherever_the_anemometer_stands() -> No
     half_seconds = [np.diff(each.reshape(-1, 10).mean(axis=1)).std() for each in (beside, untold)]
     assert half_seconds[0] == pytest.approx(half_seconds[1], rel=0.05)
     # Upwind it tells more than across the wind, and less is drawn.
-    upwind, aside = (winds(far(12.0, 1, bearing=each), WIND)[0][4000:, 0] for each in (UPWIND, 0.0))
+    upwind, aside = (
+        winds(far(12.0, 1, bearing=each), WIND)[0][4000:, 0] for each in (UPWIND, 0.0)
+    )
     assert upwind.std() == pytest.approx(aside.std(), rel=0.06)
 
 

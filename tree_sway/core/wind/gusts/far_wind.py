@@ -71,6 +71,9 @@ _WINDS = 3.5, 5.0, 7.0, 10.0, 14.0
 _DAMPED = 0.12
 """Damping ratio of a first mode whose frequency is known to a tenth [-]."""
 
+_LONGEST = 60.0
+"""Integral length of gusts [m], that of IEC 61400-1 at 10 m."""
+
 _USUAL = 7.0
 """Wind [m/s] in which a wavenumber is the frequency at which it shakes the tree."""
 
@@ -249,7 +252,9 @@ class FarWind:
         level = math.hypot(east, north)
         c = east / level if level > 0.0 else 1.0
         s = north / level if level > 0.0 else 0.0
-        xx, yy, zz = self._variance.tolist()
+        # About the mean of a short record, gusts that are longer than it have no variance.
+        missed = 2.0 * _LONGEST / max(float(self._run[0]), 1e-9)
+        xx, yy, zz = (self._variance / max(1.0 - missed, 0.5)).tolist()
         along = math.sqrt(c * c * xx + s * s * yy)
         across = math.sqrt(s * s * xx + c * c * yy)
         return np.array(
