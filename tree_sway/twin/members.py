@@ -42,7 +42,7 @@ from scipy.special import ndtri
 from tree_sway.core.arrays import Floats
 from tree_sway.core.drag import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.oscillators import held_propagator
-from tree_sway.core.run import WOOD_SPREAD
+from tree_sway.core.species import WOOD_SPREAD
 from tree_sway.core.wind.gusts import FarWind, N_DELAYS, SAMPLES, USUAL_COHERENCE
 from tree_sway.twin.disturbance import GUST, part_slopes
 

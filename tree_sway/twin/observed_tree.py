@@ -32,10 +32,10 @@ from tree_sway.core.checks import (
     within,
 )
 from tree_sway.core.model import ModelCache, PREPARED
-from tree_sway.core.run import damp_by_unknown_wood, FarCrown, Outcome, SwaySimulator, WOOD_SPREAD
+from tree_sway.core.run import FarCrown, Outcome, SwaySimulator
 from tree_sway.core.settings import Settings, settings_with
 from tree_sway.core.setup import prepared, TreeReductions
-from tree_sway.core.species import Species
+from tree_sway.core.species import Species, WOOD_SPREAD
 from tree_sway.core.tree import GrownTree, Tree, tree_and_species
 from tree_sway.core.wind import is_wind
 from tree_sway.core.wind.gusts import CrownWind, delays_of, N_DELAYS, USUAL_COHERENCE
@@ -194,7 +194,7 @@ class ObservedTree(SwaySimulator):
         if chosen.is_far and not at:  # sensors tell the wood
             known = self.learned_before
             spread = WOOD_SPREAD if known is None else known.stiffness_error
-            damp_by_unknown_wood(tunable, spread)
+            tunable.spread_wood(spread)
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
 

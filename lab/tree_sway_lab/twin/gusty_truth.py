@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.drag import DragLaw
-from tree_sway.core.run import damp_by_unknown_wood, SwaySimulator
+from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import prepare, TreeReductions
@@ -128,7 +128,7 @@ def known_tree(
     leaves, exponent, wood = model.drag_law
     law = DragLaw(outside.drag * leaves, exponent, outside.drag * wood)
     simulator = make_simulator(replace(model, drag_law=law))
-    damp_by_unknown_wood(simulator.banks[0].oscillators.tunable, 0.0)
+    simulator.banks[0].oscillators.tunable.spread_wood(0.0)
     return simulator
 
 

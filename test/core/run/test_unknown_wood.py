@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run import damp_by_unknown_wood, SwaySimulator, WOOD_SPREAD
+from tree_sway.core.run import SwaySimulator
 from tree_sway.core.run.bank import Tunable
 from tree_sway.core.scene import make_simulator
+from tree_sway.core.species import WOOD_SPREAD
 from tree_sway.twin import ObservedTree
 
 TREE = crown((4, 2), 4)
@@ -35,7 +36,7 @@ def response(frequency: float, stiffness: Floats | float, ratio: float) -> compl
 @pytest.mark.parametrize('ratio', [0.02, 0.05, 0.2])
 def test_a_mode_responds_as_the_mean_of_all_wood(ratio: float) -> None:
     tunable = Tunable(np.ones(1), np.full(1, 2.0 * ratio), 1.0, np.zeros(1), np.zeros(1))
-    damp_by_unknown_wood(tunable)
+    tunable.spread_wood(WOOD_SPREAD)
     mean_ratio = 0.5 * float(tunable.damping[0])
     wood = np.exp(WOOD_SPREAD * np.random.default_rng(1).normal(size=20_000))
     for frequency in (1e-3, 1.0, 3.0):
@@ -66,5 +67,5 @@ def test_a_tuned_tree_keeps_what_stands_for_unknown_wood() -> None:
         tuned.step((3.0, 0.0, 0.0), 1.0 / 60.0)
     added = damping(tuned) - made
     np.testing.assert_allclose(added, damping(make_simulator(TREE)), rtol=1e-6)
-    damp_by_unknown_wood(tuned.banks[0].oscillators.tunable, 0.0)
+    tuned.banks[0].oscillators.tunable.spread_wood(0.0)
     np.testing.assert_allclose(damping(tuned), 2.0 * damping(make_simulator(TREE)), rtol=1e-6)

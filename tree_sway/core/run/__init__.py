@@ -44,7 +44,5 @@ if TYPE_CHECKING:
     from tree_sway.core.run.table_model import TableOscillators as TableOscillators
     from tree_sway.core.run.tuning import LiveTuning as LiveTuning
     from tree_sway.core.run.tuning import Tuning as Tuning
-    from tree_sway.core.run.unknown_wood import damp_by_unknown_wood as damp_by_unknown_wood
-    from tree_sway.core.run.unknown_wood import WOOD_SPREAD as WOOD_SPREAD
 else:
     __getattr__, __dir__, __all__ = face(__name__)

@@ -42,6 +42,17 @@ class Tunable(NamedTuple):
         """Damping of each oscillator by its wood alone."""
         return np.asarray(self.damping - self.unknown * self.critical)
 
+    def spread_wood(self, deviation: float) -> None:
+        """Let the coordinates sway as the mean over trees whose wood has a log-deviation."""
+        from tree_sway.core.run.unknown_wood import mean_damping
+
+        own = self.of_wood / self.critical
+        # The weight is known, and what stiffness is by it.
+        share = np.abs(1.0 - self.weight / self.stiffness)
+        mean = mean_damping(own, 0.5 * deviation * share)
+        self.unknown[:] = mean - own
+        self.damping[:] = mean * self.critical
+
 
 class Oscillators(Protocol):
     """Protocol of all models: key rotations moved by a wind."""

@@ -26,6 +26,7 @@ from tree_sway.core.native import NotCopied
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.outcome import Outcome
+from tree_sway.core.species import WOOD_SPREAD
 from tree_sway.core.tree import ends_of_poses
 from tree_sway.core.wind import is_wind
 from tree_sway.errors import nearest, ParameterError
@@ -105,9 +106,7 @@ class SwaySimulator(NotCopied):
 
             self._far = FarCrown(prepared, self._bank, self._gusts, self.settings)
             if self.settings.gusts == 'expected':
-                from tree_sway.core.run.unknown_wood import damp_by_unknown_wood
-
-                damp_by_unknown_wood(self._bank.oscillators.tunable)
+                self._bank.oscillators.tunable.spread_wood(WOOD_SPREAD)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan

@@ -20,22 +20,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import erfcx
 
-from tree_sway.core.run.bank import Tunable
-
-WOOD_SPREAD = 0.22
-"""
-Log-deviation of Young's modulus of clear wood of one species: 22 % (Forest Products Laboratory,
-Wood Handbook, 2010, table 5-6).
-"""
+from tree_sway.core.arrays import Floats
 
 
-def damp_by_unknown_wood(tunable: Tunable, spread: float = WOOD_SPREAD) -> None:
-    """Let coordinates sway as the mean over trees whose wood has a log-deviation."""
-    critical = tunable.critical
-    own = tunable.damping / critical - tunable.unknown
-    # The weight is known, and what stiffness is by it.
-    of_wood = np.abs(1.0 - tunable.weight / tunable.stiffness)
-    deviation = np.maximum(0.5 * spread * of_wood, 1e-6)
-    mean = deviation * np.sqrt(2.0 / np.pi) / erfcx(own / (np.sqrt(2.0) * deviation))
-    tunable.unknown[:] = np.maximum(mean - own, 0.0)
-    tunable.damping[:] = (own + tunable.unknown) * critical
+def mean_damping(own: Floats, deviation: Floats) -> Floats:
+    """Damping ratios of modes, (m,), as the mean over log-deviations of their frequencies."""
+    spread = np.maximum(deviation, 1e-6)
+    mean = spread * np.sqrt(2.0 / np.pi) / erfcx(own / (np.sqrt(2.0) * spread))
+    return np.asarray(np.maximum(mean, own))

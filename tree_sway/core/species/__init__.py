@@ -30,5 +30,6 @@ if TYPE_CHECKING:
     from tree_sway.core.species.species import species_named as species_named
     from tree_sway.core.species.species import typical_root_stiffness as typical_root_stiffness
     from tree_sway.core.species.wood import Species as Species
+    from tree_sway.core.species.wood import WOOD_SPREAD as WOOD_SPREAD
 else:
     __getattr__, __dir__, __all__ = face(__name__)

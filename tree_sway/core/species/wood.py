@@ -10,6 +10,12 @@ import math
 from tree_sway.core.species.foliage_traits import LeafTraits
 from tree_sway.core.species.look import Look
 
+WOOD_SPREAD = 0.22
+"""
+Log-deviation of Young's modulus of clear wood of one species: 22 % (Forest Products Laboratory,
+Wood Handbook, 2010, table 5-6).
+"""
+
 
 @dataclass(frozen=True)
 class Species:

@@ -293,9 +293,7 @@ def _sway_per_gust(frequency: float) -> Floats:
     return np.asarray(np.square(1.0 / np.abs(impedance)).mean(axis=0))
 
 
-def _weights(
-    places: Floats, distance: float, bearing: float | None, frequency: float
-) -> Floats:
+def _weights(places: Floats, distance: float, bearing: float | None, frequency: float) -> Floats:
     """
     Weights of the low-passes in winds from every direction, or in all alike, (d, g, k).
 
