@@ -82,7 +82,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _main(given: list[str]) -> int:
-    table, group = _table(given[0] if given else '')
+    first = given[0] if given else ''
+    try:
+        table, group = _table(first)
+    except TreeSwayError as error:
+        return _fail(first, str(error))
     command = given[bool(group)] if len(given) > bool(group) else ''
     if command == 'lab' and not group:
         return _fail(command, _cure_of_laboratory(shlex.join(given)))
