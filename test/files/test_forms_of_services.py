@@ -178,7 +178,6 @@ def test_an_inventory_has_its_units(
         (read_motion, 'imu.txt', b'$VNIMU,-0.1,0.4,-0.6,0.1,0.2,9.8,0,0,0,20.7,84.3*66\n' * 9,
          'lines of a VectorNav'),
         (open_tree, 'trees.gpx', b'<?xml version="1.0"?>\n<gpx></gpx>\n', 'a layer of a map'),
-        (open_tree, 'cloud.txt', b'LASF' + bytes(300), 'a point cloud'),
         (open_tree, 'tree.txt', b'# vtk DataFile Version 3.0\na\nASCII\n', 'a mesh for drawing'),
         (open_tree, 'tree.dxf', b'0\nSECTION\n2\nENTITIES\n0\nENDSEC\n', 'a mesh for drawing'),
     ],

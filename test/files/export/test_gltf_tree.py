@@ -182,7 +182,8 @@ def test_floats_move_vertices_as_small_integers_do_and_need_no_extension(
     document, arrays = parsed(morphing_tree(simulator, leaves, small=False).glb())
     assert not [key for key in document if key.startswith('extensions')]
     primitive = document['meshes'][0]['primitives'][0]
-    used = [*primitive['attributes'].values(), *(each['POSITION'] for each in primitive['targets'])]
+    targets = [each['POSITION'] for each in primitive['targets']]
+    used = [*primitive['attributes'].values(), *targets]
     assert {document['accessors'][each]['componentType'] for each in used} == {5126}
     (points, moved), (same, rounded) = placed(document, arrays), placed(*morphing)
     np.testing.assert_allclose(points, same, atol=1e-6)
