@@ -51,10 +51,6 @@ class _Quantity(NamedTuple):
     by_time: dict[str, Any]
 
 
-def _is_json(lines: Sequence[str]) -> bool:
-    return _BEGINS.match('\n'.join(lines)) is not None
-
-
 def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
     document = document_of(lines)
@@ -237,11 +233,7 @@ def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
 def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
     """Return those elements of a list that are lists of states of Home Assistant."""
     lists = [each for each in node if each and isinstance(each, list)]
-    return [each for each in lists if all(map(_is_state, each))]
-
-
-def _is_state(node: Any) -> bool:
-    return isinstance(node, dict) and 'state' in node
+    return [each for each in lists if all('state' in object_of(state) for state in each)]
 
 
 def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
@@ -264,4 +256,4 @@ def _unit(cell: Any) -> str:
     return cell if isinstance(cell, str) else ''
 
 
-JSON = Layout('json', _is_json, _read_json_table)
+JSON = Layout('json', lambda lines: _BEGINS.match('\n'.join(lines)) is not None, _read_json_table)

@@ -20,7 +20,7 @@ checksum, a status that is not A, an empty field: the sentence is refused.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import pi
 from pathlib import Path
@@ -62,7 +62,7 @@ def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Rea
     if sentence is None:
         return None
     name, content, check = sentence.groups()
-    fields = content.strip().split(',')
+    fields = content.strip().split(',')[12 if name == 'MDA' else 0 :]
     kind = name
     if name == 'MWV':
         kind = f'MWV {"".join(fields[1:2])}'
@@ -140,10 +140,6 @@ def _mwd(fields: list[str], _: float, declination: float) -> Parts:
     return true, speed, unit, 0.0
 
 
-def _mda(fields: list[str], heading: float, declination: float) -> Parts:
-    return _mwd(fields[12:], heading, declination)
-
-
 def _xdr(fields: list[str], heading: float, _: float) -> Parts:
     """Wind of transducers in groups of kind, value, unit and name."""
     groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
@@ -171,5 +167,7 @@ def _vwr(fields: list[str], heading: float, _: float) -> Parts:
     return from_bow, *speeds[0], heading
 
 
-_READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}
+_READERS: dict[str, Callable[[list[str], float, float], Parts]] = {
+    'MWV': _mwv, 'MWD': _mwd, 'MDA': _mwd, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr,
+}  # fmt: skip
 """Readers of the fields of a sentence, with the heading and the declination [rad]."""
