@@ -11,7 +11,7 @@ of states. The longest of these in the document is the table.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 import re
 from typing import Any, NamedTuple
 
@@ -182,13 +182,9 @@ def _rows(node: dict[str, Any], source: str) -> TextTable | None:
         heads = [[*map(text_of, each)] for each in lists if len(each) == len(rows[0])]
         if any(map(any, heads)):
             cells = [[*map(text_of, list_of(row))] for row in rows]
-            units = max(heads[1:], key=_count_of_units, default=[])
-            return table_of_cells(heads[0], cells, source, units=units)
+            known = [each for each in heads[1:] if any(unit_known('speed', unit) for unit in each)]
+            return table_of_cells(heads[0], cells, source, units=[*known, []][0])
     return None
-
-
-def _count_of_units(cells: Sequence[str]) -> int:
-    return sum(unit_known('speed', cell) for cell in cells)
 
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:

@@ -114,13 +114,9 @@ Parts = tuple[str | float, str, str, float]
 """Angle, speed and its unit as they are sent, and where the angle counts from in [rad]."""
 
 
-def _refuse_short(fields: list[str], least: int) -> None:
-    if len(fields) < least:
-        raise ValueError(f'{len(fields)} fields of {least}')
-
-
 def _mwv(fields: list[str], heading: float, _: float = 0.0) -> Parts:
-    _refuse_short(fields, 5)
+    if len(fields) < 5:
+        raise ValueError(f'{len(fields)} fields of 5')
     angle, _reference, speed, unit, status = fields[:5]
     if status != 'A':
         raise ValueError(f"status is '{status[:8]}', not A")
@@ -130,7 +126,8 @@ def _mwv(fields: list[str], heading: float, _: float = 0.0) -> Parts:
 
 
 def _mwd(fields: list[str], _: float, declination: float) -> Parts:
-    _refuse_short(fields, 8)
+    if len(fields) < 8:
+        raise ValueError(f'{len(fields)} fields of 8')
     true, magnetic, knots, speed = fields[:8:2]
     unit = 'M'
     if finite(speed) is None and finite(knots) is not None:
