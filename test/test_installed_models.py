@@ -100,6 +100,23 @@ def test_an_unknown_model_is_refused_with_those_that_there_are(installed) -> Non
         Settings(model='mien')
 
 
+@pytest.mark.parametrize(
+    ('value', 'why'),
+    [
+        ('no_such_package.bank:make', 'ModuleNotFoundError: .*no_such_package'),
+        ('tree_sway.errors:no_such_name', 'AttributeError: .*no_such_name'),
+    ],
+)
+def test_a_model_that_cannot_be_loaded_is_named_with_the_cure(
+    installed, capsys, value, why
+) -> None:
+    installed['mine'] = EntryPoint('mine', value, GROUP)
+    assert main(['simulate', 'goldcrest', '--model', 'mine', '-o', 'never.csv']) == 2
+    said = capsys.readouterr().err
+    assert re.search(f"'mine' of its package cannot be loaded \\({why}.*uninstall it$", said)
+    assert 'Traceback' not in said
+
+
 def test_the_parameter_takes_an_installed_model(monkeypatch) -> None:
     parameter = SWAY['model']
     assert {*MODELS} == {*parameter.choices}

@@ -9,13 +9,13 @@ No advice is made from the name of a module, which may be that of a different pr
 from __future__ import annotations
 
 from collections.abc import Iterable
-from importlib.metadata import distribution, PackageNotFoundError
+from importlib.metadata import distribution, EntryPoint, PackageNotFoundError
 from importlib.util import find_spec
 import json
 from pathlib import Path
 import re
 import sys
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from urllib.parse import unquote, urlparse
 
 from tree_sway.errors import MissingDependencyError
@@ -51,6 +51,19 @@ PACKAGE = 'tree_sway_ros'
 """Name of the distribution."""
 _STAMP = 'tree_sway_ros.stamp'
 _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
+
+
+def loaded(point: EntryPoint) -> Any:
+    """Return what an entry point names; a `MissingDependencyError` for what cannot be loaded."""
+    try:
+        return point.load()
+    except Exception as error:  # a package of others may fail in any way
+        package = point.dist.name if point.dist else 'its package'
+        raise MissingDependencyError(
+            f"'{point.name}' of {package} cannot be loaded ({type(error).__name__}: {error})",
+            where=point.group,
+            cure=f'install {package} again, or uninstall it',
+        ) from error
 
 
 def refuse_missing(modules: Iterable[str], command: str) -> None:

@@ -19,6 +19,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from tree_sway.errors import MissingDependencyError
+from tree_sway.extras import line_in_venv, loaded
 
 GROUP = 'tree_sway.models'
 _CHOOSERS = 'tree_sway.choosers'
@@ -34,14 +35,14 @@ def installed_models() -> dict[str, EntryPoint]:
 def maker_of(model: str) -> Callable[..., Any]:
     """Return the function that makes an installed model; refuse one that is missing."""
     refuse_missing_model(model)
-    make: Callable[..., Any] = installed_models()[model].load()
+    make: Callable[..., Any] = loaded(installed_models()[model])
     return make
 
 
 def chooser_of(model: str) -> Callable[..., Any]:
     """Return the class of the simulators of a model that chooses; refuse one that is missing."""
     for point in entry_points(group=_CHOOSERS, name=model):
-        chooser: Callable[..., Any] = point.load()
+        chooser: Callable[..., Any] = loaded(point)
         return chooser
     raise MissingDependencyError(
         f"model '{model}' is not installed",
@@ -53,8 +54,6 @@ def chooser_of(model: str) -> Callable[..., Any]:
 def refuse_missing_model(model: str) -> None:
     """Raise a `MissingDependencyError` that says how to install a model of the laboratory."""
     if model not in installed_models():
-        from tree_sway.extras import line_in_venv
-
         install = line_in_venv('lab') or 'pip install ./lab in the checkout'
         fault = 'is not installed'
         verb = 'install it'

@@ -357,9 +357,11 @@ def run_process(command: str, **environment: str) -> subprocess.CompletedProcess
 
 @pytest.mark.skipif(not Path('/dev/full').exists(), reason='needs the device /dev/full')
 def test_a_full_disk_under_standard_output_is_one_line() -> None:
-    result = run_process(f'$TREE_SWAY info {SEEDLING} --quiet > /dev/full')
-    assert result.returncode == 2
-    assert 'No space left on device' in one_line(result.stderr)
+    for unbuffered in ('', '1'):
+        line = f'$TREE_SWAY info {SEEDLING} --quiet > /dev/full'
+        result = run_process(line, PYTHONUNBUFFERED=unbuffered)
+        assert result.returncode == 2
+        assert 'No space left on device' in one_line(result.stderr)
 
 
 @pytest.mark.parametrize('where', ['>&-', '2>&-', '>&- 2>&-'])

@@ -6,11 +6,14 @@ from __future__ import annotations
 
 from importlib.metadata import EntryPoint
 from pathlib import Path
+import re
+import sys
 
 import pytest
 
 from tree_sway.commands import cli, entries
 from tree_sway.commands.entries import additions, commands_called, other_groups, own_commands
+from tree_sway.errors import MissingDependencyError
 
 GONE = EntryPoint('roots', 'tree_sway.roots.commands:COMMANDS', entries.GROUP)
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,8 +63,34 @@ def test_what_a_house_lacks_itself_is_a_fault_and_not_hidden(
     monkeypatch.syspath_prepend(tmp_path)
     point = EntryPoint('own', 'house_of_a_test:COMMANDS', entries.GROUP)
     monkeypatch.setattr(entries, '_own', lambda: [point])
-    with pytest.raises(ModuleNotFoundError, match='roots'):
+    with pytest.raises(MissingDependencyError, match=r"'own' .* cannot be loaded .*roots"):
         own_commands()
+
+
+@pytest.mark.parametrize(
+    ('body', 'why'),
+    [
+        ('import nothing_of_this_name', 'ModuleNotFoundError: .*nothing_of_this_name'),
+        ('import tree_sway.growth as COMMANDS; COMMANDS.no_such', 'AttributeError: .*no_such'),
+        ('COMMANDS = ', 'SyntaxError: '),
+    ],
+)
+def test_commands_of_another_package_that_cannot_be_loaded_are_named(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    body: str,
+    why: str,
+) -> None:
+    (tmp_path / 'house_of_a_guest.py').write_text(body)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'house_of_a_guest', raising=False)
+    point = EntryPoint('guest', 'house_of_a_guest:COMMANDS', entries.GROUP)
+    monkeypatch.setattr(entries, 'entry_points', lambda group: [point])
+    assert cli.main(['guest', 'dance']) == 2
+    said = capsys.readouterr().err
+    assert said.count('\n') == 1
+    assert re.search(f"'guest' of its package cannot be loaded \\({why}.*; install .* again", said)
 
 
 def test_a_table_of_another_package_is_called_by_its_name(

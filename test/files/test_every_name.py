@@ -212,6 +212,7 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'timestamp1': '2026-03-01', 'timestamp2': '{k}00', 'doy': '60',
         'sec': '177232320{k}', 'headerstampsec': '177232320{k}', 'headerstampsecs': '177232320{k}',
         'nanosec': '0', 'headerstampnanosec': '0', 'headerstampnsecs': '0',
+        'datapomiaru': '2026-03-01', 'godzinapomiaru': '{k}',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])

@@ -295,6 +295,25 @@ def test_ctrl_c_does_not_wait_for_workers_that_start(tmp_path):
         until(lambda: not any(Path('/proc', str(each)).exists() for each in workers), 10.0)
 
 
+#: A process that is ended while it has a semaphore that others may use, as those of workers.
+WITH_A_SEMAPHORE = """
+import multiprocessing, os, signal
+from tree_sway.forest.cluster import delayed_interrupt
+
+with delayed_interrupt():
+    lock = multiprocessing.get_context('spawn').Lock()
+    os.kill(os.getpid(), signal.SIGTERM)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, 'pthread_sigmask'), reason='SIGTERM is another there')
+def test_semaphores_of_an_ended_study_are_removed_without_a_warning():
+    command = [sys.executable, '-c', WITH_A_SEMAPHORE]
+    ended = subprocess.run(command, stderr=subprocess.PIPE, timeout=60.0)
+    assert ended.returncode == -signal.SIGTERM
+    assert ended.stderr.decode() == ''
+
+
 def until(found, seconds):
     """Return what is found as soon as there is something."""
     end = time.monotonic() + seconds

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 import contextlib
+import errno
 import importlib
 import io
 import os
@@ -82,7 +83,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _main(given: list[str]) -> int:
-    table, group = _table(given[0] if given else '')
+    first = given[0] if given else ''
+    try:
+        table, group = _table(first)
+    except TreeSwayError as error:
+        return _fail(first, str(error))
     command = given[bool(group)] if len(given) > bool(group) else ''
     if command == 'lab' and not group:
         return _fail(command, _cure_of_laboratory(shlex.join(given)))
@@ -109,15 +114,21 @@ def _main(given: list[str]) -> int:
         if str(error.name).startswith('tree_sway'):
             raise
         return _fail(command, f'{error}; {cure_of_missing(str(error.name), shlex.join(given))}')
-    except BrokenPipeError:
-        # The reader of our output has ended: prevent an error when Python flushes.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # the reader of our output has ended
+        _give_up_output()
         return 0
     except OSError as error:
+        if error.errno == errno.ENOSPC and not error.filename:
+            _give_up_output()
         where = f'{shown(str(error.filename))}: ' if error.filename else ''
         return _fail(command, f'{where}{error.strerror or error}')
     except KeyboardInterrupt:
         return _INTERRUPTED
+
+
+def _give_up_output() -> None:
+    """Prevent a further error when Python flushes what could not be written."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parsed(parser: _OneLineParser, given: list[str]) -> argparse.Namespace:

@@ -15,15 +15,16 @@ from importlib.metadata import distribution, entry_points, EntryPoint, PackageNo
 from typing import Any
 
 from tree_sway.commands.command import Command
-from tree_sway.extras import PACKAGE
+from tree_sway.errors import MissingDependencyError
+from tree_sway.extras import loaded, PACKAGE
 
 GROUP = 'tree_sway.commands'
 
 
 def own_commands() -> tuple[dict[str, Command], list[str]]:
     """Return the commands of this distribution in their order, and whose are not there."""
-    loaded, missing = _loaded(_own())
-    commands = [each for table in loaded for each in table.items()]
+    tables, missing = _loaded(_own())
+    commands = [each for table in tables for each in table.items()]
     table = dict(sorted(commands, key=lambda each: each[1].place))
     return table, missing if table else [PACKAGE]
 
@@ -32,7 +33,7 @@ def commands_called(group: str) -> dict[str, Command] | None:
     """Return the commands of another package by the name of its entry point; None without."""
     own = _own()
     points = (each for each in entry_points(group=GROUP) if each not in own)
-    return next((each.load() for each in points if each.name == group), None)
+    return next((loaded(each) for each in points if each.name == group), None)
 
 
 def other_groups() -> list[str]:
@@ -57,12 +58,13 @@ def _own() -> list[EntryPoint]:
 
 def _loaded(points: Iterable[EntryPoint]) -> tuple[list[Any], list[str]]:
     """Load entry points, and return the names of those whose package is not there."""
-    loaded, missing = list[Any](), list[str]()
+    found, missing = list[Any](), list[str]()
     for point in points:
         try:
-            loaded.append(point.load())
-        except ModuleNotFoundError as error:
-            if not f'{point.module}.'.startswith(f'{error.name}.'):
+            found.append(loaded(point))
+        except MissingDependencyError as error:
+            module = getattr(error.__cause__, 'name', None)
+            if not f'{point.module}.'.startswith(f'{module}.'):
                 raise
             missing.append(point.name)
-    return loaded, missing
+    return found, missing

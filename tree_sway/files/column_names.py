@@ -75,7 +75,7 @@ def _folded_unit(text: str) -> str:
     """Return a unit in lower case without spaces, with one sign for each of its parts."""
     unit = text.strip().lower().replace('º', '°').replace('ø', '°')
     unit = '°' if unit == '*' else unicodedata.normalize('NFKC', unit)  # HOBOlink has a star
-    return re.sub(r'[\s._·*^]|wmounit:', '', unit).replace('μ', 'u').replace('−', '-')
+    return re.sub(r'[\s._·⋅*^]|wmounit:', '', unit).replace('μ', 'u').replace('−', '-')
 
 
 UNITS: dict[str, dict[str, float]] = {
@@ -149,11 +149,9 @@ def rank_of(column: str, quantity: str) -> int | None:
     kind = COLUMNS[quantity]['unit']
     name, _ = name_and_unit(column, kind)
     inner = name.removesuffix('.value').rpartition('.')[2]
-    whole = folded(name)
-    found = (whole, folded(column), folded(inner), _without_unit(inner, kind)[0])
+    found = (folded(name), folded(column), folded(inner), _without_unit(inner, kind)[0])
     for rank, known in enumerate(_NAMES[quantity]):
-        follows = whole.startswith(known) and _glued_unit(name, known, kind)
-        if known in found or follows or _is_cut(column, known):
+        if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
     pattern = _PATTERNS.get(quantity)
     is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, found)))
@@ -193,7 +191,8 @@ def is_name(column: str, quantity: str) -> bool:
 def unit_in_name(name: str, quantity: str) -> str:
     """Return the unit in a column's name, as in ``x_m`` and ``ws_mph_avg``; empty without one."""
     kind = COLUMNS[quantity]['unit']
-    glued = (_glued_unit(name, each, kind) for each in _NAMES[quantity])
+    inner = name.rpartition('.')[2]
+    glued = (_glued_unit(inner, each, kind) for each in _NAMES[quantity])
     return _without_unit(name, kind)[1] or next(filter(None, glued), '')
 
 

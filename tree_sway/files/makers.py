@@ -3,11 +3,11 @@
 """
 Makers of loggers, stations and services, by the columns of their tables: `makers.csv`.
 
-A row has what a header does not say: units of speeds, accelerations, rates and times, and the
-``sign`` of accelerations, which is -1 where they point as gravity does, as of Apple's phones. A
-unit that is chosen in a program, and so is asked for, is ``?``. A table is a maker's if it has all
-``names``, maybe a ``value`` in the first row of the column ``by``, and maybe a text ``above`` its
-header.
+A row has what a header does not say: units of speeds, accelerations, rates, times and diameters
+of stems, and the ``sign`` of accelerations, which is -1 where they point as gravity does, as of
+Apple's phones. A unit that is chosen in a program, and so is asked for, is ``?``. A table is a
+maker's if it has all ``names``, maybe a ``value`` in the first row of the column ``by``, and maybe
+a text ``above`` its header.
 """
 
 from __future__ import annotations

@@ -33,10 +33,12 @@ _ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|
 
 def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
     """Columns of the time, the form of several, and the factor to [s]; None without a time."""
-    names = [folded(name_and_unit(column, 'time')[0]) for column in table.columns]
+    split = (name_and_unit(column, 'time') for column in table.columns)
+    names = [folded(name) for name, _ in split]
     for wanted, form in PARTS.items():
-        if all(name in names for name in wanted):
-            return [names.index(name) for name in wanted], form, 1.0
+        places = [names.index(name) for name in wanted if name in names]
+        if len(places) == len(wanted):
+            return places, form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
     if not clocks and names[0] == '' and _are_dates(table.cells(0, first)):
@@ -55,20 +57,24 @@ def counted_times(table: TextTable) -> Times | None:
     told = _RATE.search('\n'.join(table.above))
     if told is None:
         return None
-    rate, step = (float((each or '0').replace(',', '.')) for each in told.groups())
+    numbers = [(each or '0').replace(',', '.') for each in told.groups()]
+    rate, step = map(float, numbers)
     hertz = 1.0 / step if step else rate
     if hertz <= 0.0:
         return None
     rows = np.arange(float(len(table.texts)))
     counter = table.find('counter')
-    counts = None if counter is None else table.values([counter.index])[:, 0]
-    known = rows if counts is None or np.isnan(counts).any() else unwrapped(counts)
+    known = rows
+    if counter is not None:
+        counts = table.values([counter.index])[:, 0]
+        known = rows if np.isnan(counts).any() else unwrapped(counts)
     return Times((known - known[:1]) / hertz, None, f'times are by the rate of {hertz:g} Hz')
 
 
 def _are_dates(cells: Sequence[str]) -> bool:
     """Whether cells are dates; none is a number."""
-    return all(finite(cell) is None for cell in cells) and dates(cells).epoch != 0.0
+    has_numbers = any(finite(cell) is not None for cell in cells)
+    return not has_numbers and dates(cells).epoch != 0.0
 
 
 def _run_on(cells: Sequence[str]) -> bool:
@@ -88,12 +94,20 @@ def row_times(
 ) -> Times:
     """Return the times of some rows, in UTC where the table says its zone."""
     cells = [table.cells(column, rows) for column in columns]
-    stamps = [_joined(form, parts) for parts in zip(*cells, strict=True)] if form else cells[0]
+    stamps = cells[0]
+    if form:
+        stamps = [_joined(form, parts) for parts in zip(*cells, strict=True)]
     times = _of_one_year(times_of(stamps, factor))
-    if not form and factor == 1.0 and times.epoch is None and not times.note:
-        times = replace(times, note=_doubt(table, columns[0], times))
-    zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
-    return times if zone is None or times.epoch is None else _in_utc(times, zone[1])
+    has_unit = form or factor != 1.0
+    is_dated = times.epoch is not None
+    if not (has_unit or is_dated or times.note):
+        note = _doubt(table, columns[0], times)
+        times = replace(times, note=note)
+    names = [table.columns[column] for column in columns]
+    zone = _ZONE.search(' '.join(names))
+    if zone is None or not is_dated:
+        return times
+    return _in_utc(times, zone[1])
 
 
 def _joined(form: str, parts: Sequence[str]) -> str:
@@ -110,11 +124,14 @@ def _of_one_year(times: Times) -> Times:
     months = since_1970.astype('datetime64[s]').astype('datetime64[M]')
     years = months.astype('datetime64[Y]')
     moved = years[0].astype('datetime64[M]') + months.astype(np.int64) % 12
-    shift = moved.astype('datetime64[s]') - months.astype('datetime64[s]')
+    before = months.astype('datetime64[s]')
+    shift = moved.astype('datetime64[s]') - before
     seconds = times.seconds.copy()
     seconds[known] += shift.astype(np.float64)
-    is_apart = bool((np.diff(since_1970) < 0.0).any()) or len(np.unique(years)) > 2
-    if not is_apart or not (np.diff(seconds[known]) > 0.0).all():
+    goes_back = (np.diff(since_1970) < 0.0).any()
+    is_apart = goes_back or len(np.unique(years)) > 2
+    rises = (np.diff(seconds[known]) > 0.0).all()
+    if not (is_apart and rises):
         return times
     note = f'months of several years are taken as those of {years[0]}'
     return replace(times, seconds=seconds, note=note)
@@ -122,9 +139,11 @@ def _of_one_year(times: Times) -> Times:
 
 def _doubt(table: TextTable, column: int, times: Times) -> str:
     """Return a note on whole seconds that no header tells, as they may be hours or days."""
-    steps = np.diff(times.seconds[np.isfinite(times.seconds)])
+    known = np.isfinite(times.seconds)
+    steps = np.diff(times.seconds[known])
     name = table.columns[column]
-    if 'sec' in name.lower() or table.unit_of(column, 'time') or not len(steps):
+    has_unit = 'sec' in name.lower() or table.unit_of(column, 'time')
+    if has_unit or not len(steps):
         return ''
     step = float(np.median(np.abs(steps)))
     if step < 1.0 or step % 1.0:
@@ -138,13 +157,15 @@ def _in_utc(times: Times, name: str) -> Times:
         zone = ZoneInfo(name)
     except (ZoneInfoNotFoundError, ValueError):
         return replace(times, note=f'zone {name} is not known here; times are left as they are')
-    begin = datetime(1970, 1, 1) + timedelta(seconds=times.epoch or 0.0)
+    epoch = times.epoch or 0.0
+    begin = datetime(1970, 1, 1) + timedelta(seconds=epoch)
     offsets = np.zeros(len(times.seconds))
-    for row in np.flatnonzero(np.isfinite(times.seconds)).tolist():
-        local = begin + timedelta(seconds=float(times.seconds[row]))
+    known = np.flatnonzero(np.isfinite(times.seconds))
+    for row in known.tolist():
+        passed = timedelta(seconds=float(times.seconds[row]))
+        local = begin + passed
         offset = local.replace(tzinfo=zone).utcoffset()
         offsets[row] = offset.total_seconds() if offset else 0.0
-    first = offsets[np.isfinite(times.seconds)][:1]
-    shift = float(first[0]) if len(first) else 0.0
+    shift = float(offsets[known[:1]].sum())
     seconds = times.seconds - (offsets - shift)
-    return replace(times, seconds=seconds, epoch=(times.epoch or 0.0) - shift)
+    return replace(times, seconds=seconds, epoch=epoch - shift)

@@ -46,6 +46,8 @@ _KILL_PERIOD = 0.05
 """Interval at which workers that have just started are looked for, to end them [s]."""
 _SCHEMES = ('tcp://', 'tls://')
 _LIBRARIES = ('numpy', 'scipy')
+_NO_LEAKS = 'ignore:resource_tracker'
+"""Option of warnings of the process that removes semaphores which others left."""
 
 
 @cache
@@ -331,7 +333,11 @@ def delayed_interrupt() -> ExitStack:
     """Delay Ctrl-C until closed; threads and processes started before then never get it."""
     delayed = ExitStack()
     if hasattr(signal, 'pthread_sigmask'):
-        resource_tracker.ensure_running()  # it would unblock the signal as it starts
+        # It would unblock the signal as it starts. Where SIGTERM ends this process, it cleans up,
+        # for which it is there, without a warning.
+        sys.warnoptions.append(_NO_LEAKS)
+        resource_tracker.ensure_running()
+        sys.warnoptions.remove(_NO_LEAKS)
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         delayed.callback(signal.pthread_sigmask, signal.SIG_UNBLOCK, [signal.SIGINT])
         if threading.current_thread() is threading.main_thread():

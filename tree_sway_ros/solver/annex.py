@@ -10,6 +10,7 @@ from typing import Any
 from tree_sway.core.scene import Run, Scene, Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.errors import ParameterError
+from tree_sway.extras import loaded
 from tree_sway_ros.parameters.annexes import ANNEXES
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.reports.diagnostics import Status
@@ -82,7 +83,7 @@ def annexes_of(node: TreeSwayNode) -> list[SolverAnnex]:
     """Make the annexes that the parameters of a solver ask for."""
     values = node.values
     return [
-        point.load()(node)
+        loaded(point)(node)
         for point, table in ANNEXES.items()
         if any(values[each.name] != each.default for each in table)
     ]

@@ -176,6 +176,21 @@ def test_morph_targets_are_named_and_within_what_is_reported(simulator, morphing
     assert 0.0 < np.sqrt(np.mean(np.square(gaps))) < 0.1 * np.sqrt(np.mean(np.square(motions)))
 
 
+def test_floats_move_vertices_as_small_integers_do_and_need_no_extension(
+    simulator, leaves, morphing
+):
+    document, arrays = parsed(morphing_tree(simulator, leaves, small=False).glb())
+    assert not [key for key in document if key.startswith('extensions')]
+    primitive = document['meshes'][0]['primitives'][0]
+    targets = [each['POSITION'] for each in primitive['targets']]
+    used = [*primitive['attributes'].values(), *targets]
+    assert {document['accessors'][each]['componentType'] for each in used} == {5126}
+    (points, moved), (same, rounded) = placed(document, arrays), placed(*morphing)
+    np.testing.assert_allclose(points, same, atol=1e-6)
+    np.testing.assert_allclose(moved, rounded, atol=document['nodes'][0]['scale'][0] / 250.0)
+    assert document['meshes'][0]['extras'] == morphing[0]['meshes'][0]['extras']
+
+
 def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     document, arrays = morphing
     extras = document['meshes'][0]['extras']

@@ -11,7 +11,6 @@ def test_lines_come_out_however_they_were_cut():
     assert list(lines.feed(b'$WIMWV,1')) == []
     assert list(lines.feed(b'2\r\n\r\n$WI')) == [b'$WIMWV,12']
     assert list(lines.feed(b'MWD\n')) == [b'$WIMWD']
-    assert list(lines.feed(b'a\nb', is_whole=True)) == [b'a', b'b']
 
 
 def test_what_is_too_long_is_dropped_and_the_next_line_is_read():

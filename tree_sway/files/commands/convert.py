@@ -65,11 +65,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--sway',
         nargs='?',
-        choices=('skin', 'morph'),
+        choices=('skin', 'morph', 'floats'),
         const='skin',
         help='motion of a .glb: by a joint per segment, set from segment_poses, or '
-        "by some 20 weights, set from the tree's state, with 20 s of a breeze "
-        '(morph for one tree, skin for a forest)',
+        "by some 20 weights, set from the tree's state, with 20 s of a breeze, in small integers "
+        'or, as Godot needs it, in floats (morph for one tree, skin for a forest)',
     )
 
 
@@ -174,7 +174,8 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
         simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
-            write_gltf(arguments.output, morphing_tree(simulator, leaves))
+            small = arguments.sway != 'floats'
+            write_gltf(arguments.output, morphing_tree(simulator, leaves, small=small))
         elif suffix in _USD:
             write_usd(arguments.output, simulator, leaves)
         else:
@@ -183,4 +184,4 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
 
 def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:
     """Whether a .glb has a breeze and weights: a single tree, unless a skin is asked for."""
-    return arguments.sway == 'morph' or (arguments.sway is None and scene.is_one_tree)
+    return arguments.sway in ('morph', 'floats') or (arguments.sway is None and scene.is_one_tree)

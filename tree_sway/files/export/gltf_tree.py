@@ -102,15 +102,17 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     return document
 
 
-def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) -> GltfDocument:
+def morphing_tree(
+    simulator: SwaySimulator, leaves: LeafClusters | None = None, *, small: bool = True
+) -> GltfDocument:
     """
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
-    the basis and the amplitude of the coordinate in a ``storm``. Targets are integers which the
-    node scales (KHR_mesh_quantization): a weight of 1 moves some vertex by a tenth of the width
-    of the tree. So that small integers suffice, the vertices of a ring of wood move together. An
-    animation shows a breeze.
+    the basis and the amplitude of the coordinate in a ``storm``. The node scales the targets: a
+    weight of 1 moves some vertex by a tenth of the width of the tree. They are integers in a
+    ``small`` document (KHR_mesh_quantization, which Godot does not read), for which the vertices
+    of a ring of wood move together. An animation shows a breeze.
     """
     tree = simulator.tree
     basis = basis_of(simulator)
@@ -127,6 +129,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     greatest = np.max([[np.abs(change).max() for change in each] for each in changes], axis=0)
     unit = storm * size / greatest
     names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
+    add = _add_shares if small else _add_floats
     primitives = []
     for (material, mesh), points, moved in zip(meshes, places, changes, strict=True):
         primitive = _primitive(
@@ -135,10 +138,10 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
             tree.species,
             mesh,
             POSITION=_add_floats(document, (points - middle) / size, bounds=True),
-            NORMAL=_add_shares(document, _normals(mesh, rest)),
+            NORMAL=add(document, _normals(mesh, rest)),
         )
         primitive['targets'] = [
-            {'POSITION': _add_shares(document, change / most, bounds=True)}
+            {'POSITION': add(document, change / most, bounds=True)}
             for change, most in zip(moved, greatest, strict=True)
         ]
         primitives.append(primitive)
@@ -159,8 +162,10 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
         translation=Rotation.from_quat(_Y_UP).apply(middle).tolist(),
     )  # fmt: skip
     document.add('scenes', nodes=[shown])
-    quantised = ['KHR_mesh_quantization']
-    document.set(scene=0, extensionsUsed=quantised, extensionsRequired=quantised)
+    document.set(scene=0)
+    if small:
+        quantised = ['KHR_mesh_quantization']
+        document.set(extensionsUsed=quantised, extensionsRequired=quantised)
     weights = in_breeze(
         simulator, _SECONDS, lambda: basis.coordinates(simulator.rotations()) / unit
     )

@@ -9,21 +9,17 @@ a line ``data``; the table is below, up to ``end data`` (CEDA, BADC-CSV format, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+import re
 
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.table_file import parse_table, split_row, TextTable
 
-_FIRST = 'conventions,g,badc-csv'
+_FIRST = re.compile(' *conventions *, *g *, *badc-csv', re.IGNORECASE)
 _BEGIN = 'data'
 _END = 'end data'
 _UNIT = 3
 """Field of a line ``long_name`` with the unit."""
-
-
-def _is_badc(lines: Sequence[str]) -> bool:
-    return lines[0].replace(' ', '').lower().startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -41,4 +37,4 @@ def _read(lines: list[str], source: str) -> TextTable:
     return replace(table, units=tuple(units_of_columns))
 
 
-BADC_CSV = Layout('badc-csv', _is_badc, _read)
+BADC_CSV = Layout('badc-csv', lambda lines: _FIRST.match(lines[0]) is not None, _read)

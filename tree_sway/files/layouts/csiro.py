@@ -24,12 +24,8 @@ def _columns(lines: Sequence[str]) -> list[str]:
     return [f'{name} [{unit}]' for (name, _), (_, unit) in pairs]
 
 
-def _is_csiro(lines: Sequence[str]) -> bool:
-    return bool(_columns(lines))
-
-
 def _read(lines: list[str], source: str) -> TextTable:
     return parse_columns(lines, source, _columns(lines))
 
 
-CSIRO = Layout('csiro', _is_csiro, _read)
+CSIRO = Layout('csiro', lambda lines: bool(_columns(lines)), _read)

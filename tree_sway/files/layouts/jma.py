@@ -11,7 +11,6 @@ those of Japan, directions points of the compass (JMA, "format of the CSV file")
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import zip_longest
 import re
 
@@ -32,10 +31,6 @@ _ROW = re.compile(r'\d{4}/\d{1,2}/\d{1,2}')
 _NAMES = ('time (Asia/Tokyo)', 'wind speed', 'wind direction', 'gust')
 _UNITS = ('', 'm/s', '', 'm/s')
 _DOUBTFUL = ('0', '1', '2')
-
-
-def _is_jma(lines: Sequence[str]) -> bool:
-    return lines[0].startswith(_FIRST)
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -61,4 +56,4 @@ def _read(lines: list[str], source: str) -> TextTable:
     return table_of_lines(_NAMES, rows, source, _UNITS)
 
 
-JMA = Layout('jma', _is_jma, _read)
+JMA = Layout('jma', lambda lines: lines[0].startswith(_FIRST), _read)

@@ -11,13 +11,13 @@ of states. The longest of these in the document is the table.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 import re
 from typing import Any, NamedTuple
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import rank_of, unit_known
 from tree_sway.files.json_values import (
     cell_of,
     DEEPEST,
@@ -49,10 +49,6 @@ class _Quantity(NamedTuple):
     name: str
     unit: str
     by_time: dict[str, Any]
-
-
-def _is_json(lines: Sequence[str]) -> bool:
-    return _BEGINS.match('\n'.join(lines)) is not None
 
 
 def _read_json_table(lines: list[str], source: str) -> TextTable:
@@ -115,7 +111,7 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             if table is not None:
                 yield table
         for name, each in node.items():
-            own_units = object_of(node.get(f'{name}_units', _said_units(node)))
+            own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
         states = _lists_of_states(node)
@@ -133,13 +129,15 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
     """
     Yield the samples of messages with a time and a list of samples each, at even times.
 
-    So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list.
+    So are those of Movesense, within ``acc`` or ``gyro``; nothing of any other list, as one whose
+    messages have values beside the time and their lists.
     """
     bodies = []
     for message in map(object_of, messages):
         inner = next(iter(message.values()), None)
         bodies.append(object_of(inner) or message)
-    if len(bodies) < 2 or not all(bodies):
+    n_values = [sum(not list_of(each) for each in body.values()) for body in bodies]
+    if len(bodies) < 2 or {*n_values} != {1}:
         return
     clock = next((name for name in bodies[0] if rank_of(name, 'time') is not None), '')
     batch = next((name for name, each in bodies[0].items() if list_of(each)), '')
@@ -155,8 +153,8 @@ def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
 
 
 def _said_units(node: dict[str, Any]) -> Cells:
-    """System of units of weather.com's history (e, m, h or s), or titles of columns behind #."""
-    system = object_of(node.get('metadata')).get('units')
+    """System of units of weather.com's history and Dark Sky, or titles of columns behind #."""
+    system = object_of(node.get('metadata', node.get('flags'))).get('units')
     channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
     titles = {f'#{name}': title for name, title in channel.items() if isinstance(title, str)}
     return {'*': system} if isinstance(system, str) else titles
@@ -184,7 +182,8 @@ def _rows(node: dict[str, Any], source: str) -> TextTable | None:
         heads = [[*map(text_of, each)] for each in lists if len(each) == len(rows[0])]
         if any(map(any, heads)):
             cells = [[*map(text_of, list_of(row))] for row in rows]
-            return table_of_cells(heads[0], cells, source, units=[*heads, []][1])
+            known = [each for each in heads[1:] if any(unit_known('speed', unit) for unit in each)]
+            return table_of_cells(heads[0], cells, source, units=[*known, []][0])
     return None
 
 
@@ -230,11 +229,7 @@ def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
 def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
     """Return those elements of a list that are lists of states of Home Assistant."""
     lists = [each for each in node if each and isinstance(each, list)]
-    return [each for each in lists if all(map(_is_state, each))]
-
-
-def _is_state(node: Any) -> bool:
-    return isinstance(node, dict) and 'state' in node
+    return [each for each in lists if all('state' in object_of(state) for state in each)]
 
 
 def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
@@ -257,4 +252,4 @@ def _unit(cell: Any) -> str:
     return cell if isinstance(cell, str) else ''
 
 
-JSON = Layout('json', _is_json, _read_json_table)
+JSON = Layout('json', lambda lines: _BEGINS.match('\n'.join(lines)) is not None, _read_json_table)

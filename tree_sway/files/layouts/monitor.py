@@ -39,7 +39,8 @@ def _are_pairs(line: str) -> bool:
 
 def _is_monitored(lines: Sequence[str]) -> bool:
     first = [line for line in lines[:3] if line.strip()]
-    return len(first) > 1 and (all(map(_STAMP.fullmatch, first)) or all(map(_are_pairs, first)))
+    are_stamped = all(map(_STAMP.fullmatch, first))
+    return len(first) > 1 and (are_stamped or all(map(_are_pairs, first)))
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -50,18 +51,20 @@ def _read(lines: list[str], source: str) -> TextTable:
     if not _are_pairs(filled[-1]):
         separator = max(SEPARATORS, key=filled[-1].count)
         is_named = any(map(str.isalpha, filled[0]))
-        clocks[0] = _CLOCK if is_named and clocks[0] else clocks[0]
+        if is_named and clocks[0]:
+            clocks[0] = _CLOCK
         pairs = zip(clocks, texts, strict=True)
         rows = [f'{clock}{separator}{text}' if clock else text for clock, text in pairs]
         return PLAIN.read(rows, source)
     names = [*pairs_of(filled[-1])]
     values = [pairs_of(text) for text in texts]
-    cells = [
-        (number, [clocks[number - 1], *(each.get(name, '') for name in names)])
-        for number, each in enumerate(values, start=1)
-        if each
-    ]
-    return table_of_lines([_CLOCK if any(clocks) else '', *names], cells, source)
+    numbered = []
+    for number, each in enumerate(values, start=1):
+        if each:
+            cells = [each.get(name, '') for name in names]
+            numbered.append((number, [clocks[number - 1], *cells]))
+    clock = _CLOCK if any(clocks) else ''
+    return table_of_lines([clock, *names], numbered, source)
 
 
 MONITOR = Layout('serial monitor', _is_monitored, _read)

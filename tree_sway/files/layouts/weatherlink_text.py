@@ -9,7 +9,6 @@ was set to, which the file does not say.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import zip_longest
 import re
 
@@ -17,12 +16,8 @@ from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.table_file import TextTable
 
-_NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
+_NAMES = re.compile(r'.*Wind.*\n\s*(?i:Date\s+Time\b.*\bSpeed\s+Dir\b).*\n')
 _WORD = re.compile(r'\S+')
-
-
-def _has_two_lines(lines: Sequence[str]) -> bool:
-    return len(lines) > 2 and 'Wind' in lines[0] and _NAMES.match(lines[1]) is not None
 
 
 def _read(lines: list[str], source: str) -> TextTable:
@@ -47,4 +42,6 @@ def _names(above: str, below: str) -> list[str]:
     return names
 
 
-WEATHERLINK_TEXT = Layout('weatherlink text', _has_two_lines, _read)
+WEATHERLINK_TEXT = Layout(
+    'weatherlink text', lambda lines: _NAMES.match('\n'.join(lines[:3])) is not None, _read
+)

@@ -20,7 +20,7 @@ checksum, a status that is not A, an empty field: the sentence is refused.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import pi
 from pathlib import Path
@@ -38,8 +38,7 @@ SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
 Sentences in the order of preference: those that depend least on the motion of the boat first.
 """
 
-_KNOT = 1852.0 / 3600.0
-_UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
+_UNITS = {'N': 1852.0 / 3600.0, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
 _SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
 
 
@@ -63,19 +62,22 @@ def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> Rea
     if sentence is None:
         return None
     name, content, check = sentence.groups()
-    fields = content.strip().split(',')
+    fields = content.strip().split(',')[12 if name == 'MDA' else 0 :]
+    kind = name
     if name == 'MWV':
-        reference = fields[1] if len(fields) > 1 else ''
-        if reference not in ('R', 'T'):
-            return None
-        name = f'MWV {reference}'
-    if name == 'XDR' and not {'A', 'S'} <= set(fields[::4]):
+        kind = f'MWV {"".join(fields[1:2])}'
+    lacks_wind = name == 'XDR' and not {'A', 'S'} <= set(fields[::4])
+    if lacks_wind or kind not in SENTENCES:
         return None
     sent_sum = None if check is None else check[1:].strip()
-    if why := why_broken(len(line), sent_sum, line[sentence.start() + 1 : sentence.start(3)]):
-        return Refusal(name, why)
-    own_angle = declination if name in ('MWD', 'MDA') else heading
-    return _READERS[name[:3]](name, fields, own_angle)
+    body = line[sentence.start() + 1 : sentence.start(3)]
+    if why := why_broken(len(line), sent_sum, body):
+        return Refusal(kind, why)
+    try:
+        angle, speed, unit, turn = _READERS[name](fields, heading, declination)
+    except ValueError as error:
+        return Refusal(kind, str(error))
+    return reading_of(kind, speed, angle, factor=_UNITS[unit], turn=turn, interval=0.0)
 
 
 def read_nmea_wind(
@@ -108,59 +110,61 @@ def read_nmea_wind(
     return record if kind in ('MWD', 'MDA') else record.with_note(bow)
 
 
-def _mwv(kind: str, fields: list[str], heading: float) -> Reading:
+Parts = tuple[str | float, str, str, float]
+"""Angle, speed and its unit as they are sent, and where the angle counts from in [rad]."""
+
+
+def _mwv(fields: list[str], heading: float, _: float = 0.0) -> Parts:
     if len(fields) < 5:
-        return Refusal(kind, f'{len(fields)} fields of 5')
-    angle, _, speed, unit, status = fields[:5]
+        raise ValueError(f'{len(fields)} fields of 5')
+    angle, _reference, speed, unit, status = fields[:5]
     if status != 'A':
-        return Refusal(kind, f"status is '{status[:8]}', not A")
+        raise ValueError(f"status is '{status[:8]}', not A")
     if unit not in _UNITS:
-        return Refusal(kind, f"no unit K, M, N or S: '{unit[:8]}'")
-    return reading_of(kind, speed, angle, factor=_UNITS[unit], turn=heading, interval=0.0)
+        raise ValueError(f"no unit K, M, N or S: '{unit[:8]}'")
+    return angle, speed, unit, heading
 
 
-def _mwd(kind: str, fields: list[str], declination: float) -> Reading:
+def _mwd(fields: list[str], _: float, declination: float) -> Parts:
     if len(fields) < 8:
-        return Refusal(kind, f'{len(fields)} fields of 8')
-    true, _, magnetic, _, knots, _, speed, _ = fields[:8]
-    is_magnetic = bearing_of(true) is None and magnetic != ''
-    angle, turn = (magnetic, declination) if is_magnetic else (true, 0.0)
-    is_in_knots = finite(speed) is None and finite(knots) is not None
-    speed, unit = (knots, _KNOT) if is_in_knots else (speed, 1.0)
-    return reading_of(kind, speed, angle, factor=unit, turn=turn, interval=0.0)
+        raise ValueError(f'{len(fields)} fields of 8')
+    true, magnetic, knots, speed = fields[:8:2]
+    unit = 'M'
+    if finite(speed) is None and finite(knots) is not None:
+        speed, unit = knots, 'N'
+    if bearing_of(true) is None and magnetic:
+        return magnetic, speed, unit, declination
+    return true, speed, unit, 0.0
 
 
-def _mda(kind: str, fields: list[str], declination: float) -> Reading:
-    return _mwd(kind, fields[12:], declination)
-
-
-def _xdr(kind: str, fields: list[str], heading: float) -> Reading:
+def _xdr(fields: list[str], heading: float, _: float) -> Parts:
     """Wind of transducers in groups of kind, value, unit and name."""
     groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
     angles = [each[1] for each in groups if each[0] == 'A' and each[2] == 'D']
-    speeds = [(each[1], each[2]) for each in groups if each[0] == 'S']
+    speeds = [each[1:3] for each in groups if each[0] == 'S']
     if not angles or not speeds:
-        return Refusal(kind, 'no angle in degrees with a speed')
-    speed, unit = speeds[len(speeds) > 2]
-    return _mwv(kind, [angles[len(angles) > 2], 'R', speed, unit, 'A'], heading)
+        raise ValueError('no angle in degrees with a speed')
+    angle = angles[len(angles) > 2]
+    return _mwv([angle, 'R', *speeds[len(speeds) > 2], 'A'], heading)
 
 
-def _vwr(kind: str, fields: list[str], heading: float) -> Reading:
+def _vwr(fields: list[str], heading: float, _: float) -> Parts:
     """Angle up to half a turn, left or right; the first given speed is used."""
     angle, side = [*fields, ''][:2]
     pairs = zip(fields[2::2], fields[3::2], strict=False)
     speeds = [each for each in pairs if finite(each[0]) is not None and each[1] in _UNITS]
     degrees = finite(angle)
     if degrees is None or not 0.0 <= degrees <= 180.0:
-        return Refusal(kind, f"no angle up to 180: '{angle[:8]}'")
+        raise ValueError(f"no angle up to 180: '{angle[:8]}'")
     if side not in ('L', 'R'):
-        return Refusal(kind, f"no side L or R: '{side[:8]}'")
+        raise ValueError(f"no side L or R: '{side[:8]}'")
     if not speeds:
-        return Refusal(kind, 'no speed with a unit')
-    speed, unit = speeds[0]
+        raise ValueError('no speed with a unit')
     from_bow = degrees if side == 'R' else 360.0 - degrees
-    return reading_of(kind, speed, from_bow, factor=_UNITS[unit], turn=heading, interval=0.0)
+    return from_bow, *speeds[0], heading
 
 
-_READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}
-"""Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""
+_READERS: dict[str, Callable[[list[str], float, float], Parts]] = {
+    'MWV': _mwv, 'MWD': _mwd, 'MDA': _mwd, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr,
+}  # fmt: skip
+"""Readers of the fields of a sentence, with the heading and the declination [rad]."""

@@ -17,7 +17,7 @@ _TABLES = ('.csv', '.tsv', '.txt', '.json', '.epw', '.zip')
 
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
-    FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
+    FileFormat('nmea', ('.nmea', '.log'), contains(r'\$(?!VN)[A-Z]{5},'), read_nmea_wind),
     FileFormat('sonic', (), is_logged, read_instrument_wind),
     FileFormat(
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind

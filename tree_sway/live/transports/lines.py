@@ -11,27 +11,23 @@ LONGEST = 16 * 1024
 
 
 class Lines:
-    """Buffer of an incomplete line, of at most ``longest`` bytes."""
+    """Buffer of an incomplete line, of at most `LONGEST` bytes."""
 
-    def __init__(self, longest: int = LONGEST) -> None:
+    def __init__(self) -> None:
         self.dropped = 0
-        self._longest = longest
         self._begun = b''
         self._is_too_long = False
 
-    def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[bytes]:
-        """Add bytes, whose end ends a line if they are a datagram; return the complete lines."""
+    def feed(self, data: bytes) -> Iterator[bytes]:
+        """Add bytes; return the complete lines."""
         *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
-        if is_whole:
-            whole = [*whole, begun]
-            begun = b''
         for line in whole:
-            if self._is_too_long or len(line) > self._longest:
+            if self._is_too_long or len(line) > LONGEST:
                 self.dropped += 1
                 self._is_too_long = False
             elif line:
                 yield line
-        if len(begun) > self._longest:
+        if len(begun) > LONGEST:
             begun = b''
             self._is_too_long = True
         self._begun = begun

@@ -34,7 +34,7 @@ _DMS = re.compile(
 )
 """Degrees, minutes and maybe seconds, and the side of the equator or of Greenwich."""
 
-_FEW_DIGITS = 3
+_FEW_DIGITS = 1
 _CLOSEST = 0.1
 """Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
 

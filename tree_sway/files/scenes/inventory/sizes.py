@@ -17,6 +17,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import unit_factor
+from tree_sway.files.makers import maker_of
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.growth import height_of_stem
 
@@ -45,8 +46,8 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         if not stems:
             continue
         index = stems[0]
-        in_header = columns.table.unit_of(index, quantity)
-        values, unit = columns.numbers(index, stems=True, unit=in_header)
+        told = columns.table.unit_of(index, quantity) or maker_of(columns.table).get(quantity)
+        values, unit = columns.numbers(index, stems=True, unit=told or '')
         for each in stems[1:]:
             values = np.hypot(values, np.nan_to_num(columns.numbers(each, unit=unit)[0]))
         factor = unit_factor('length', unit) if unit else None

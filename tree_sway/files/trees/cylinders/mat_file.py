@@ -26,11 +26,6 @@ _IS_HDF5 = b'MATLAB 7.3'
 """Beginning of a file of version 7.3."""
 
 
-def looks_like_mat(head: str) -> bool:
-    """Whether the beginning of a file is that of a MATLAB file."""
-    return head.startswith('MATLAB')
-
-
 def read_mat(path: Path) -> Variables:
     """
     Read the arrays of numbers of a MATLAB file, those of structs and cells in dictionaries.

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.errors import FormatError, TreeError
-from tree_sway.files.file_format import FileFormat
+from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
@@ -74,11 +74,6 @@ class _Segment(NamedTuple):
     tip: _Vertex
     parent: int
     continues: bool
-
-
-def _is_mtg(head: str) -> bool:
-    """Whether the beginning of a file is that of an MTG file."""
-    return any(line.startswith('CODE') and 'FORM-' in line for line in head.splitlines())
 
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
@@ -247,4 +242,4 @@ def _vertex(label: str, scale: int, edge: str, reference: _Vertex | None) -> _Ve
 
 
 _UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001}
-FORMAT = FileFormat('mtg', ('.mtg',), _is_mtg, _read, _UNITS)
+FORMAT = FileFormat('mtg', ('.mtg',), contains(r'(?:^|\r)CODE.*FORM-'), _read, _UNITS)

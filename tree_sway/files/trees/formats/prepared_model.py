@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tree_sway.core.model import PREPARED
 from tree_sway.core.tree_state import digest_of
-from tree_sway.files.file_format import FileFormat
+from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.models.model_file import read_model, SUFFIX
 from tree_sway.files.trees.imported_tree import TreeFile
 
@@ -31,12 +31,4 @@ def read_prepared(path: Path) -> TreeFile:
     return TreeFile(model.tree, model.species, str(path), (note,))
 
 
-_FIRST_NAMES = 300
-"""Beginning of a zip [characters] with the name of its first file."""
-
-
-def _is_zip_of_arrays(head: str) -> bool:
-    return head.startswith('PK\x03\x04') and '.npy' in head[:_FIRST_NAMES]
-
-
-FORMAT = FileFormat('npz', (SUFFIX,), _is_zip_of_arrays, read_prepared)
+FORMAT = FileFormat('npz', (SUFFIX,), contains(r'\APK\x03\x04[\s\S]{,292}\.npy'), read_prepared)

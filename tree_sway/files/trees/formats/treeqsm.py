@@ -30,11 +30,11 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, inside
-from tree_sway.files.file_format import FileFormat
+from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
+from tree_sway.files.trees.cylinders.mat_file import numbers, read_mat
 from tree_sway.files.trees.tree_options import FITTED
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
@@ -239,5 +239,5 @@ def _continues(parent: Ints, extension: Ints) -> NDArray[np.bool_]:
     return continues
 
 
-MAT = FileFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat, FITTED)
+MAT = FileFormat('treeqsm-mat', ('.mat',), contains(r'\AMATLAB'), _read_mat, FITTED)
 TEXT = FileFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text, FITTED)

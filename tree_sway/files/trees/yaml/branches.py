@@ -122,11 +122,7 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
     links = branch['segments']
     start = np.array([link['start'] for link in links], dtype=np.float64)
     end = np.array([link['end'] for link in links], dtype=np.float64)
-    return start, end, np.array([_pair(link['diameter']) for link in links])
-
-
-def _pair(diameter: float | list[float]) -> list[float]:
-    return list(diameter) if isinstance(diameter, list) else [diameter, diameter]
+    return start, end, np.array([[1.0, 1.0] * np.array(link['diameter']) for link in links])
 
 
 def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> tuple[int, Floats]:
