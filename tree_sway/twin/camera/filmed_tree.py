@@ -75,6 +75,9 @@ _USED = 0.25
 _FEWEST = 6
 """Least number of points that a picture must tell."""
 
+_SHAKES = 0.5
+"""Shake of the camera from which it is said [px]."""
+
 _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
 
@@ -295,7 +298,10 @@ class FilmedTree(ObservedTree):
         if not np.isfinite(self._seen_at):
             why = 'no picture of the time of the wind'
             if n_points or self.refused:
-                why = f'{n_points} points on the tree are too few: check the clicks'
+                why = (
+                    f'{n_points} points on the tree are too few: check the clicks, the light and '
+                    'whether the picture is sharp'
+                )
             return f'the camera moves nothing: {why}'
         used = int((self.filter.weights > _USED).sum())
         told = (
@@ -304,6 +310,10 @@ class FilmedTree(ObservedTree):
         )
         if not self.sees:
             told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
+        if used < 0.25 * n_points:
+            told += '; most points are lost: was the camera moved, or did the light change?'
+        if (shake := self.filter.shake) > _SHAKES:
+            told += f'; the camera shakes by {shake:.1f} px, which is taken off: use a tripod'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '
