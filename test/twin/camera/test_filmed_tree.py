@@ -80,7 +80,8 @@ def test_without_wind_it_follows_lean_and_sway(
     rest = rest_of(filmed)
     assert error(followed(filmed, points), true, rest) < 0.1
     assert 'points on the tree' in filmed.said
-    assert 'shakes' not in filmed.said and 'lost' not in filmed.said
+    assert 'shakes' not in filmed.said
+    assert 'lost' not in filmed.said
     assert filmed.refused == 0
 
 
