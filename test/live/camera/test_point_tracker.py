@@ -55,6 +55,21 @@ def test_a_hidden_point_is_lost_and_found_again() -> None:
     np.testing.assert_allclose(np.nanmedian(again - first, axis=0), [1.0, 0.0], atol=0.1)
 
 
+def test_the_edge_of_a_shadow_and_a_cloud_behind_drag_no_point() -> None:
+    column = np.arange(400.0)
+    found = []
+    tracker = PointTracker(cv2)
+    first = tracker.follow(0.0, picture(0.0, 0.0)).points
+    for k in range(1, 8):
+        light = 40.0 * np.tanh((column - 55.0 * k) / 8.0)
+        shaded = (0.75 + 0.25 * np.tanh((column - 50.0 * k) / 10.0)) * picture(0.0, 0.0)
+        seen = tracker.follow(k / 30.0, np.clip(shaded + light, 0.0, 255.0).astype(np.uint8))
+        found.append(seen.points - first)
+    missed = np.linalg.norm(found, axis=2)
+    assert np.isfinite(missed).mean() > 0.7
+    assert np.nanpercentile(missed, 90) < 0.25
+
+
 def test_points_are_found_under_the_mask_alone() -> None:
     mask = np.zeros((300, 400), dtype=np.uint8)
     mask[100:180, 50:150] = 255

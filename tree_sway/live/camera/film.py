@@ -64,7 +64,8 @@ class Film:
             raise ParameterError(
                 f"no picture comes from '{source}'",
                 where='--motion',
-                cure='give camera:0, camera:FILE.mp4 or camera:rtsp://host/path',
+                cure='connect it, close what uses it, check its name, or give camera:0, '
+                'camera:FILE.mp4 or camera:rtsp://host/path',
             )
 
     def sightings(self, view: CameraView) -> Iterator[Sighting]:

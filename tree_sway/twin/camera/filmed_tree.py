@@ -34,6 +34,13 @@ _KEPT = 1.0
 _USUAL_WIND = 6.0
 """Mean wind in [m/s] that is taken where none is measured."""
 
+_OWN = 0.3
+"""
+Variance of an unknown force of each coordinate alone, over that of the gusts of limbs [-].
+
+Gusts of a few limbs push few ways; real wood differs from the model's in every coordinate.
+"""
+
 _SLOWEST, _OTHER_WIND = 2.0, 1.6
 """Least mean wind in [m/s] for which a law is found, and the ratio that asks for another one."""
 
@@ -41,13 +48,9 @@ _LAW_EVERY = 300
 """Steps after which the mean wind is looked at."""
 
 _UNTOLD = 0.7
-"""
-Standard deviation of the wind of the whole crown that nothing tells, over the mean wind [-].
+"""Standard deviation of the unknown wind of the whole crown over the mean wind [-]."""
 
-Where a motion sensor is in use, it tells that wind.
-"""
-
-_BESIDE_WIND = 0.25
+_BESIDE_WIND = 0.15
 """
 Variance of the unknown forces where a wind is measured, over that without [-].
 
@@ -71,6 +74,9 @@ _USED = 0.25
 
 _FEWEST = 6
 """Least number of points that a picture must tell."""
+
+_SHAKES = 0.5
+"""Shake of the camera from which it is said [px]."""
 
 _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
@@ -129,19 +135,15 @@ class FilmedTree(ObservedTree):
         n = self._n
         found = disturbance(self, self._speed, n)
         covariance = found.covariance
-        has_wind, is_sensed = self._known = self._known_now()
-        if not is_sensed:
-            whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
-            covariance = covariance + whole.T @ whole
-        if has_wind:
+        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
+        covariance = covariance + whole.T @ whole
+        covariance = covariance + _OWN * np.diag(np.diag(covariance))
+        self._has_wind = self.observer.mean_wind > 0.0
+        if self._has_wind:
             covariance = _BESIDE_WIND * covariance
         unknown = self.observer.unknown
         damping = unknown.all_damping[:n] + found.air_damping
         return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
-
-    def _known_now(self) -> tuple[bool, bool]:
-        """Whether a wind is measured, and whether a motion sensor is in use."""
-        return self.observer.mean_wind > 0.0, self.observer.is_active
 
     def film(self, time: float, reference: int, image: ArrayLike) -> None:
         """
@@ -166,31 +168,34 @@ class FilmedTree(ObservedTree):
         n = self._n
         eta[:n] -= self._filmed[0]
         rate[:n] -= self._filmed[1]
+        sensed = self._added[:, :n]
+        whole = self._filmed + sensed
         status = super().step(wind_mean, dt)
         if status & Outcome.RESTARTED:
             self._forget()
         self._steps += 1
         if self._steps % _LAW_EVERY == 0:
             self._follow_wind()
-        self._past.append((self.now, eta.copy()))
+        self._past.append((self.now, eta - self._added[0]))
         while self._past[0][0] < self.now - _KEPT:
             self._past.popleft()
         while self._waiting and self._waiting[0][0] <= self.now:
             self._look(*self._waiting.popleft())
         if self.sees:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
-            self._calm(dt, self.filter.ahead(ticks))
+            # What it tells takes the place of what sensors on the tree tell.
+            self._filmed[:] = self._calm(whole, dt, self.filter.ahead(ticks)) - sensed
         else:
             self._filmed *= np.exp(-dt / _FADE)
         eta[:n] += self._filmed[0]
         rate[:n] += self._filmed[1]
         return status
 
-    def _calm(self, dt: float, estimate: Floats) -> None:
-        """Move the correction on by its law, and nearer to the estimate: so noise is averaged."""
-        state = np.stack([*self._filmed, self.filter.state[2]])
-        self._filmed[:] = self.filter.moved(state, round(dt / TICK))
-        self._filmed += _NEARER * (estimate - self._filmed)
+    def _calm(self, correction: Floats, dt: float, estimate: Floats) -> Floats:
+        """Move a correction on by its law, and nearer to the estimate: so noise is averaged."""
+        state = np.stack([*correction, self.filter.state[2]])
+        moved = self.filter.moved(state, round(dt / TICK))
+        return moved + _NEARER * (estimate - moved)
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
@@ -206,7 +211,7 @@ class FilmedTree(ObservedTree):
         """Take the law of the present mean wind and of the present tree."""
         measured = self.observer.mean_wind
         speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
-        self._is_outdated |= self._known != self._known_now()
+        self._is_outdated |= self._has_wind != (measured > 0.0)
         if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
             self._speed, self._is_outdated = speed, False
             self.filter.set_law(self._law())
@@ -293,7 +298,10 @@ class FilmedTree(ObservedTree):
         if not np.isfinite(self._seen_at):
             why = 'no picture of the time of the wind'
             if n_points or self.refused:
-                why = f'{n_points} points on the tree are too few: check the clicks'
+                why = (
+                    f'{n_points} points on the tree are too few: check the clicks, the light and '
+                    'whether the picture is sharp'
+                )
             return f'the camera moves nothing: {why}'
         used = int((self.filter.weights > _USED).sum())
         told = (
@@ -302,6 +310,10 @@ class FilmedTree(ObservedTree):
         )
         if not self.sees:
             told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
+        if used < 0.25 * n_points:
+            told += '; most points are lost: was the camera moved, or did the light change?'
+        if (shake := self.filter.shake) > _SHAKES:
+            told += f'; the camera shakes by {shake:.1f} px, which is taken off: use a tripod'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '
