@@ -25,7 +25,7 @@ const LARGEST = 1.25;
 /** How much lighter or darker a cluster is than others, and a card than others of it. */
 const UNEVEN = 0.16;
 /** Number of different twigs in clusters, of cards on one, half the width of its wood over the size of the cluster, and the part
- * of it before the first card where it hangs and where it does not. */
+ * of it before the first card where that is a tuft, where it stands, and where it hangs. */
 const [VARIETY, ON_TWIG, TWIG_WIDE, BARE_TWIG] = [60, 7, 0.005, [0.6, 0.3, 0.04]];
 /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
  * that of a cluster, and at most [m]. */
@@ -42,7 +42,7 @@ const [WEEPS, CURTAIN] = [0.8, 14];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.2, 0.62, 0.6, 61];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.2, 0.62, 0.6, 79];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
@@ -72,6 +72,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, meanSize));
   const dead = look.has_needles ? deadWood(kind, rest, highest) : new Set();
   const twigs = isSpread ? Array.from({ length: VARIETY }, () => leafyTwig(look, spray, random)) : [];
+  const onTwig = Math.min(ON_TWIG, each);
   const axis = twigCorners(ORIGIN, [0.7 * look.spray.length, 0, 0], [0, 1, 0]);
   const hung = hungOn(kind, branches);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
@@ -93,8 +94,9 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const middle = inFrame(axes, [isSpread ? 0.42 * look.spray.length - 0.5 : 0.8 * spray.length - 0.5, 0, 0], shoot.size, shoot.at);
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
     let twig = twigs[0];
-    for (let card = isSpread ? -1 : 0; card < shoot.share * each; card++) {
-      const part = card % (ON_TWIG + 1);
+    const count = isSpread ? Math.max(2, shoot.share * each * (1 + 1 / onTwig)) : each;
+    for (let card = isSpread ? -1 : 0; card < count; card++) {
+      const part = card % (onTwig + 1);
       if (!part) twig = twigs[Math.floor(VARIETY * random())];
       const corners = isSpread ? (card < 0 ? axis : twig[part]) : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
@@ -265,7 +267,7 @@ function leafyTwig(look, { length, width }, random) {
   const along = end.map((each, c) => each - foot[c]);
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + ((1 - bare) * (i + random())) / ON_TWIG;
-    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 0.3 : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
+    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 0.2 : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
     const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
     const beside = cross(upright, away);
     const roll = 1.9 * deep * some();

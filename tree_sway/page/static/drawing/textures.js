@@ -13,7 +13,7 @@ const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
 const LEAF_SHARE = 0.75;
 /** Area of the leaves of a shoot over that of its picture. */
-const FILLED = 0.95;
+const FILLED = 0.75;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -37,7 +37,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
 /** Number of leaves along the picture for cards of a length, so that none is drawn much larger than it is.
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
-  const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
+  const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
   const wanted = long / look.leaf_size;
   return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
@@ -149,21 +149,22 @@ class Brush {
   spray(leaf) {
     const { half, random, look } = this;
     const unit = this.unit * leaf;
-    const count = Math.round((FILLED * 2 * half) / (unit * unit));
+    const count = Math.round((FILLED * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
     const places = Array.from({ length: count }, () => {
-      const [turn, far] = [7 * random(), random() ** 0.55];
-      return [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
+      const [turn, far, size] = [7 * random(), random() ** 0.55, unit * (0.75 + 0.35 * random())];
+      const [x, y] = [0.5 + 0.5 * (1 - unit) * far * Math.cos(turn), (half - 0.5 * unit) * far * Math.sin(turn)];
+      const lean = Math.atan2(y, 0.4) + 2.4 * (random() - 0.5);
+      return { x: x - 0.5 * size * Math.cos(lean), y: y - 0.5 * size * Math.sin(lean), lean, size };
     });
-    const wood = css(look.twig, 0.8);
-    const thick = 0.015 * leaf;
-    this.line(0.6, thick, wood);
-    for (const [x, y] of places) {
+    const twig = (/** @type {number} */ long) => this.line(long, 0.02 * leaf, css(look.twig, 0.8));
+    twig(0.6);
+    for (const { x, y } of places.slice(0, count / 3)) {
       const foot = Math.max(0, x - 1.2 * Math.abs(y));
-      this.at(foot, 0, Math.atan2(y, x - foot), 1, () => this.line(Math.hypot(x - foot, y), thick, wood));
+      this.at(foot, 0, Math.atan2(y, x - foot), 1, () => twig(Math.hypot(x - foot, y)));
     }
-    places.forEach(([x, y], i) => {
+    places.forEach(({ x, y, lean, size }, i) => {
       const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
-      this.at(x, y, Math.atan2(y, 0.4) + 2.4 * (random() - 0.5), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
+      this.at(x, y, lean, 1, () => this.leaf(size, light));
     });
   }
 
