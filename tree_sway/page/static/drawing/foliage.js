@@ -16,6 +16,8 @@ const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
 const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
+/** Most tufts over the number of other small cards, as sky is seen between them. */
+const SPARSE = 0.62;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -232,7 +234,7 @@ function cardsOf(look, mean, clusters, cards, most) {
     const long = Math.max(small, (look.form === "tufts" ? 2.5 : hangs(look) || look.form === "needles" ? 4.5 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
-    return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
+    return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
   const spray = { ...alone, length: leaf / mean };

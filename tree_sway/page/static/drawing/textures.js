@@ -221,7 +221,7 @@ class Brush {
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
+        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), isUpper ? 0.2 * random() : 0);
         this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
       }
     }
