@@ -49,7 +49,7 @@ _MOVED = 0.09
 Largest motion by a weight of 1 over the least width of the tree: viewers that bound a tree by its
 targets see one little larger than it is, on every side.
 """
-_SHOOTS, _FEW_SHOOTS = 4, 2
+_SHOOTS, _FEW_SHOOTS = 4, 1
 """Shoots per cluster of leaves with a skin, and with morph targets, which each vertex has."""
 
 
