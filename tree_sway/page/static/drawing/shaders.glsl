@@ -277,7 +277,9 @@ uniform sampler2D leaves;
 uniform vec3 woody; // colour of a twig, which lies beside the picture
 out vec4 color;
 void main() {
+#ifndef PLAIN
   if (at.x < -0.5) { color = vec4(woody * lit + veil, edge); return; }
+#endif
   vec4 leaf = texture(leaves, at);
 #ifdef PLAIN
   // Without a graphics unit every operation counts; `chosenTexture` has made the random choice.
