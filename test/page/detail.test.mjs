@@ -6,7 +6,8 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
-import { deadWood, leafMesh, limbsOf } from "../../tree_sway/page/static/drawing/foliage.js";
+import { deadWood, leafMesh } from "../../tree_sway/page/static/drawing/foliage.js";
+import { distance } from "../../tree_sway/page/static/quaternions.js";
 import { barkMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { cornersAbout } from "../../tree_sway/page/static/drawing/impostors.js";
@@ -146,6 +147,17 @@ function edges({ values, indices }, i) {
   return [Math.hypot(...b.map((x, k) => x - a[k])), Math.hypot(...c.map((x, k) => x - b[k]))];
 }
 
+/** Cards of a mesh: the segment, corners and middles of both ends of each, and whether it is the wood of a twig. */
+function cardsOf({ values, indices }) {
+  return Array.from({ length: indices.length / 6 }, (_, i) => {
+    const at = [0, 1, 2, 3].map((k) => 19 * (indices[6 * i] + k));
+    const corners = at.map((v) => values.slice(v + 1, v + 4));
+    const [a, b, c, d] = corners;
+    const ends = [[a, d], [b, c]].map(([one, other]) => one.map((each, k) => 0.5 * (each + other[k])));
+    return { slot: values[at[0]], corners, ends, isWood: values[at[0] + 17] < 0 };
+  });
+}
+
 test("leaves that reach beyond the wood are lighter than those within it", () => {
   const places = Array.from({ length: 2000 }, (_, i) => [(i % 10) - 4.5, (Math.floor(i / 10) % 10) - 4.5, i / 200]);
   const shade = crownShade(places, places.map(() => 1), [-5, -5, 0], [5, 5, 10]);
@@ -160,7 +172,7 @@ test("stubs below the crown of a conifer bear no needles, short limbs at its top
   };
   const rest = new Float32Array(8 * 7);
   [0, 5, 15, 5, 5, 7, 12].forEach((high, segment) => (rest[8 * segment + 2] = high));
-  assert.deepEqual([...deadWood({ arrays, nBranches: 6 }, limbsOf({ arrays }, rest, 2))], [3, 4]);
+  assert.deepEqual([...deadWood({ arrays, nBranches: 6 }, rest, 2)], [3, 4]);
 });
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
@@ -221,8 +233,26 @@ test("a large cluster has no larger leaves than the others", () => {
   const cards = 24 * sizes.length;
   const { mesh, isSpread } = leafMesh(uneven, placer.order, cards, cards, false);
   assert.ok(isSpread);
-  const longs = Array.from({ length: mesh.indices.length / 6 }, (_, i) => edges(mesh, i)[0]);
+  const longs = cardsOf(mesh).filter(({ isWood }) => !isWood).map(({ corners: [a, b] }) => distance(a, b));
   assert.ok(Math.max(...longs) < 4 * Math.min(...longs));
+});
+
+test("every small card grows from a twig that is drawn", () => {
+  const cards = 24 * kind.arrays.leaf_segment.length;
+  const { mesh } = leafMesh(shape, placer.order, cards, cards, false);
+  const all = cardsOf(mesh);
+  const twigs = all.filter(({ isWood }) => isWood).map(({ slot, ends }) => ({ slot, ends }));
+  assert.ok(twigs.length > cards / 20);
+  const far = (place, { ends: [from, to] }) => {
+    const along = to.map((each, c) => each - from[c]);
+    const share = along.reduce((sum, each, c) => sum + each * (place[c] - from[c]), 0) / along.reduce((sum, each) => sum + each * each, 1e-9);
+    return distance(place, from.map((each, c) => each + Math.min(1, Math.max(0, share)) * along[c]));
+  };
+  for (const { slot, corners: [a, b], ends: [foot], isWood } of all.slice(0, 400)) {
+    if (isWood) continue;
+    const nearest = Math.min(...twigs.filter((twig) => twig.slot === slot).map((twig) => far(foot, twig)));
+    assert.ok(nearest < 0.2 * distance(a, b), `${nearest} m from wood, ${distance(a, b)} m long`);
+  }
 });
 
 test("a leaf with leaflets is a picture of its own, as large as it is", () => {

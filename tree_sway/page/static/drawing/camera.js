@@ -8,6 +8,8 @@ const HALF = Math.tan((16 * Math.PI) / 180);
 const TALL = 3;
 /** Distance from the edge of a stand, over its height, and height of the eye there [m]. */
 const [NEARBY, EYE] = [2, 2.5];
+/** Least height of the eye above the ground, but for a small plant [m]. */
+const LOWEST = 1.5;
 
 export class Camera {
   azimuth = -0.6;
@@ -86,8 +88,8 @@ export class Camera {
 
   /** Find the matrix from the scene to clip space. @returns {Float32Array} column by column */
   update() {
-    // The camera stays above the ground.
-    const above = this.target[2] - this._box[0][2] - 0.01 * this._size;
+    // The camera stays above the grass.
+    const above = this.target[2] - this._box[0][2] - Math.min(LOWEST, 0.1 * this._size);
     this.elevation = Math.max(this.elevation, -Math.asin(Math.min(1, Math.max(-0.9, above / this.distance))));
     const { right, up, back } = this.axes();
     const [x, y, z] = this.target.map((each, c) => each + this.distance * back[c]);

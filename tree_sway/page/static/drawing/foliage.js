@@ -4,20 +4,20 @@
  * vertex shader looks up and applies. */
 
 import { STRIDE } from "../placing.js";
-import { multiply, turned } from "../quaternions.js";
-import { lookOf, seeded, shapes } from "./looks.js";
+import { distance, multiply, turned } from "../quaternions.js";
+import { hangs, lookOf, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
 const LARGEST_CARDS = 2.5;
-/** Distance of a small card with a tuft from its shoot, over that of other small cards. */
-const TUFTS_BESIDE = 0.55;
 /** Least length of a small card over that of a full one. */
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
 const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
+/** Most tufts over the number of other small cards, as sky is seen between them. */
+const SPARSE = 0.62;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -26,27 +26,25 @@ const ROUNDED = 2;
 const LARGEST = 1.25;
 /** How much lighter or darker a cluster is than others, and a card than others of it. */
 const UNEVEN = 0.16;
-/** Number of different small cards. */
-const VARIETY = 200;
+/** Number of different twigs in clusters, of cards on one, half the width of its wood over the size of the cluster, and the part
+ * of it before the first card where that is a tuft, where it stands, and where it hangs. */
+const [VARIETY, ON_TWIG, TWIG_WIDE, BARE_TWIG] = [60, 7, 0.005, [0.6, 0.3, 0.04]];
 /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
  * that of a cluster, and at most [m]. */
 const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
 /** Length below which a limb under the crown is dead, over that of the longest. */
 const DEAD = 0.1;
-/** Thin branches of a conifer between its limbs: length over half the width of the crown, and how far apart they are over
- * the size of a cluster. */
-const [INNER, INNER_APART] = [0.75, 0.4];
 /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
  * clothed all along. */
 const [STUB, LONG] = [1.2, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
- * shoots hide the boughs; and by how much these shoots begin above their bough, over their size. */
-const [WEEPS, CURTAIN, RAISED] = [0.8, 14, 0.25];
+ * shoots hide the boughs. */
+const [WEEPS, CURTAIN] = [0.8, 14];
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.62, 0.6, 37];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.2, 0.62, 0.6, 79];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
 /** Numbers per vertex of a card. */
@@ -74,10 +72,10 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const { each, along, spray, isSpread } = cardsOf(look, meanSize, carrier.length, cards, most);
   const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
   if (isSpread) shoots.push(...bareShoots(kind, look, rest, branches, meanSize));
-  const limbs = limbsOf(kind, rest, highest);
-  if (isSpread && look.form === "needles") shoots.push(...innerShoots(kind, rest, high, limbs, meanSize));
-  const dead = look.has_needles ? deadWood(kind, limbs) : new Set();
-  const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
+  const dead = look.has_needles ? deadWood(kind, rest, highest) : new Set();
+  const twigs = isSpread ? Array.from({ length: VARIETY }, () => leafyTwig(look, spray, random)) : [];
+  const onTwig = Math.min(ON_TWIG, each);
+  const axis = twigCorners(ORIGIN, [0.7 * look.spray.length, 0, 0], [0, 1, 0]);
   const hung = hungOn(kind, branches);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
   const candle = candleCorners(CANDLE * wholeLeaf(look));
@@ -97,13 +95,19 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const own = axes.map((axis) => turned(back, axis));
     const middle = inFrame(axes, [isSpread ? 0.42 * look.spray.length - 0.5 : 0.8 * spray.length - 0.5, 0, 0], shoot.size, shoot.at);
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
-    for (let card = 0; card < shoot.share * each; card++) {
-      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
+    let twig = twigs[0];
+    const count = isSpread ? Math.max(2, shoot.share * each * (1 + 1 / onTwig)) : each;
+    for (let card = isSpread ? -1 : 0; card < count; card++) {
+      const part = card % (onTwig + 1);
+      if (!part) twig = twigs[Math.floor(VARIETY * random())];
+      const corners = isSpread ? (card < 0 ? axis : twig[part]) : cardCorners(spray, shoot.phase, card, isPlain ? shapes.triangle : shapes.square);
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
       const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c])));
-      const tint = 1 + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
+      // Leaves within a clump are darker than those at its surface.
+      const deep = Math.min(1, distance(end, middle) / (0.6 * shoot.size));
+      const tint = (isSpread ? 0.7 + 0.42 * deep : 1) + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -152,51 +156,15 @@ function leafyShoot(kind, rest, i) {
   return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
-/** Branches that are the stem, the limbs on it, and the longest of these. @param {Kind} kind
- * @param {Float32Array} rest @param {number} highest segment, up to which the stem goes */
-export function limbsOf({ arrays }, rest, highest) {
+/** Segments of a conifer's dead stubs, which bear no needles: limbs on the stem below the longest one and much shorter, with
+ * their branches. @param {Kind} kind @param {Float32Array} rest @param {number} highest segment, up to which the stem goes */
+export function deadWood({ arrays, nBranches }, rest, highest) {
   const { branch_first: first, branch_parent: parents } = arrays;
   const stem = /** @type {Set<number>} */ (new Set());
   for (let part = first.findIndex((from) => from > highest) - 1; part >= 0; part = parents[part]) stem.add(part);
-  const isLimb = (/** @type {number} */ branch) => !stem.has(branch) && stem.has(parents[branch]);
-  const limbs = Array.from(parents, (_, branch) => branch).filter(isLimb)
-    .map((branch) => ({ branch, reach: reachOf(arrays, branch), base: rest[STRIDE * first[branch] + 2] }));
+  const limbs = Array.from(parents, (parent, branch) => ({ parent, branch, reach: reachOf(arrays, branch), base: rest[STRIDE * first[branch] + 2] }))
+    .filter(({ parent, branch }) => !stem.has(branch) && stem.has(parent));
   const longest = limbs.reduce((most, each) => (each.reach > most.reach ? each : most), { reach: 0, base: 0 });
-  return { stem, limbs, longest };
-}
-
-/** Shoots of the thin branches that a spruce or a fir has on its stem between its limbs, so that its layers are no
- * shelves apart from each other; they have no wood of their own. @param {Kind} kind @param {Float32Array} rest
- * @param {number[]} high corner of the box of the tree @param {ReturnType<typeof limbsOf>} limbs
- * @param {number} size of a cluster [m] @returns {Shoot[]} */
-function innerShoots({ arrays }, rest, [wide, , top], { stem, limbs: [{ base }] }, size) {
-  const { branch_first: first, segment_length: length, leaf_frequency: [frequency] } = arrays;
-  /** @type {Shoot[]} */
-  const shoots = [];
-  for (const part of stem) {
-    for (let segment = first[part]; segment < first[part + 1]; segment++) {
-      const [x, y, low] = rest.subarray(STRIDE * segment);
-      for (let up = Math.max(low, base + size); up < low + length[segment]; up += INNER_APART * size) {
-        const phase = 2.4 * shoots.length + up;
-        const share = (up - base) / (top - base);
-        const reach = (INNER + 0.2 * Math.sin(3 * phase)) * wide * Math.min(1, 4 * share, 1.5 - 1.5 * share);
-        const frame = [0, 0, Math.sin(phase / 2), Math.cos(phase / 2)];
-        for (const far of [0.5 * reach, reach]) {
-          shoots.push({
-            segment, at: [x + far * Math.cos(phase), y + far * Math.sin(phase), up - 0.15 * far],
-            frame, size: Math.min(size, reach), phase, frequency, share: 1,
-          });
-        }
-      }
-    }
-  }
-  return shoots;
-}
-
-/** Segments of a conifer's dead stubs, which bear no needles: limbs below the longest one and much shorter, with
- * their branches. @param {Kind} kind @param {ReturnType<typeof limbsOf>} limbs */
-export function deadWood({ arrays, nBranches }, { limbs, longest }) {
-  const { branch_first: first, branch_parent: parents } = arrays;
   const dead = new Set(limbs.filter(({ reach, base }) => reach < DEAD * longest.reach && base < longest.base).map(({ branch }) => branch));
   const segments = new Set();
   for (let branch = 0; branch < nBranches; branch++) {
@@ -227,7 +195,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
     const frame = weeps ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] + (weeps && c > 1 ? RAISED * size : 0));
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (weeps && c > 1 ? 0.5 * size : 0));
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {
@@ -236,7 +204,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     if (reachOf(arrays, branch) > STUB * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment <= end; segment++) {
       // A cluster clothes no long shoot from its foot on.
-      if (radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
+      if (look.form === "tufts" || radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
       const count = Math.ceil(length[segment] / ((weeps ? 0.45 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
@@ -263,10 +231,10 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 3 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 2.5 : hangs(look) || look.form === "needles" ? 4.5 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
-    return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
+    return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
   const spray = { ...alone, length: leaf / mean };
@@ -287,29 +255,41 @@ function cardCorners({ length, width, rolls }, phase, card, outline) {
   }, outline);
 }
 
-/** Corners of a small card anywhere in a cluster: it points away from the foot of the shoot, and flutters about its
- * own stalk.
- * @param {Look} look @param {Spray} spray the card's own @param {() => number} random */
-function spreadCorners(look, { length, width }, random) {
+/** Corners of the wood of a twig in a cluster of size 1, which lie beside the picture, and of the small cards along it.
+ * @param {Look} look @param {Spray} spray the cards' own @param {() => number} random */
+function leafyTwig(look, { length, width }, random) {
   const whole = look.spray.length;
-  // Tufts stand about their shoots, with sky between one shoot and the next.
-  const wide = look.spray.width * whole * (look.form === "tufts" ? TUFTS_BESIDE : 1);
+  const wide = look.spray.width * whole;
   const deep = look.depth ?? 0.8;
+  const isTuft = look.form === "tufts";
+  const bare = BARE_TWIG[isTuft ? 0 : hangs(look) || look.is_potted ? 2 : 1];
   const some = () => random() + random() - 1;
-  const middle = [whole * (0.42 + 0.42 * some()), wide * some(), deep * wide * some()];
-  const away = unit(middle.map((each) => each + 0.25 * whole * some()));
-  const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
-  const beside = cross(upright, away);
-  const roll = 1.9 * deep * some();
-  const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
-    .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));
-  const at = (/** @type {number} */ u, /** @type {number} */ v) =>
-    middle.map((each, c) => each + length * ((u - 0.5) * away[c] + v * width * across[c]));
+  const end = [whole * (0.42 + 0.42 * some()), wide * some(), deep * wide * some()];
+  const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
+  const along = end.map((each, c) => each - foot[c]);
+  const cards = Array.from({ length: ON_TWIG }, (_, i) => {
+    const far = bare + ((1 - bare) * (i + random())) / ON_TWIG;
+    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 0.2 : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
+    const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
+    const beside = cross(upright, away);
+    const roll = 1.9 * deep * some();
+    const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
+      .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));
+    return cornersOf((u, v) => ({
+      place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),
+      swing: normal.map((each) => length * (0.4 * u + v * width) * each),
+      normal: normal.map((each, c) => each + 0.3 * u * away[c] + 0.5 * v * across[c]),
+    }));
+  });
+  return [twigCorners(foot, end, unit(cross(along, [some(), some(), some()]))), ...cards];
+}
+
+/** @param {number[]} foot @param {number[]} end @param {number[]} across */
+function twigCorners(foot, end, across) {
   return cornersOf((u, v) => ({
-    place: hanging(at(u, v), BOW * length * u),
-    swing: normal.map((each) => length * (0.4 * u + v * width) * each),
-    normal: normal.map((each, c) => each + 0.3 * u * away[c] + 0.5 * v * across[c]),
-  }));
+    place: hanging(foot.map((each, c) => each + u * (end[c] - each) + 2 * v * TWIG_WIDE * (1 - 0.6 * u) * across[c]), 0),
+    swing: ORIGIN, normal: cross(across, unit(end.map((each, c) => each - foot[c]))),
+  })).map((each) => ({ ...each, u: -1 }));
 }
 
 /** Corners of two crossed cards with a candle of flowers, whose foot is at 0; the picture goes from its tip down.

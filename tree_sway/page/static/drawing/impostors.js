@@ -70,7 +70,7 @@ export class Impostor {
   /** Add a tree to draw. @param {number[]} place @param {number} row of its top @param {number} number
    * @param {number[]} paint its colour and opacity */
   add(place, row, number, paint) {
-    const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
+    const tint = (row < 0 ? 0.55 : 0.86) + 0.28 * ((number * 0.618034) % 1);
     const corners = this._corners.flatMap((at) => [...at, ...place, row, tint, ...paint]);
     this._values.set(corners, 4 * PER_VERTEX * this.count++);
   }

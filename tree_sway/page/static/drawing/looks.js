@@ -5,18 +5,22 @@
 import { LOOKS } from "../checks.js";
 
 /** Look of an average broadleaf; outlines of leaves; and, by pattern of the bark, the colour and height (over that of the
- * tree) of a different bark at the foot; brightness of the ground of each pattern; angle and size of leaflets like fingers, and ends of tufts on a picture; corners of a
+ * tree) of a different bark at the foot; brightness of the ground of each pattern and its marks (number,
+ * raggedness, then least and range of light, half width and half height [px]); angle and size of leaflets like fingers, and ends of tufts on a picture; corners of a
  * picture, along and across from its middle, and of a triangle of the same area that shows most of it.
  * @type {{average: Look, outlines: Record<string, number[][]>, feet: Record<string, {color: number[], height: number}>,
- * grounds: Record<string, number>, places: Record<string, number[][]>,
+ * barks: Record<string, {ground: number, marks: any[][]}>, places: Record<string, number[][]>,
  * shapes: Record<"square" | "triangle", number[][]>}} */
-export const { average, outlines, shapes, feet, grounds, places } = LOOKS;
+export const { average, outlines, shapes, feet, barks, places } = LOOKS;
 
 /** Outline of a leaf from stalk to tip, an oval one for unknown forms. @param {Look} look */
 export const outlineOf = ({ form }) => outlines[form] ?? outlines.ovate;
 
 /** The look of a kind; that of an average broadleaf where its description has none. @param {Kind} kind */
 export const lookOf = (kind) => kind.look ?? average;
+
+/** Whether twigs hang. @param {Look} look */
+export const hangs = ({ droop = 0 }) => droop > 0.5;
 
 /** Random numbers from 0 to 1, the same on every page. */
 export function seeded(state = 12345) {

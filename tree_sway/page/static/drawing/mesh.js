@@ -18,7 +18,9 @@ const PER_VERTEX = 8;
 /** Sides of what is drawn as a flat ribbon: twigs. */
 const RIBBON = 2;
 /** Heights of the rings at the foot of a stem, over its radius. */
-const FOOT_RINGS = [0, 0.6, 1.8];
+const FOOT_RINGS = [0, 0.6, 1.4, 2.6, 4.5];
+/** How far the rings of wood lie beside its axis, and how much they differ, over their radius. */
+const CROOKED = 0.14;
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
 /** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
@@ -113,12 +115,15 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
     const atJoint = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : baseRadius;
     const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
     for (const up of isStem && s === from ? FOOT_RINGS : [0]) {
+      if (up * baseRadius > length[from]) continue;
       const above = climbed / baseRadius + up;
-      const flare = isStem ? Math.exp(-above) : 0;
-      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.6 * flare);
+      const low = Math.exp(-0.7 * above);
+      const flare = isStem ? low : 0;
+      const [beside, behind, swollen] = [0.37, 0.59, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
+      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.5 * swollen);
       for (let k = 0; k < corners; k++) {
         const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
-          : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist), thickness];
+          : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist).map((each, c) => each + ringRadius * (c ? beside : behind)), thickness];
         values.push(placer.slots[segment], isTip ? length[segment] : up * baseRadius, ...corner);
         values.push((tilesAround * k) / sides, (above * tilesAround) / (2 * Math.PI), open);
       }
@@ -128,7 +133,7 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
 }
 
 /** Corners of a ring about a branch. @param {number} points radius of the branch on the picture */
-const sidesOf = (points) => (points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
+const sidesOf = (points) => (points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
 
 /** Place of a corner across the branch; at the foot of a stem rings bulge into roots.
  * @param {number} radius [m] @param {number} flare 1 at the foot, 0 above it @param {number} angle */

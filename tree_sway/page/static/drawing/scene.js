@@ -18,8 +18,8 @@ import { leafMesh } from "./foliage.js";
 import { barkMesh, boxOf, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import { feet, lookOf } from "./looks.js";
-import { barkPicture, CLUMP, leafPicture } from "./textures.js";
+import { feet, hangs, lookOf } from "./looks.js";
+import { barkPicture, leafPicture } from "./textures.js";
 
 /** Frames from one shadow to the next without a graphics unit; and the share of the leaves that cast it, with one and without. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
@@ -48,6 +48,8 @@ const OPEN_GREENS = [[0.8, 1, 0.48], [0.68, 1, 0.6]];
 const NONE = [-2, -2];
 /** Months in which a horse chestnut flowers, from 1. */
 const FLOWERING = [5.2, 6.2];
+/** Shrubs about a tree of a stand, by their distance. */
+const SHRUBS = [0.7, 1, 1.3];
 /** Paint of a tree in its own colours. */
 const UNPAINTED = [0, 0, 0, 0];
 
@@ -287,8 +289,22 @@ export class Scene {
       level.numbers.push(t);
       level.impostor?.add(place, detail.start[t], t, this._paints[t] ?? UNPAINTED);
     }
+    if (this.isCrowd && !this.isSlow) this._plantShrubs();
     for (const { impostor } of this._levels) impostor?.upload();
     if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
+  }
+
+  /** Stand shrubs about the trees of a stand: pictures of its broadleaves. */
+  _plantShrubs() {
+    for (const [t, { kind, place: [x, y, z, , scale] }] of this.detail.trees.entries()) {
+      const { kind: { look }, drawn: [far] } = this._kinds[kind];
+      if (look?.has_needles || !far?.impostor) continue;
+      for (const k of SHRUBS) {
+        const [turn, size] = [7 * t + 9 * k, scale * (0.16 + 0.16 * ((t * k) % 1))];
+        const at = [x + 3 * k * Math.cos(turn), y + 3 * k * Math.sin(turn), z - 0.55 * size * far.impostor.box.tall];
+        far.impostor.add([...at, turn, size], -1, k * t, UNPAINTED);
+      }
+    }
   }
 
   /** Make a level of a kind. @param {number} number of the kind @param {number} level
@@ -306,22 +322,22 @@ export class Scene {
     const green = this.isAutumn || !mesh.values.length ? 0 : look.has_needles ? 0.7 : this.isSlow && this.isCrowd ? 0.5 : 0;
     const twigColor = look.twig.map((each, c) => (1 - green) * each + green * look.green[c]);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
-    const isClump = isSpread || along >= CLUMP;
-    const name = `${number} ${along} ${isClump}`;
+    const name = `${number} ${along} ${isSpread}`;
     if (!pictures.has(name)) {
-      const picture = leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isClump, isSpread });
+      const picture = leafPicture(look, along, { isAutumn: this.isAutumn, isFlowering, isSpread });
       pictures.set(name, this.isSlow ? chosenTexture(gl, picture) : pictureTexture(gl, picture, false));
     }
     const relief = look.bark_pattern;
     const turned = this.isAutumn ? look.autumn : null;
     const unturned = turned ? look.green.map((each, c) => each / turned[c]) : [1, 1, 1];
+    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c])));
     const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
       foliage: {
-        leaves: [2, pictures.get(name)], unturned, dulled: OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c]))),
+        leaves: [2, pictures.get(name)], unturned, dulled, woody: look.twig.map((each, c) => (each + (hangs(look) ? look.fresh[c] : each)) / (2 * dulled[c])),
         gloss: look.autumn || look.has_needles ? 0 : this.isSlow ? GLOSS_OF_MANY : GLOSS,
       },
     };
@@ -332,7 +348,7 @@ export class Scene {
   _bake(number) {
     const { gl, detail: { levels: { [number]: levels }, trees } } = this;
     const shape = this._kinds[number];
-    const most = trees.filter(({ kind }) => kind === number).length;
+    const most = (1 + SHRUBS.length) * trees.filter(({ kind }) => kind === number).length;
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
     const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0], numbers: [-1] };
     const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow, TILES[Number(this._kinds.length > FEW_KINDS)]);

@@ -33,7 +33,7 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 
 #part sunlit seen
 uniform mediump sampler2DShadow sunMap;
-vec3 inSunMap(vec3 p) { return 0.5 + 0.5 * fallen(p) - vec3(0.0, 0.0, 0.35 * sqrt(shadowTop)); }
+vec3 inSunMap(vec3 p) { return 0.5 + 0.5 * fallen(p) - vec3(0.0, 0.0, 0.22 * sqrt(shadowTop)); }
 // Share of sunlight that reaches a point, and the same filtered over two places beside it, which are turned by an angle.
 float sunlight(vec3 p) { return texture(sunMap, inSunMap(p)); }
 float sunlight(vec3 p, float soft, float turn) {
@@ -109,8 +109,8 @@ void main() {
   } else {
     vec3 across = turned(q, vec3(0.0, ring.yz));
     // A stem flares into its roots at its foot; the shadow is wider still there, where the sky is hidden too.
-    float foot = max(0.0, 1.0 - 60.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
-    p += root.w * (1.0 + (0.15 + 1.45 * step(0.5, shadowArea.w)) * foot) * across;
+    float foot = max(0.0, 1.0 - 14.0 * (p.z - ground) * shadowTop) * step(0.9, thickness);
+    p += root.w * (1.0 + 1.6 * step(0.5, shadowArea.w) * foot) * across;
     normal = across;
   }
   at = skin.xy;
@@ -274,8 +274,12 @@ in vec3 lit;
 flat in vec3 veil;
 flat in float edge;
 uniform sampler2D leaves;
+uniform vec3 woody; // colour of a twig, which lies beside the picture
 out vec4 color;
 void main() {
+#ifndef PLAIN
+  if (at.x < -0.5) { color = vec4(woody * lit + veil, edge); return; }
+#endif
   vec4 leaf = texture(leaves, at);
 #ifdef PLAIN
   // Without a graphics unit every operation counts; `chosenTexture` has made the random choice.
@@ -314,6 +318,9 @@ flat out vec3 veil; // the haze that is added
 flat out vec3 painted; // colour of paint, shaded as the picture is
 void main() {
   float scale = tree.x;
+  // A shrub is the top of a tree, and stands still.
+  bool isShrub = tree.y < 0.0;
+  vec2 place = isShrub ? vec2(corner.x, max(corner.y, 0.1)) : corner;
   vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
   vec3 back = shadowArea.w < 0.5 ? normalize(eye - middle) : light;
   vec2 to = normalize(back.xy + vec2(1e-5, 0.0));
@@ -323,15 +330,15 @@ void main() {
   vec3 right = vec3(-to.y, to.x, 0.0);
   vec3 up = vec3(-sin(e) * to, cos(e));
   float tall = 0.5 * box.z * cos(e) + box.x * sin(e);
-  vec3 p = middle + scale * (corner.x * box.x * right + corner.y * tall * up);
-  uint row = 2u * uint(tree.y);
+  vec3 p = middle + scale * (place.x * box.x * right + place.y * tall * up);
+  uint row = 2u * uint(max(0.0, tree.y));
   vec3 tip = texelFetch(poses, ivec2(int(row & 1023u), int(row >> 10)), 0).xyz;
   vec2 turn = vec2(cos(stand.w), sin(stand.w));
   vec3 rest = vec3(turn.x * restTip.x - turn.y * restTip.y, turn.y * restTip.x + turn.x * restTip.y,
     restTip.z);
   float h = clamp((p.z - stand.z) / (box.z * scale), 0.0, 1.1);
-  p += (tip - stand.xyz - scale * rest) * h * h;
-  vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
+  if (!isShrub) p += (tip - stand.xyz - scale * rest) * h * h;
+  vec3 n = normalize(place.x * right + 0.8 * place.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   float clear = clearness(p);
   vec3 whole = clear * shade * toned(sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.3 + 0.8 * dot(n, light)));
@@ -339,7 +346,7 @@ void main() {
   lit = isShadow ? vec3(0.0) : (1.0 - paint.a) * whole;
   veil = isShadow ? vec3(1.0) : (1.0 - clear) * horizon;
   painted = isShadow ? vec3(0.0) : 2.2 * paint.a * paint.rgb * whole;
-  at = (vec2(mod(view, float(ROUND)), high) + 0.5 + 0.5 * corner) / vec2(float(ROUND), 2.0);
+  at = (vec2(mod(view, float(ROUND)), high) + 0.5 + 0.5 * place) / vec2(float(ROUND), 2.0);
   gl_Position = seen(p);
 }
 
@@ -393,8 +400,6 @@ void main() {
   float tall = field.w * blade.z;
   vec3 p = vec3(foot, ground);
   float sunny = sunlight(p);
-  // Between the trees of a stand ferns and brambles are higher, but for near ones, whose blades would be seen.
-  if (field.z > 400.0) tall *= 1.0 + 3.0 * (1.0 - sunny) * smoothstep(20.0, 45.0, distance(eye, p));
   float own = 6.2831853 * blade.w;
   // Gust fronts are curved.
   float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
@@ -404,7 +409,7 @@ void main() {
   float speed = mix(gusts[low], gusts[low + 1], place - float(low));
   float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
   vec3 back = normalize(eye - p);
-  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w + 0.3 * max(0.0, tall - 0.6), 0.0005 * distance(eye, p));
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
   vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
@@ -594,7 +599,7 @@ float blades(vec2 p, float far, float size) {
   for (float part = 0.0; part < 2.0; part++) {
     float wide = exp2(floor(level) + part);
     float share = part > 0.5 ? fract(level) : 1.0 - fract(level);
-    sum += share * noise(vec2(turn * wide, up + 7.0 * part));
+    sum += share * noise(vec2(turn * wide, up + 7.0 * (floor(level) + part)));
   }
   return sum - 0.5;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: leaves, alone or in sprays, cut out by their alpha; and bark. */
 
-import { grounds, outlineOf, places, seeded } from "./looks.js";
+import { barks, outlineOf, places, seeded } from "./looks.js";
 
 /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
@@ -12,9 +12,8 @@ const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
 const LEAF_SHARE = 0.75;
-/** Leaves along a picture from which on it shows a clump rather than a shoot, and the area of its leaves over that of
- * the picture. */
-export const [CLUMP, CLUMP_FILLED] = [12, 0.7];
+/** Area of the leaves of a shoot over that of its picture. */
+const FILLED = 0.75;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -38,15 +37,15 @@ export const leafShare = ({ form }, along, isFlowering) =>
 /** Number of leaves along the picture for cards of a length, so that none is drawn much larger than it is.
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
-  const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
+  const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
   const wanted = long / look.leaf_size;
   return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
- * @param {{isAutumn?: boolean, isFlowering?: boolean, isClump?: boolean, isSpread?: boolean,
- * size?: number}} [options] whether it shows a clump of leaves seen from afar, is of small cards, and its size [px] */
-export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isClump = false, isSpread = false, size } = {}) {
+ * @param {{isAutumn?: boolean, isFlowering?: boolean, isSpread?: boolean, size?: number}} [options] whether it is
+ * of small cards, and its size [px] */
+export function leafPicture(look, along, { isAutumn = false, isFlowering = false, isSpread = false, size } = {}) {
   const share = leafShare(look, along, isFlowering);
   const hasLeaflets = look.form in IN_LEAFLETS;
   const pixels = size ?? (along > 1 || hasLeaflets ? 512 : 128);
@@ -56,7 +55,6 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else if (isClump && along > (hasLeaflets ? 8 : 2)) brush.clump(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
 }
@@ -64,110 +62,34 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
 /** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
 const BARK_WIDE = 128;
 
-/** Functions that paint the marks of each pattern of bark. @type {Record<string, (brush: BarkBrush) => void>} */
-const MARKS = {
-  furrows: paintRidges, plates: paintPlates, scales: paintPlates, dashes: paintDashes,
-  smooth: (brush) => paintSpots(brush, true), flakes: (brush) => paintSpots(brush, false),
-};
-
-/** Paint bark as shares of its colour. @param {string} pattern @returns {HTMLCanvasElement} */
-export function barkPicture(pattern) {
-  const known = pattern in MARKS ? pattern : "flakes";
-  const brush = new BarkBrush(grounds[known]);
-  MARKS[known](brush);
-  return brush.context.canvas;
-}
-
 /** @param {number[]} color @param {number} light */
 const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, light * c))).join(" ")})`;
 
-/** Paints marks at random places of a picture that repeats. */
-class BarkBrush {
-  random = seeded(61);
-
-  /** @param {number} ground brightness */
-  constructor(ground) {
-    const canvas = Object.assign(document.createElement("canvas"), { width: BARK_WIDE, height: 2 * BARK_WIDE });
-    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    this.context.fillStyle = css([1, 1, 1], ground);
-    this.context.fillRect(0, 0, canvas.width, canvas.height);
-  }
-
-  /** Paint a mark, and its parts beyond the edges on the other side.
-   * @param {number} light @param {(context: CanvasRenderingContext2D) => void} trace */
-  mark(light, trace) {
-    const { context, random } = this;
-    const { width, height } = context.canvas;
-    const [x, y] = [width * random(), height * random()];
-    context.fillStyle = context.strokeStyle = css([1, 1, 1], light);
-    for (const [dx, dy] of [[0, 0], [-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]]) {
-      context.setTransform(1, 0, 0, 1, x + dx * width, y + dy * height);
-      context.beginPath();
-      trace(context);
+/** Paint bark as shares of its colour: ragged ellipses at random places of a picture that repeats. @param {string} pattern
+ * @returns {HTMLCanvasElement} */
+export function barkPicture(pattern) {
+  const { ground, marks } = barks[pattern] ?? barks.flakes;
+  const random = seeded(61);
+  const [width, height] = [BARK_WIDE, 2 * BARK_WIDE];
+  const canvas = Object.assign(document.createElement("canvas"), { width, height });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = css([1, 1, 1], ground);
+  context.fillRect(0, 0, width, height);
+  for (const [count, rough, ...ranges] of marks) {
+    for (let i = 0; i < count; i++) {
+      const [light, across, tall, x, y, lean] = [...ranges, [0, width], [0, height], [-0.15, 0.3]].map(([least, more]) => least + more * random());
+      const corners = Array.from({ length: 12 }, (_, k) => {
+        const [far, turn] = [1 - rough * random(), (Math.PI * k) / 6];
+        return [x + far * (across * Math.cos(turn) + lean * tall * Math.sin(turn)), y + far * tall * Math.sin(turn)];
+      });
+      context.fillStyle = css([1, 1, 1], light);
+      // Parts beyond the edges lie on the other side.
+      for (const dx of [-width, 0, width]) {
+        for (const dy of [-height, 0, height]) context.fill(new Path2D(`M${corners.map(([a, b]) => [a + dx, b + dy]).join("L")}Z`));
+      }
     }
   }
-
-  /** @param {number} light @param {number} across half its width [px] @param {number} tall half its height */
-  ellipse(light, across, tall) {
-    const lean = 0.3 * (this.random() - 0.5);
-    this.mark(light, (on) => {
-      on.ellipse(0, 0, across, tall, lean, 0, 7);
-      on.fill();
-    });
-  }
-}
-
-/** @param {BarkBrush} brush */
-function paintRidges(brush) {
-  const { context, random } = brush;
-  for (let i = 0; i < 260; i++) {
-    const [bend, long, light] = [8 * (random() - 0.5), 18 + 40 * random(), 0.62 + 0.5 * random()];
-    context.lineWidth = 2.5 + 4.5 * random();
-    context.lineCap = "round";
-    brush.mark(light, (on) => {
-      on.moveTo(0, 0);
-      on.quadraticCurveTo(bend, 0.5 * long, 0.6 * bend, long);
-      on.stroke();
-    });
-  }
-}
-
-/** @param {BarkBrush} brush */
-function paintPlates(brush) {
-  const { random } = brush;
-  for (let i = 0; i < 130; i++) {
-    const [across, tall, light] = [5 + 6 * random(), 9 + 12 * random(), 0.75 + 0.4 * random()];
-    const corners = Array.from({ length: 9 }, (_, k) => [0.7, 0.45].map(() => 0.75 + 0.35 * random()).concat(0.7 * k));
-    brush.mark(light, (on) => {
-      for (const [a, b, turn] of corners) on.lineTo(a * across * Math.cos(turn), b * tall * Math.sin(turn));
-      on.fill();
-    });
-  }
-}
-
-/** Light and dark dashes across the stem, and black rifts, wide in the middle. @param {BarkBrush} brush */
-function paintDashes(brush) {
-  const { random } = brush;
-  for (let i = 0; i < 60; i++) brush.ellipse(0.88 + 0.1 * random(), 14 + 20 * random(), 2 + 5 * random());
-  for (let i = 0; i < 46; i++) brush.ellipse(0.25 + 0.3 * random(), 3 + 9 * random(), 0.8 + 0.9 * random());
-  for (let i = 0; i < 9; i++) {
-    const [across, tall] = [10 + 14 * random(), 3 + 5 * random()];
-    brush.mark(0.1 + 0.08 * random(), (on) => {
-      on.moveTo(-across, 0.4 * tall);
-      on.quadraticCurveTo(-0.2 * across, -1.4 * tall, across, -0.2 * tall);
-      on.quadraticCurveTo(0.1 * across, 1.7 * tall, -across, 0.4 * tall);
-      on.fill();
-    });
-  }
-}
-
-/** @param {BarkBrush} brush @param {boolean} isSmooth whether spots are flat and pale */
-function paintSpots(brush, isSmooth) {
-  const { random } = brush;
-  for (let i = 0; i < 170; i++) {
-    const light = isSmooth ? 0.86 + 0.16 * random() : 0.6 + 0.5 * random();
-    brush.ellipse(light, (isSmooth ? 9 : 4) + 9 * random(), (isSmooth ? 1.5 : 4) + (isSmooth ? 3 : 9) * random());
-  }
+  return canvas;
 }
 
 /** Paints a shoot that begins in the middle of the left edge. The picture has a length of 1 and the width of the
@@ -222,56 +144,28 @@ class Brush {
     return this.half * Math.max(0, Math.sin(Math.PI * Math.min(1, 0.12 + 0.88 * x) ** 0.85)) ** 0.7;
   }
 
-  /** A twig with side twigs; leaves in layers along them, so that the lower ones are in the shade.
-   * @param {number} leaf length of one */
+  /** A shoot whose leaves, in layers, hang on twigs of its axis: fewer and fewer from its middle on, as any outline would
+   * look from afar like that of one large leaf. @param {number} leaf length of one */
   spray(leaf) {
-    const { look, random } = this;
+    const { half, random, look } = this;
     const unit = this.unit * leaf;
-    const reach = Math.max(0.3, 1 - 0.9 * unit);
-    /** @type {number[][]} */
-    const twigs = [[0, 0, 0, reach]];
-    let side = 1;
-    for (let x = 0.06; x < 0.9 * reach; x += Math.max(0.05, 0.62 * unit), side = -side) {
-      const lean = side * (0.7 + 0.35 * random());
-      const room = Math.min(this.outline(x / reach), this.half - 0.1 * unit) / Math.abs(Math.sin(lean));
-      const long = (0.45 + 0.55 * random()) * Math.min(room, 0.7) - 0.75 * unit;
-      if (long > 0.25 * unit) twigs.push([x, 0, lean, long]);
+    const count = Math.round((FILLED * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
+    const places = Array.from({ length: count }, () => {
+      const [turn, far, size] = [7 * random(), random() ** 0.55, unit * (0.75 + 0.35 * random())];
+      const [x, y] = [0.5 + 0.5 * (1 - unit) * far * Math.cos(turn), (half - 0.5 * unit) * far * Math.sin(turn)];
+      const lean = Math.atan2(y, 0.4) + 2.4 * (random() - 0.5);
+      return { x: x - 0.5 * size * Math.cos(lean), y: y - 0.5 * size * Math.sin(lean), lean, size };
+    });
+    const twig = (/** @type {number} */ long) => this.line(long, 0.02 * leaf, css(look.twig, 0.8));
+    twig(0.6);
+    for (const { x, y } of places.slice(0, count / 3)) {
+      const foot = Math.max(0, x - 1.2 * Math.abs(y));
+      this.at(foot, 0, Math.atan2(y, x - foot), 1, () => twig(Math.hypot(x - foot, y)));
     }
-    for (const [x, y, turn, long] of twigs) this.at(x, y, turn, 1, () => this.line(long, 0.05 * leaf + 0.002, css(look.twig, 0.8)));
-    // Large leaves begin at the foot of the shoot, else the picture has few.
-    const [step, begin] = (look.form in IN_LEAFLETS ? [0.2, 0.08] : [0.5, 0.5]).map((each) => each * unit);
-    for (let layer = 0; layer < LAYERS; layer++) {
-      const light = 0.55 + (0.5 * layer) / (LAYERS - 1);
-      for (const [x, y, turn, long] of twigs) {
-        for (let far = (turn ? 0.2 * unit : begin) + step * (layer / LAYERS); far < long; far += step) {
-          side = -side;
-          const lean = turn + side * (look.slenderness < 0.3 ? 0.25 + 0.3 * random() : 0.45 + 0.7 * random());
-          const [cx, cy] = [x + far * Math.cos(turn), y + far * Math.sin(turn)];
-          // A leaf that would reach beyond the edge of the picture is drawn smaller.
-          const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
-          const size = Math.min(unit * (0.7 + 0.35 * random()), 0.99 - cx, Math.sin(lean) * cy < 0 ? 1 : room);
-          if (size > 0.3 * unit) this.at(cx, cy, lean, 1, () => this.leaf(size, light));
-        }
-        const [ex, ey] = [x + long * Math.cos(turn), y + long * Math.sin(turn)];
-        const size = Math.min(0.9 * unit, 0.99 - ex, (this.half - Math.abs(ey)) / Math.max(0.1, Math.abs(Math.sin(turn))));
-        this.at(ex, ey, turn + 0.5 * (random() - 0.5), 1, () => this.leaf(size, light));
-      }
-    }
-  }
-
-  /** A clump of shoots seen from afar: small leaves in layers, fewer and fewer from its middle on, as any outline would
-   * look like that of one large leaf. @param {number} leaf length of one */
-  clump(leaf) {
-    const { half, random } = this;
-    const unit = this.unit * leaf;
-    const count = Math.round((CLUMP_FILLED * 2 * half) / (unit * unit));
-    for (let i = 0; i < count; i++) {
-      const turn = 7 * random();
-      const far = random() ** 0.55;
-      const [x, y] = [0.5 + (0.5 - unit) * far * Math.cos(turn), (half - unit) * far * Math.sin(turn)];
-      const light = 0.55 + (0.5 * Math.floor(LAYERS * i / count)) / (LAYERS - 1);
-      this.at(x, y, 7 * random(), 1, () => this.leaf(unit * (0.75 + 0.35 * random()), light));
-    }
+    places.forEach(({ x, y, lean, size }, i) => {
+      const light = 0.55 + (0.5 * Math.floor((LAYERS * i) / count)) / (LAYERS - 1);
+      this.at(x, y, lean, 1, () => this.leaf(size, light));
+    });
   }
 
   /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
@@ -327,7 +221,7 @@ class Brush {
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
+        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), isUpper ? 0.2 * random() : 0);
         this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
       }
     }
