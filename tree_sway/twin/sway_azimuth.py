@@ -32,9 +32,6 @@ from tree_sway.core.arrays import Complexes, Floats
 _EDGES = (0.0, 0.06, 0.12, 0.25, 0.45, 0.75, 1.4)
 """Edges of the bands, over the first frequency [-]."""
 
-_EXPLAINED = 0.25
-"""Frequency over the first one below which the model tells the lean [-]."""
-
 _LONGER = 4.0
 """Power of the load of gusts along the mean wind over that across it, k [-]."""
 
@@ -51,6 +48,8 @@ has both ends of its axis, and all that are right are found later the more that 
 _ANGLES = np.radians(np.arange(-180.0, 180.0, 4.0))
 _TAPERED, _WIDTH, _LEAST_WIDTH = 0.1, 0.3, 4
 _MOST_NOISE, _LEAST_NOISE = 0.95, 0.01
+_LEAST_ERROR = 0.03
+"""Least error of an angle [rad], half a step of the angles."""
 
 
 class Sway(NamedTuple):
@@ -100,9 +99,9 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
         share = float(noisy[inside].mean())
         whitened = np.linalg.inv((1.0 - share) * ellipse + 0.5 * share * np.eye(2))
         own = np.einsum('ija,jk,lka->ila', turn, _products(y[inside], y[inside]), turn)
+        own += _LEAST_NOISE**2 * n * np.eye(2)[..., None]
         for i, loss in enumerate(_LOSSES):
             told = x[inside] * np.exp(-loss / seconds * lines[inside, None])
-            told *= high <= _EXPLAINED
             shared = np.einsum('ija,jk->ika', turn, _products(y[inside], told))
             shared = shared + shared.swapaxes(0, 1)
             alone = _products(told, told)[..., None]
@@ -119,7 +118,7 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
     near = chance * (np.abs(away) < 0.5 * np.pi)
     best += float(near @ away / near.sum())
     away = np.angle(np.exp(1j * (_ANGLES - best)))
-    return best, math.sqrt(float(chance @ np.square(away)))
+    return best, math.hypot(_LEAST_ERROR, math.sqrt(float(chance @ np.square(away))))
 
 
 def _ellipse(bend: Floats, lean: Floats) -> Floats:
