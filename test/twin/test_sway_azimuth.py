@@ -33,7 +33,9 @@ def leans(
     return found[0] @ np.array([[c, -s], [s, c]]), found[1]
 
 
-def errors_of(seconds: float, loss: float, bend: Floats, longer: float = 2.0) -> tuple[Floats, ...]:
+def errors_of(
+    seconds: float, loss: float, bend: Floats, longer: float = 2.0
+) -> tuple[Floats, ...]:
     """Return errors of angles and those that are stated, of 60 trees, [rad]."""
     sway = Sway(bend, F1, DT)
     found = [

@@ -99,6 +99,7 @@ class Observer:
         if before is not None:
             self._fit.follow(before._fit)
         self._design = GainDesign(self.unknown, self.tracks, places)
+        self._sizes: dict[int, float] = {}
         self._step, self._done = -1, -1
         self._estimate: Estimate | None = None
         self.trust = np.zeros(n)
@@ -194,6 +195,9 @@ class Observer:
         at = self._readings.read(time, self._step, self._done)
         if at >= 0:
             self._fit.note(wind[0], wind[1])
+        if self._readings.has_new_mounting:
+            self._readings.has_new_mounting = False
+            self._find_size()
         gains = self._design.advance()
         if gains is not None:
             self._take(gains)
@@ -205,6 +209,16 @@ class Observer:
             else:
                 self._fade(self._estimate, n_periods)
         return self._moved
+
+    def _find_size(self) -> None:
+        """Let the unknown forces be of the size that sensors told when they were mounted."""
+        for k, track in enumerate(self.tracks):
+            if track.unexplained > 0.0:
+                felt = self._design.felt(k)[0][:2]
+                self._sizes[k] = self.unknown.told_size(track.unexplained, felt)
+                track.unexplained = 0.0  # told by the wind until now
+        if self._sizes:
+            self.unknown.size = sum(self._sizes.values()) / len(self._sizes)
 
     def _take(self, gains: Gains) -> None:
         """Go on with other gains."""

@@ -75,6 +75,8 @@ class SensorReadings:
         self._unknown, self._tracks = unknown, tracks
         self._dt, self._wind = dt, wind
         self._told_lag: SensorTrack | None = None
+        self.has_new_mounting = False
+        """Whether a mounting was found since this was set to False."""
         self._search: tuple[SensorTrack, LaterWork[FoundMounting]] | None = None
         self._sensed = np.zeros((_KEPT, len(tracks), ROWS))
         self._forces = np.zeros((_KEPT, unknown.count))
@@ -139,6 +141,7 @@ class SensorReadings:
         if found is not None:
             self._search = None
             track.take(found)
+            self.has_new_mounting = True
             if found.lag:
                 self._told_lag = track
                 self._wind.delay_more(found.lag * self._dt)

@@ -168,7 +168,7 @@ class Windows(NamedTuple):
 
 class FoundMounting(NamedTuple):
     """
-    How a sensor is mounted, and its mean difference from the model then, (9,).
+    How a sensor is mounted, and mean and variance of its difference from the model, (9,).
 
     ``lag`` is by how many steps the tree moves later than the model, ``left_for`` the lag
     [s] for which the sensor is not to be followed, 0 if it is that of another wind, and None if it
@@ -180,6 +180,7 @@ class FoundMounting(NamedTuple):
     lag: int = 0
     left_for: float | None = None
     late: float = 0.0
+    variance: Floats | None = None
 
 
 def _mounting(
@@ -218,11 +219,11 @@ def _mounting(
         found = align(sensed, upright, free, *known, sign, sway)
     if found.problem:
         lag = 0
-    bias = np.zeros(9)
+    bias, variance = np.zeros((2, 9))
     if not found.problem:
         model = upright if found.has_gravity else free
         moved = found.motion(sensed)
-        bias = (moved - model).mean(axis=0)
+        bias, variance = (moved - model).mean(axis=0), (moved - model).var(axis=0)
         pull = GRAVITY * found.has_gravity
         where = other_lever(moved, model, sway.frequency, windows.dt, pull)
         found = replace(found, notes=(*found.notes, *filter(None, [where])))
@@ -242,7 +243,7 @@ def _mounting(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    return FoundMounting(found, bias, lag, left_for, left.seconds)
+    return FoundMounting(found, bias, lag, left_for, left.seconds, variance)
 
 
 def _is_off(found: SensorLag, lags: LagRange) -> bool:
@@ -375,6 +376,8 @@ class SensorTrack:
         self.alignment: Alignment | None = None
         self.bend = np.eye(2)
         """Lean of its place per load to east and north, of any unit (`lean_per_load`), (2, 2)."""
+        self.unexplained = 0.0
+        """Variance of its first quantity to east and north beyond model and noise, a sum."""
         self.tells_little = False
         """Whether it is in use, and tells too little of any coordinate to correct the tree."""
         self._mounting = np.zeros(21)
@@ -592,6 +595,10 @@ class SensorTrack:
         self.fitted_noise = float(found.noise[self.fitted])
         self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
+        if mounting.variance is not None:
+            first = self.picked.start
+            beyond = mounting.variance[first : first + 2] - found.noise[self.uses[0]] ** 2
+            self.unexplained = float(np.maximum(beyond, 0.0).sum())
         self._next_mean = native.count + round(_MEAN_EVERY / self._dt)
 
     def _is_less_sure(self, found: Alignment) -> bool:
