@@ -109,18 +109,6 @@ def test_little_in_common_is_not_nothing_where_the_law_expects_no_more() -> None
     assert np.mean([each.is_by_chance for each in alien]) > 0.7
 
 
-def test_a_sensor_is_turned_by_what_it_is_turned_from_the_model() -> None:
-    found = []
-    for seed in range(100):
-        model, sensed = noise(300.0, np.random.default_rng(seed))
-        turned = sensed @ [[0.0, 1.0], [-1.0, 0.0]]
-        found.append(sensor_lag(turned, model, F1, DT))
-    errors = np.array([each.turn - 0.5 * np.pi for each in found])
-    stated = np.array([each.turn_error for each in found])
-    assert np.sqrt(np.mean(np.square(errors))) < np.radians(8.0)
-    assert 0.7 < np.sqrt(np.mean(np.square(errors / stated))) < 1.2
-
-
 def test_motions_of_nothing_in_common_are_told() -> None:
     found = [lag_of(0.0, 200.0, seed, loss=1e9) for seed in range(100)]
     assert np.mean([each.is_sure for each in found]) < 0.02

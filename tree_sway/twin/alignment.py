@@ -14,7 +14,8 @@ A mast some metres away knows the lean in slow gusts, and nothing of those that 
 So both motions are averaged over some seconds, in which an acceleration is the lean. N averages
 whose correlation is r tell an azimuth with the error ``sqrt((1 - r^2) / (2 N r^2))`` of a phase
 (Bendat & Piersol 2010, *Random Data*, 9.2), and the sign s of r's rival by ``N ln (1 - r^2) / (1 -
-s^2)``, the logarithm of their likelihoods.
+s^2)``, the logarithm of their likelihoods. Where gravity is felt, all of the sway tells it
+(`sway_azimuth`).
 
 Units follow from the size of gravity, and of the motion in comparison with the model's. So do the
 signs: some phones give the acceleration as that of gravity, and some frames are left-handed. A
@@ -32,6 +33,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.rotation import about_up, cross_matrix, quaternion_rotated
+from tree_sway.twin.sway_azimuth import Sway, sway_azimuth
 
 GRAVITY = 9.80665
 """Standard gravity in [m/s^2]."""
@@ -117,9 +119,9 @@ class Alignment:
         out[..., 6:9] = values[..., 6:9] @ self.turn.T
         return out
 
-    def turned(self, angle: float, error: float) -> Alignment:
-        """Return it turned from east to north by an angle of an error, both in [rad]."""
-        return replace(self, turn=about_up(angle) @ self.turn, azimuth_error=error)
+    def turned(self, angle: float) -> Alignment:
+        """Return it turned from east to north by an angle in [rad]."""
+        return replace(self, turn=about_up(angle) @ self.turn)
 
 
 def align(
@@ -130,6 +132,7 @@ def align(
     window: int = 1,
     facing: float | None = None,
     sign: float = 0.0,
+    sway: Sway | None = None,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -153,6 +156,9 @@ def align(
         north in [rad]; None if it is not told.
     sign
         Sign of its acceleration, 1 or -1; that by which it is more alike if 0.
+    sway
+        What is known of the sway there, by which a lean tells the azimuth (`sway_azimuth`); None
+        without.
 
     """
     raw, sensed = sensed, averaged(sensed, window)
@@ -203,9 +209,14 @@ def align(
         notes.append('acceleration in g, without gravity')
         scale[0] *= GRAVITY
         likeness, ratio = _likeness(found.motion(sensed), model, measures)
-    error = _TOLD_ERROR
+    moved, error = found.motion(raw), _TOLD_ERROR
+    noise = _noise_of(moved)
     if facing is None or not has_gravity:
         error = _azimuth_error(likeness, count)
+    if sway is not None and facing is None and measures[0] and has_gravity:
+        turn, error = sway_azimuth(moved[:, :2], with_gravity[:, :2], float(noise[0]), sway)
+        found = found.turned(turn)
+        likeness, _ = _likeness(found.motion(sensed), model, measures)
     if not problem and _is_below_noise(model, measures, window):
         problem = TELLS_LITTLE
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
@@ -218,7 +229,6 @@ def align(
             f'its motion resembles that of the tree by {likeness:.2f} only, too little to know '
             'which way it faces: wait for more wind or tell it, check place and clock'
         )
-    noise = _noise_of(found.motion(raw))
     return replace(
         found, has_gravity=has_gravity, likeness=likeness, noise=noise, azimuth_error=error,
         problem=problem, notes=tuple(notes),

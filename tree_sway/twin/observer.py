@@ -22,13 +22,14 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.native import address, LIBRARY, NativeCorrection
 from tree_sway.core.setup import one_thread
+from tree_sway.twin.disturbance import crown_slope
 from tree_sway.twin.estimate import Estimate
 from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
 from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.running_fit import RunningFit
 from tree_sway.twin.sensor_place import place_motion
 from tree_sway.twin.sensor_readings import LATEST, SensorReadings
-from tree_sway.twin.sensor_track import SensorTrack
+from tree_sway.twin.sensor_track import lean_per_load, SensorTrack
 from tree_sway.twin.steady_filter import SteadyFilter
 from tree_sway.twin.sway_watch import SwayChange
 from tree_sway.twin.tree_fit import TreeFit
@@ -39,6 +40,9 @@ if TYPE_CHECKING:
 
 MOST_COORDINATES = 32
 """Largest number of coordinates that sensors correct."""
+
+_USUAL_WIND = 7.0
+"""Wind in [m/s] whose loads tell by how much more a place leans to one side than to another."""
 
 _FADE = 0.3
 """Time constant in [s] with which the correction fades without a sensor."""
@@ -88,6 +92,9 @@ class Observer:
             self._readings = SensorReadings(
                 self.unknown, self.tracks, places, dt, swing, wind or LateWind()
             )
+            load = crown_slope(simulator, _USUAL_WIND, oscillators.shapes.shape[1])[:2]
+            for track, place in zip(self.tracks, places, strict=True):
+                track.bend = lean_per_load(place, self.unknown.all_stiffness, load)
         self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt)
         if before is not None:
             self._fit.follow(before._fit)

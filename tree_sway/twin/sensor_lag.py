@@ -101,12 +101,8 @@ class SensorLag(NamedTuple):
         Logarithm of the likelihood of no lag over that of the lag for which it was left.
     motion
         Time in [s] that was compared.
-    turn
-        Angle from east to north by which it is turned from the model [rad].
     n_lines
         Number of lines of the spectra that were compared.
-    told
-        Sum over them of what the model tells over what it does not [-].
     can_differ, expected
         Means of ``over_none`` and of ``evidence`` by the law of gusts, infinite without one.
 
@@ -117,22 +113,10 @@ class SensorLag(NamedTuple):
     evidence: float = 0.0
     over_none: float = 0.0
     motion: float = 0.0
-    turn: float = 0.0
     n_lines: int = 0
-    told: float = 0.0
     for_own: float = 0.0
     can_differ: float = np.inf
     expected: float = np.inf
-
-    @property
-    def turn_error(self) -> float:
-        """
-        Standard deviation of the turn [rad].
-
-        It is 1.4 times that of the likelihood's curvature: the noise is found of the same lines.
-        """
-        is_known = self.evidence > _CHANCE and self.n_lines >= _MANY
-        return self.told**-0.5 if is_known else np.inf
 
     @property
     def is_by_chance(self) -> bool:
@@ -218,7 +202,7 @@ def sensor_lag(
     noise = share @ np.square(np.abs(y))
     found = [_likelihood(y, x * np.exp(-a * np.abs(hertz)) * back, noise) for a in _LOSSES]
     told = x * np.exp(-_LOSSES[int(np.argmax([each.max() for each in found]))] * np.abs(hertz))
-    likelihood, gain, noise = _over_noise(y, told * back, share)
+    likelihood = _over_noise(y, told * back, share)
     at = int(np.argmax(likelihood))
     near = lags[likelihood > likelihood[at] - 0.5]
     own = likelihood[np.abs(lags) <= _NONE + none].max()
@@ -231,9 +215,7 @@ def sensor_lag(
         float(likelihood[at]),
         float(likelihood[at] - own),
         period,
-        float(np.angle(gain[at])),
         len(bins),
-        float((np.square(np.abs(gain[at] * told)) / noise[at]).sum()),
         float(for_own),
         float(2.0 * common @ (1.0 - np.cos(circular * float(lags[at])))),
         float(2.0 * np.log1p(common).sum()),
@@ -264,8 +246,8 @@ def _likelihood(y: Complexes, told: Complexes, noise: Floats) -> Floats:
     return np.asarray(np.square(np.abs(shared)) / np.maximum(size, 1e-300))
 
 
-def _over_noise(y: Complexes, told: Complexes, share: Floats) -> tuple[Floats, Complexes, Floats]:
-    """Logarithm of the likelihood of each lag with its own noise, (l,), gain and noise there."""
+def _over_noise(y: Complexes, told: Complexes, share: Floats) -> Floats:
+    """Logarithm of the likelihood of each lag with its own noise, (l,)."""
     alone = share @ np.square(np.abs(y))
     noise = np.broadcast_to(alone, told.shape)
     for _ in range(_PASSES):
@@ -274,4 +256,4 @@ def _over_noise(y: Complexes, told: Complexes, share: Floats) -> tuple[Floats, C
         left = np.square(np.abs(y - gain[:, None] * told))
         noise = left @ share.T
     own = np.log(noise) + left / noise
-    return (np.log(alone) + np.square(np.abs(y)) / alone - own).sum(axis=1), gain, noise
+    return np.asarray((np.log(alone) + np.square(np.abs(y)) / alone - own).sum(axis=1))

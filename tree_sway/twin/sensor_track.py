@@ -32,6 +32,7 @@ from tree_sway.twin.late_wind import LONGEST_WAY
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
 from tree_sway.twin.sensor_place import PlaceMotion
+from tree_sway.twin.sway_azimuth import Sway
 from tree_sway.twin.sway_lever import other_lever
 from tree_sway.twin.wind_lag import find_lag
 
@@ -111,6 +112,12 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
     return out
 
 
+def lean_per_load(motion: PlaceMotion, stiffness: Floats, load: Floats) -> Floats:
+    """Tilt of a place by the load of coordinates per wind to east and north, (2, m), (2, 2)."""
+    east, north, _ = motion.rotation
+    return np.asarray(np.stack([-north, east]) / stiffness @ load.T)
+
+
 class OtherSensor(NamedTuple):
     """
     Another sensor on the tree: its name, its mounting, and its last samples, (n, 9).
@@ -176,13 +183,19 @@ class FoundMounting(NamedTuple):
 
 
 def _mounting(
-    sensed: Floats, computed: Floats, sensor: MotionSensor, windows: Windows, lags: LagRange
+    sensed: Floats,
+    computed: Floats,
+    sensor: MotionSensor,
+    windows: Windows,
+    lags: LagRange,
+    bend: Floats,
 ) -> FoundMounting:
-    """Find a mounting by samples (n, 9) and rows of the model, (12, n)."""
+    """Find a mounting by samples (n, 9), rows of the model, (12, n), and its lean by loads."""
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
+    sway = Sway(bend, 1.0 / (windows.period * windows.dt), windows.dt)
     sign, whole = 0.0, sensed
-    found = align(sensed, upright, free, *known)
+    found = align(sensed, upright, free, *known, sway=sway)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
     if not lag and found.problem != TELLS_LITTLE:
@@ -191,7 +204,7 @@ def _mounting(
         if found.has_gravity and np.isfinite(sensed[:, :3]).all():
             # Of opposite sign, a lean is mirrored.
             rival_sign = -math.copysign(1.0, found.scale[0])
-            rival = align(sensed, upright, free, *known, rival_sign)
+            rival = align(sensed, upright, free, *known, rival_sign, sway)
             other = _slow_lag(rival.motion(sensed), model, windows, lags)
             if other.evidence > left.evidence + _MIRRORED:
                 found, left, sign = rival, other, rival_sign
@@ -202,10 +215,7 @@ def _mounting(
     if lag:
         later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known, sign)
-    is_free = found.has_gravity and sensor.place.facing is None and not found.problem
-    if is_free and left.turn_error < found.azimuth_error:
-        found = found.turned(-left.turn, left.turn_error)
+        found = align(sensed, upright, free, *known, sign, sway)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
@@ -213,8 +223,8 @@ def _mounting(
         model = upright if found.has_gravity else free
         moved = found.motion(sensed)
         bias = (moved - model).mean(axis=0)
-        frequency, pull = 1.0 / (windows.period * windows.dt), GRAVITY * found.has_gravity
-        where = other_lever(moved, model, frequency, windows.dt, pull)
+        pull = GRAVITY * found.has_gravity
+        where = other_lever(moved, model, sway.frequency, windows.dt, pull)
         found = replace(found, notes=(*found.notes, *filter(None, [where])))
     left_for: float | None = None
     said = ''
@@ -363,6 +373,8 @@ class SensorTrack:
     ) -> None:
         self.sensor, self._dt, self.reach = sensor, dt, reach
         self.alignment: Alignment | None = None
+        self.bend = np.eye(2)
+        """Lean of its place per load to east and north, of any unit (`lean_per_load`), (2, 2)."""
         self.tells_little = False
         """Whether it is in use, and tells too little of any coordinate to correct the tree."""
         self._mounting = np.zeros(21)
@@ -511,7 +523,8 @@ class SensorTrack:
         self._next_fit = math.ceil(_LATER * self.native.count)
         sensed, computed = self._remembered()
         lags = lags._replace(left_for=self._left_for)
-        return partial(_mounting, sensed, computed.T.copy(), self.sensor, self._windows, lags)
+        model = computed.T.copy()
+        return partial(_mounting, sensed, model, self.sensor, self._windows, lags, self.bend)
 
     @property
     def window(self) -> int:

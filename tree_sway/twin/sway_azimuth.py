@@ -1,0 +1,146 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Which way a sensor faces, from its lean in slow gusts and from the ellipse of its sway.
+
+The wind that is known tells some of the slow lean, x, which reaches a sensor, y, turned by an
+angle and less of it the faster. The rest n is that of gusts which the anemometer does not meet::
+
+    R(angle) y(f) = b exp(-a |f|) x(f) + n(f)
+
+Gusts load a tree by ``2 U u`` along the mean wind and by ``U v`` across it, so that n is an
+ellipse, the longer axis of which the mean lean of the model tells: G G' + (k - 1) l l', where G is
+the lean per load to east and north, and l that in the mean wind. It tells an axis whatever the
+distance of the anemometer; x tells which of its ends is which.
+
+The covariance of n in a band of frequencies is taken to be of a Wishart distribution about that
+ellipse (Gupta & Nagar 2000, *Matrix Variate Distributions*, 3.4), of any size, so that a tree
+whose own ellipse is another is not sure of a wrong angle. The probabilities of angles are sums
+over all a and b.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Complexes, Floats
+
+_EDGES = (0.0, 0.06, 0.12, 0.25, 0.45, 0.75, 1.4)
+"""Edges of the bands, over the first frequency [-]."""
+
+_LONGER = 4.0
+"""Power of the load of gusts along the mean wind over that across it, k [-]."""
+
+_KNOWN = 5.0
+"""How well the ellipse is known, as that of so many lines of a spectrum."""
+
+_LOSSES = (0.0, 5.0, 20.0)
+_GAINS = {0.0: 1.0, 0.25: 2.0, 0.5: 3.0, 1.0: 4.0, 2.0: 2.0}
+"""
+Values of a in [s], and of b with their weights [-]: a sensor whose lean has nothing of the wind
+has both ends of its axis, and all that are right are found later the more that counts.
+"""
+
+_ANGLES = np.radians(np.arange(-180.0, 180.0, 4.0))
+_TAPERED, _WIDTH, _LEAST_WIDTH = 0.1, 0.3, 4
+_MOST_NOISE, _LEAST_NOISE = 0.95, 0.01
+_LEAST_ERROR = 0.03
+"""Least error of an angle [rad], half a step of the angles."""
+
+
+class Sway(NamedTuple):
+    """
+    What is known of the sway of a place.
+
+    ``bend`` is its lean per load to east and north, of any unit, (2, 2), ``frequency`` the first
+    one of the tree [Hz], and ``dt`` a step [s].
+    """
+
+    bend: Floats
+    frequency: float
+    dt: float
+
+
+def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tuple[float, float]:
+    """
+    Find the angle from east to north by which a motion is to be turned, and its error [rad].
+
+    Motions are leans to east and north, of the sensor and of the model from its rest, (n, 2);
+    ``noise`` is the deviation of that of the sensor.
+    """
+    count, frequency = len(moved), sway.frequency
+    fade = np.minimum((np.arange(count) + 0.5) / (_TAPERED * count), 1.0)[:, None]
+    fade = 0.5 - 0.5 * np.cos(np.pi * np.minimum(fade, fade[::-1]))
+    seconds = count * sway.dt
+    lines = np.arange(1, min(int(_EDGES[-1] * frequency * seconds), count // 2) + 1)
+    y, x = (
+        np.fft.rfft(fade * (each - each.mean(axis=0)), axis=0)[lines] for each in (moved, model)
+    )
+    sums = np.concatenate([[0.0], np.cumsum(np.square(np.abs(y)).sum(axis=1))])
+    width = np.maximum(_LEAST_WIDTH, _WIDTH * lines).astype(int)
+    first, last = np.maximum(lines - 1 - width, 0), np.minimum(lines + width, len(lines))
+    power = np.maximum((sums[last] - sums[first]) / (last - first), 1e-300)
+    noisy = np.clip(2.0 * noise**2 * np.square(fade).sum() / power, _LEAST_NOISE, _MOST_NOISE)
+    y, x = (each / np.sqrt(power)[:, None] for each in (y, x))
+    ellipse = _ellipse(sway.bend, model.mean(axis=0))
+    turn = np.array([[np.cos(_ANGLES), -np.sin(_ANGLES)], [np.sin(_ANGLES), np.cos(_ANGLES)]])
+    found = np.zeros((len(_LOSSES), len(_GAINS), len(_ANGLES)))
+    for low, high in pairwise(_EDGES):
+        inside = slice(
+            *(np.searchsorted(lines, [e * frequency * seconds for e in (low, high)], 'right'))
+        )
+        n = len(lines[inside])
+        if not n:
+            continue
+        share = float(noisy[inside].mean())
+        whitened = np.linalg.inv((1.0 - share) * ellipse + 0.5 * share * np.eye(2))
+        own = np.einsum('ija,jk,lka->ila', turn, _products(y[inside], y[inside]), turn)
+        own += _LEAST_NOISE**2 * n * np.eye(2)[..., None]
+        for i, loss in enumerate(_LOSSES):
+            told = x[inside] * np.exp(-loss / seconds * lines[inside, None])
+            shared = np.einsum('ija,jk->ika', turn, _products(y[inside], told))
+            shared = shared + shared.swapaxes(0, 1)
+            alone = _products(told, told)[..., None]
+            for j, gain in enumerate(_GAINS):
+                left = own - gain * shared + gain**2 * alone
+                trace = np.einsum('ij,ija->a', whitened, left)
+                size = left[0, 0] * left[1, 1] - left[0, 1] ** 2
+                found[i, j] += _of_any_size(trace, size * np.linalg.det(whitened), n)
+    weights = np.array(list(_GAINS.values()))
+    chance = np.einsum('ija,j->a', np.exp(found - found.max()), weights)
+    chance /= chance.sum()
+    best = float(_ANGLES[np.argmax(chance)])
+    away = np.angle(np.exp(1j * (_ANGLES - best)))
+    near = chance * (np.abs(away) < 0.5 * np.pi)
+    best += float(near @ away / near.sum())
+    away = np.angle(np.exp(1j * (_ANGLES - best)))
+    return best, math.hypot(_LEAST_ERROR, math.sqrt(float(chance @ np.square(away))))
+
+
+def _ellipse(bend: Floats, lean: Floats) -> Floats:
+    """Return the expected covariance of the lean, of trace 1, by the mean lean, (2, 2)."""
+    load = float(np.linalg.norm(np.linalg.pinv(bend, rcond=0.05) @ lean))
+    along = lean / max(load, 1e-300)
+    found = bend @ bend.T + (_LONGER - 1.0) * np.outer(along, along)
+    return np.asarray(found / max(float(np.trace(found)), 1e-300))
+
+
+def _products(one: Complexes, other: Complexes) -> Floats:
+    """Sum the products of lines, (2, 2)."""
+    return np.asarray((one.T @ other.conj()).real)
+
+
+def _of_any_size(trace: Floats, det: Floats, n: int) -> Floats:
+    """
+    Logarithm of the likelihood of the products of n lines over those expected, of any size.
+
+    It is ``2 k ln s - (n + k) ln (s^2 + s trace + det)`` at the likeliest size s, k = `_KNOWN`.
+    """
+    det, less = np.maximum(det, 1e-9 * np.square(trace)), (n - _KNOWN) * trace
+    size = (np.sqrt(np.square(less) + 16.0 * _KNOWN * n * det) - less) / (4.0 * n)
+    square = np.square(size) + size * trace + det
+    return np.asarray(2.0 * _KNOWN * np.log(size) - (n + _KNOWN) * np.log(square))
