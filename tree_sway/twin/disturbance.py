@@ -23,6 +23,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.drag import drag_density
+from tree_sway.core.rotation import about_up
 from tree_sway.core.setup import base_motion, own_motion
 from tree_sway.core.wind.gusts import DECAY, limbs_of, N_DELAYS, parts_of
 
@@ -49,6 +50,12 @@ _SLOPE = 1.5
 Slope of the drag by the wind, mean over the two directions across the flow, over drag per speed:
 2 along the wind and 1 across it.
 """
+
+ALONG, ACROSS = 4.0 / 3.0, 2.0 / 3.0
+"""These slopes along the wind and across it, over their mean."""
+
+_LATERAL = 0.8
+"""Deviation of gusts across the mean wind over that along it [-] (IEC 61400-1)."""
 
 _PROJECTOR = [0, 3, 4, 3, 1, 5, 4, 5, 2]
 
@@ -90,8 +97,14 @@ class Disturbance:
     reach: Floats
 
 
-def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
-    """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
+def disturbance(
+    simulator: SwaySimulator, speed: float, count: int, heading: float | None = None
+) -> Disturbance:
+    """
+    Find the unknown forces on a number of coordinates in a mean wind [m/s].
+
+    It goes to a heading from east to north [rad], or anywhere.
+    """
     n_all = simulator.banks[0].oscillators.shapes.shape[1]
     slopes, moved = _branch_slopes(simulator, speed, n_all)
     drag = np.tensordot(slopes, moved, axes=((0, 1), (0, 1)))
@@ -102,8 +115,8 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     frequency = float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
     variance = np.square(GUST * speed)
-    covariance = variance * _forces_by(limbs.slopes, _SHARED + shared)
-    apart = _forces_by(limbs.slopes, np.eye(len(between)))
+    covariance = variance * _forces_by(limbs.slopes, _SHARED + shared, heading)
+    apart = _forces_by(limbs.slopes, np.eye(len(between)), heading)
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     return Disturbance(
         covariance,
@@ -142,10 +155,14 @@ def _limbs(simulator: SwaySimulator, slopes: Floats) -> _Limbs:
     return _Limbs(_summed(slopes, limb, n_limbs), middle, reach)
 
 
-def _forces_by(slopes: Floats, correlation: Floats) -> Floats:
+def _forces_by(slopes: Floats, correlation: Floats, heading: float | None) -> Floats:
     """Covariance of forces by winds of limbs, slopes (l, 3, m), with a correlation, (l, l)."""
     found = np.zeros((slopes.shape[2], slopes.shape[2]))
-    for variance, along in zip((1.0, 1.0, _LIFT), slopes.swapaxes(0, 1), strict=True):
+    variances = 1.0, 1.0, _LIFT
+    if heading is not None:
+        variances = ALONG**2, (ACROSS * _LATERAL) ** 2, _LIFT
+        slopes = np.einsum('ij,ljm->lim', about_up(-heading), slopes)
+    for variance, along in zip(variances, slopes.swapaxes(0, 1), strict=True):
         forces = along.T @ correlation @ along
         found += variance * forces
     return found

@@ -12,17 +12,18 @@ the tree sways in the wind alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, SwayLaw, told_shares
-from tree_sway.twin.unknown_motion import UnknownMotion
+from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
 
 NOISE = 1.0
 """Noise for which gains are found, over the noise of the sensors."""
@@ -32,6 +33,9 @@ _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 Shares of the variance of a coordinate that the sensors take away below and above which its
 correction is not applied, and applied whole.
 """
+
+_LATER = 1.4
+"""How much more of its motion there is when the strength of the gusts is found again."""
 
 _DUE = 45
 """Steps after which new gains are in use."""
@@ -73,6 +77,7 @@ class GainDesign:
         self._unknown, self._tracks, self._places = unknown, tracks, places
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
+        self._again_after = 0
         self.used: tuple[int, ...] = ()
         """Sensors for which gains are found, and which are all in use."""
 
@@ -82,7 +87,8 @@ class GainDesign:
         if not in_use:
             self.stop()
             return None
-        if self._work is None and in_use == self.used and not self._unknown.is_outdated:
+        is_known = in_use == self.used and not self._unknown.is_outdated
+        if self._work is None and is_known and self._n_seen(in_use) < self._again_after:
             return None
         if self._work is None or in_use != self._wanted:
             self._wanted, self._work = in_use, self._begin(in_use)
@@ -95,14 +101,40 @@ class GainDesign:
         """Give up what was found."""
         self.used, self._work = (), None
 
+    def _n_seen(self, used: tuple[int, ...]) -> int:
+        """Count the steps of the sensor that has seen most of some."""
+        return int(max(self._tracks[k].native.count for k in used))
+
     def _begin(self, used: tuple[int, ...]) -> LaterWork[Gains]:
         """Begin to find the gains of some sensors."""
-        law, apart = self._unknown.find(), self._unknown.apart
+        unknown = self._unknown
+        law, apart, forces = unknown.find(), unknown.apart, unknown.forces
         assert apart is not None
+        assert forces is not None
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
-        return LaterWork(partial(_gains, used, law, apart, sensed, noise), _DUE)
+        count = round(COMPARED / unknown.dt)
+        self._again_after = round(min(_LATER * self._n_seen(used), self._n_seen(used) + count))
+        beyond = [
+            BeyondModel(self._tracks[k].beyond(count), rows[:2].reshape(2, 3, -1), float(each[0]))
+            for k, (rows, each) in zip(used, found, strict=True)
+        ]
+        usual = UsualLaw(
+            unknown.stiffness.copy(),
+            unknown.damped,
+            unknown.usual_before * forces.covariance,
+            forces.time_constant,
+            unknown.frequency,
+            unknown.dt,
+        )
+
+        def found_later() -> Gains:
+            strength = strength_of(beyond, usual)
+            own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
+            return _gains(used, own, others, sensed, noise)
+
+        return LaterWork(found_later, _DUE)
 
     def felt(self, which: int) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""

@@ -44,7 +44,7 @@ from tree_sway.core.drag import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.oscillators import held_propagator
 from tree_sway.core.species import WOOD_SPREAD
 from tree_sway.core.wind.gusts import FarWind, N_DELAYS, SAMPLES, USUAL_COHERENCE
-from tree_sway.twin.disturbance import GUST, part_slopes
+from tree_sway.twin.disturbance import ACROSS, ALONG, GUST, part_slopes
 
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
@@ -62,9 +62,6 @@ _LEAST_FAST = 0.04
 Least deviation of fast gusts over the mean wind [-], where an anemometer averages them away: a
 sixth of the variance of a turbulence of 0.1, the least over open land.
 """
-
-_ALONG, _ACROSS = 4.0 / 3.0, 2.0 / 3.0
-"""Slopes of the drag along the wind and across it, over the mean that `disturbance` takes."""
 
 _AVERAGED = 30.0
 """Time over which the variance of fast gusts is averaged [s]."""
@@ -294,15 +291,15 @@ class Members:
         speed = math.hypot(*self._slow)
         ahead = self._slow / max(speed, 1e-9)
         along = apart[:, :2] @ ahead
-        winds = _ACROSS * apart
-        winds[:, :2] += (_ALONG - _ACROSS) * np.outer(along, ahead)
+        winds = ACROSS * apart
+        winds[:, :2] += (ALONG - ACROSS) * np.outer(along, ahead)
         by_axis = winds.T.ravel()
         found = self._per_delay @ by_axis
         return np.asarray(found.reshape(self._count, _N_MEMBERS))
 
     def _far_gusts(self, wind: FarWind) -> Floats:
         """Find forces of what is drawn beside the expected wind, a stretch for each, (n, e)."""
-        winds = wind.others(self._offsets, _ALONG, _ACROSS)
+        winds = wind.others(self._offsets, ALONG, ACROSS)
         by_member = winds.reshape(_N_MEMBERS, -1)
         found = self._per_part @ by_member.T
         return np.asarray(found * self._drag)

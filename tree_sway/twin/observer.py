@@ -190,7 +190,7 @@ class Observer:
 
         """
         self._step += 1
-        self.unknown.note_wind(math.hypot(*wind))
+        self.unknown.note_wind(*wind)
         at = self._readings.read(time, self._step, self._done)
         if at >= 0:
             self._fit.note(wind[0], wind[1])

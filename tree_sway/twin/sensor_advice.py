@@ -67,7 +67,7 @@ def advised_places(simulator: SwaySimulator, count: int, speed: float = 7.0) -> 
     n = min(_MOST_COORDINATES, simulator.banks[0].oscillators.shapes.shape[1])
     with one_thread():
         unknown = UnknownMotion(simulator, n, _DT)
-        unknown.note_wind(speed)
+        unknown.note_wind(0.0, 0.0, speed)  # from anywhere
         law = unknown.find()
         slopes = tip_slopes(simulator)[:, :, :n].reshape(-1, n)
         weight = slopes.T @ slopes

@@ -538,6 +538,20 @@ class SensorTrack:
         memory = self._sensed[: min(n, size)], self._computed[: min(n, size)]
         return np.roll(memory[0], -first, axis=0), np.roll(memory[1], -first, axis=0)
 
+    def beyond(self, most: int) -> Floats:
+        """
+        Return what it measured beyond the model to east and north, (n, 2), in the last steps.
+
+        It is that of the first quantity it is used for, of a number of steps at most.
+        """
+        assert self.alignment is not None
+        count = self.native.count
+        rows = np.arange(max(count - min(most, len(self._sensed)), 0), count) % len(self._sensed)
+        model = as_felt(self._computed[rows].T, has_gravity=self.alignment.has_gravity).T
+        first = self.picked.start
+        moved = self.alignment.motion(self._sensed[rows]) - model
+        return moved[:, first : first + 2]
+
     def note_step(self, step: int) -> None:
         """Note by how many steps it is behind; if by more than before, some are missing."""
         if (behind := step - self.native.count) != self._behind:

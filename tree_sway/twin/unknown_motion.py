@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,14 +19,22 @@ if TYPE_CHECKING:
 _RECENT = 30.0
 """Time constant of the mean wind in [s]."""
 
-_SLOWEST_WIND = 0.5
+_STEADY = 0.5
+"""Mean of the wind over its mean speed above which it has a direction."""
+
+COMPARED = 120.0
+"""Time in [s] over which the power of the forces is compared with the usual one."""
+
+_SLOWEST_WIND = 0.4
 """
 Least mean wind in [m/s] for which a law is found: by that of a stronger wind, a tree in a calm
 follows the noise of its sensors.
 """
 
-_OTHER_WIND = 1.6
-"""Ratio of mean winds from which another law is found."""
+_OTHER_WIND, _SAME_WAY = 1.6, 0.85
+"""
+Ratio of mean winds from which another law is found, and the cosine between them below which it is.
+"""
 
 _STIFFER, _MORE_DAMPED = 0.03, 0.2
 """Changes of the logarithms of stiffness and damping from which another law is found."""
@@ -47,11 +56,15 @@ class UnknownMotion:
     """
 
     def __init__(self, simulator: SwaySimulator, count: int, dt: float) -> None:
-        self._simulator, self._dt, self.count = simulator, dt, count
+        self._simulator, self.dt, self.count = simulator, dt, count
+        self.frequency = float(simulator.frequencies(1)[0])
+        """First frequency of the model [Hz]."""
         self._steps = 0
         self.mean_speed = 0.0
         """Mean speed of the wind in [m/s]."""
+        self._east = self._north = self._fourth = 0.0
         self._found_for = 0.0
+        self._way = 0.0, 0.0
         self.forces: Disturbance | None = None
         """What the wind does not tell, in the wind of the last law; None before any."""
         self._law: SwayLaw | None = None
@@ -85,30 +98,52 @@ class UnknownMotion:
                 return
         self._found_for = 0.0
 
-    def note_wind(self, speed: float) -> None:
-        """Follow the mean speed of the wind [m/s]."""
+    def note_wind(self, east: float, north: float, up: float = 0.0) -> None:
+        """Follow the mean wind [m/s]."""
         self._steps += 1
-        share = self._dt / _RECENT
-        if self._steps * self._dt < _RECENT:
-            share = 1.0 / self._steps
-        self.mean_speed += share * (speed - self.mean_speed)
+        recent, longer = (
+            max(self.dt / each, 1.0 / self._steps) for each in (_RECENT, 0.5 * COMPARED)
+        )
+        speed = math.sqrt(east * east + north * north + up * up)
+        self.mean_speed += recent * (speed - self.mean_speed)
+        self._fourth += longer * (self.mean_speed**4 - self._fourth)
+        self._east += recent * (east - self._east)
+        self._north += recent * (north - self._north)
 
     @property
     def is_outdated(self) -> bool:
         """Whether the law was found for another wind, or for another tree."""
         speed = max(self.mean_speed, _SLOWEST_WIND)
+        size = math.hypot(self._east, self._north)
+        along = self._east * self._way[0] + self._north * self._way[1]
+        if self._is_steady and along < _SAME_WAY * size:
+            return True
         return not 1.0 / _OTHER_WIND < speed / max(self._found_for, 1e-9) < _OTHER_WIND
+
+    @property
+    def _is_steady(self) -> bool:
+        """Whether the wind keeps to one direction."""
+        return math.hypot(self._east, self._north) > _STEADY * self.mean_speed
+
+    @property
+    def usual_before(self) -> float:
+        """Power of the forces in the wind of `COMPARED` over that in the wind of the law."""
+        return max(self._fourth, _SLOWEST_WIND**4) / self._found_for**4
 
     def find(self) -> SwayLaw:
         """Find the law in the present wind."""
         speed = max(self.mean_speed, _SLOWEST_WIND)
         self._found_for, n = speed, self.count
-        found = self.forces = disturbance(self._simulator, speed, n)
+        heading = None
+        if self._is_steady:
+            heading = math.atan2(self._north, self._east)
+            self._way = math.cos(heading), math.sin(heading)
+        found = self.forces = disturbance(self._simulator, speed, n, heading)
         self._found_with = (self.all_stiffness, self.all_damping)
         self.air_damping[:] = found.air_damping
         self.damped = self.all_damping[:n] + found.air_damping
         self._law, self.apart = (
-            sway_law(self.stiffness, self.damped, each, found.time_constant, self._dt)
+            sway_law(self.stiffness, self.damped, each, found.time_constant, self.dt)
             for each in (found.covariance, found.apart)
         )
         self._variance = None
