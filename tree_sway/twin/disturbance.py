@@ -7,7 +7,8 @@ An anemometer measures one place, and limbs apart from each other meet gusts of 
 places r apart share gusts of a frequency f by the root coherence ``exp(-C f r / U)``, C near 8
 (Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211): of those that
 shake a tree at its first frequency, a mast some metres away tells nothing. The wind of each limb
-is therefore unknown, correlated among limbs by that law at the first frequency of the tree.
+is therefore unknown. Most of the motion is a lean in gusts that are slower than a quarter of that
+frequency, and limbs share the unknown wind by that law at this quarter.
 
 Its spectrum is that of gusts (Kaimal et al. 1972, same journal 98, 563-589), ``4 s^2 T / (1 + 6 f
 T)^(5/3)`` with T = L / U. A first-order process ``4 s^2 t / (1 + (2 pi f t)^2)`` with t = 0.31 T
@@ -39,8 +40,8 @@ _LENGTH = 60.0
 _SHORTER = 0.31
 """Time constant of the first-order process over L / U [-]."""
 
-_SHARED = 0.1
-"""Variance of an unknown wind of the whole crown over that of a limb [-]."""
+_LEAN = 0.25
+"""Frequency whose coherence limbs have, over the first one of the tree [-]."""
 
 _LIFT = 0.3
 """Variance of the vertical unknown wind over that of the horizontal one [-]."""
@@ -112,10 +113,10 @@ def disturbance(
     limbs = _limbs(simulator, slopes[:, :, :count])
 
     between = np.linalg.norm(limbs.middle[:, None] - limbs.middle, axis=2)
-    frequency = float(simulator.frequencies(1)[0])
+    frequency = _LEAN * float(simulator.frequencies(1)[0])
     shared = np.exp(-DECAY * frequency / max(speed, 1.0) * between)
     variance = np.square(GUST * speed)
-    covariance = variance * _forces_by(limbs.slopes, _SHARED + shared, heading)
+    covariance = variance * _forces_by(limbs.slopes, shared, heading)
     apart = _forces_by(limbs.slopes, np.eye(len(between)), heading)
     scale = np.sqrt(np.diag(covariance) / np.maximum(np.diag(apart), 1e-300))
     return Disturbance(

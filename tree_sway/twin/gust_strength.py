@@ -79,7 +79,7 @@ def strength_of(sensors: Sequence[BeyondModel], law: UsualLaw) -> float:
 def _powers(sensor: BeyondModel, law: UsualLaw, low: float, high: float) -> tuple[float, float]:
     """Power in a band that a sensor measured beyond its noise, and that expected."""
     count = len(sensor.motion)
-    hertz = np.fft.rfftfreq(count, law.dt)
+    hertz = np.fft.rfftfreq(max(count, 1), law.dt)
     first, last = np.searchsorted(hertz, [low * law.frequency, high * law.frequency]).tolist()
     if first == last:
         return 0.0, 0.0
