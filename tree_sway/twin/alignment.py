@@ -51,8 +51,11 @@ _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
 _WITHOUT = 'acceleration without gravity'
-_OPPOSITE = 6.0
-"""Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign."""
+_OPPOSITE = 10.0
+"""
+Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign: leans of
+few gusts resemble their mirror images by chance.
+"""
 
 _SIGNS = {
     (-1.0, 1.0): 'acceleration of the opposite sign',

@@ -45,6 +45,9 @@ _LESS_SURE = 1.5
 Error of the azimuth over that before, from which the mounting before is kept. One of other units
 must be surer: in a calm noise is 57 times the rate of the tree.
 """
+_OTHER = 3.0
+"""Angle between two mountings over its error from which they are different ones."""
+
 _ABSENT_AFTER = 1.0
 _MEAN_EVERY = 30.0
 """
@@ -613,6 +616,12 @@ class SensorTrack:
         known = self.alignment
         if known is None:
             return False
+        angle = math.acos(
+            min(max(0.5 * (float(np.vdot(found.turn, known.turn)) - 1.0), -1.0), 1.0)
+        )
+        is_other = angle > _OTHER * math.hypot(found.azimuth_error, known.azimuth_error)
+        if is_other and self.native.count <= len(self._sensed):
+            return False  # it is of all that the present one is of, and of more
         has_its_units = np.allclose(np.abs(found.scale), np.abs(known.scale))
         if not has_its_units:
             return found.azimuth_error >= known.azimuth_error
