@@ -53,8 +53,8 @@ _NO_GRAVITY = 0.4
 _WITHOUT = 'acceleration without gravity'
 _OPPOSITE = 10.0
 """
-Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign: leans of
-few gusts resemble their mirror images by chance.
+Logarithm of the likelihoods from which an acceleration is believed to be of opposite sign: leans
+of few gusts resemble their mirror images by chance.
 """
 
 _SIGNS = {
