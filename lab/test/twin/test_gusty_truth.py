@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.signal import coherence
-from tree_sway_lab.twin.gust_field import GustField, spread_points
+from tree_sway_lab.twin.gust_field import GustField, OtherField, spread_points
 from tree_sway_lab.twin.gusty_truth import gusty_motion, Outside
 from tree_sway_lab.twin.trial import plain_score
 from tree_sway_lab.twin.true_tree import tree_called
@@ -35,6 +35,20 @@ def test_gusts_travel_with_the_mean_wind() -> None:
     lags = np.arange(60)
     alike = [np.mean(wind[:5900, 0] * wind[lag : 5900 + lag, 2]) for lag in lags]
     assert lags[int(np.argmax(alike))] / RATE == pytest.approx(20.0 / 7.0, abs=0.4)
+
+
+def test_other_gusts_go_another_way_and_are_weaker_near_the_ground() -> None:
+    places = np.array([[0.0, 0.0, 10.0], [0.0, 0.0, 1.0]])
+    field = OtherField(places, intensity=0.2, heading=np.deg2rad(120.0))
+    wind = field.record(3000.0, RATE, np.random.default_rng(6))
+    mean = wind.mean(axis=0)
+    wanted = 7.0 * np.outer([1.0, 0.1**0.2], [-0.5, np.sqrt(0.75), 0.0])
+    np.testing.assert_allclose(mean, wanted, atol=1e-9)
+    along = (wind - mean)[:, 0] @ wanted[0] / 7.0
+    assert along.std() == pytest.approx(1.4, rel=0.03)
+    fast = np.array([2.0])
+    kaimal = GustField(places, intensity=0.2).spectrum(fast)
+    assert field.spectrum(fast)[0, 0] == pytest.approx(0.57 * kaimal[0, 0], rel=0.05)
 
 
 def test_points_represent_what_they_stand_for() -> None:

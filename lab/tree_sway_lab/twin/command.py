@@ -126,6 +126,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='place of the anemometer from the top of the tree in [m], x along the wind, without '
         '--easy (%(default)s)',
     )
+    add(
+        '--other-gusts',
+        type=float,
+        metavar='HEADING',
+        help='gusts by another law than the one that the model assumes, in a wind with a profile '
+        'that goes to a heading [deg] from east to north, without --easy',
+    )
     add('--in-leaf', action='store_true', help='in leaf; bare without it')
     add('--sensors', type=int, nargs='+', default=[0, 1, 2, 4], help='numbers (%(default)s)')
     add(
@@ -220,6 +227,9 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
         trees = drawn(around, arguments.drawn, in_leaf=in_leaf)
     frequency = float(known.frequencies(1)[0])
     scores: dict[str, list[Score]] = {}
+    other: dict[str, Any] = {}
+    if arguments.other_gusts is not None:
+        other = {'is_other': True, 'heading': float(np.deg2rad(arguments.other_gusts))}
     for each in trees:
         apart: dict[str, Any] = {}
         if arguments.easy:
@@ -231,6 +241,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
                 speed=each.speed,
                 seconds=each.seconds,
                 seed=each.seed,
+                **other,
             ).drawn(tree)
             factors = each if arguments.drawn else outside
             wood, damping, drag = factors.wood, factors.damping, factors.drag

@@ -9,19 +9,27 @@ Royal Meteorological Society 87, 194-211), ``t = sqrt((3 x)^2 + (10 y)^2 + (10 z
 the wind; and what they share reaches the one downwind ``x / U`` later (Taylor 1938). A record is
 drawn line by line of the spectrum, by the root of the matrix of cross spectra (Shinozuka &
 Deodatis 1991, Applied Mechanics Reviews 44, 191-204).
+
+The model knows that law. `OtherField` has another one: von Karman's spectra ``4 s^2 T / (1 + 70.8
+(f T)^2)^(5/6)`` (ESDU 85020), other decays, and less wind near the ground.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.rotation import about_up
 from tree_sway.core.wind import SCALE_RATIOS
 
-DECAYS = np.array([3.0, 10.0, 10.0])
+_DECAYS, _OTHER_DECAYS = (3.0, 10.0, 10.0), (5.0, 14.0, 9.0)
 """Davenport's C along the wind, across it and up [-]."""
+
+_SHEAR = 0.2
+"""Exponent of the profile of the mean wind over the height of the first place [-]."""
 
 _DEVIATIONS = np.array([1.0, 0.8, 0.5])
 """Deviations of u, v, w over that of u [-] (IEC 61400-1)."""
@@ -33,7 +41,7 @@ _BLOCK = 250
 @dataclass(frozen=True)
 class GustField:
     """
-    Turbulence about a mean wind along x.
+    Turbulence about a mean wind.
 
     Parameters
     ----------
@@ -45,13 +53,32 @@ class GustField:
         Deviation of u over the mean wind [-].
     length
         Integral length L of u in [m]; those of v and w are shorter as in IEC 61400-1.
+    heading
+        Direction that the wind goes to, from x to y [rad].
 
     """
+
+    decays: ClassVar[tuple[float, float, float]] = _DECAYS
 
     places: Floats
     speed: float = 7.0
     intensity: float = 0.3
     length: float = 60.0
+    heading: float = 0.0
+
+    @property
+    def along(self) -> Floats:
+        """Places along the wind, across it and up in [m], (p, 3)."""
+        return self.places @ about_up(self.heading)
+
+    def apart(self) -> Floats:
+        """Time t of every pair of places, whose root coherence is ``exp(-f t)``, [s], (p, p)."""
+        scaled = self.along * self.decays / self.speed
+        return np.asarray(np.linalg.norm(scaled[:, None] - scaled, axis=2))
+
+    def mean(self) -> Floats:
+        """Mean wind of every place along it in [m/s], (p,)."""
+        return np.full(len(self.places), self.speed)
 
     def spectrum(self, frequency: Floats) -> Floats:
         """One-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies [Hz], (f, 3)."""
@@ -62,12 +89,11 @@ class GustField:
 
     def coherence(self, frequency: Floats) -> Floats:
         """Root coherence of every pair of places, without travel, (f, p, p)."""
-        apart = (self.places[:, None] - self.places) * DECAYS / self.speed
-        return np.asarray(np.exp(-frequency[:, None, None] * np.linalg.norm(apart, axis=2)))
+        return np.asarray(np.exp(-frequency[:, None, None] * self.apart()))
 
     def travel(self, frequency: Floats) -> Floats:
         """Factors of each place's lateness, complex (f, p)."""
-        late = self.places[:, 0] / self.speed
+        late = self.along[:, 0] / self.speed
         return np.asarray(np.exp(-2j * np.pi * frequency[:, None] * late))
 
     def record(self, seconds: float, rate: float, rng: np.random.Generator) -> Floats:
@@ -93,8 +119,27 @@ class GustField:
         found = np.empty((round(seconds * rate), count, 3))
         for axis, each in enumerate(lines):
             found[..., axis] = np.fft.irfft(each, n, axis=0)[: len(found)]
-        found[..., 0] += self.speed
-        return found
+        found[..., 0] += self.mean()
+        return np.asarray(found @ about_up(self.heading).T)
+
+
+@dataclass(frozen=True)
+class OtherField(GustField):
+    """Turbulence by a law that the model does not assume."""
+
+    decays: ClassVar[tuple[float, float, float]] = _OTHER_DECAYS
+
+    def mean(self) -> Floats:
+        """Mean wind of every place along it in [m/s], (p,)."""
+        height = np.maximum(self.places[:, 2], 0.3)
+        return np.asarray(self.speed * (height / height[0]) ** _SHEAR)
+
+    def spectrum(self, frequency: Floats) -> Floats:
+        """One-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies [Hz], (f, 3)."""
+        time = self.length * SCALE_RATIOS / SCALE_RATIOS[0] / self.speed
+        variance = np.square(self.intensity * self.speed * _DEVIATIONS)
+        falling = (1.0 + 70.8 * np.square(frequency[:, None] * time)) ** (5.0 / 6.0)
+        return np.asarray(variance * 4.0 * time / falling)
 
 
 def spread_points(places: Floats, weight: Floats, count: int) -> Floats:

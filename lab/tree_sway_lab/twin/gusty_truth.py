@@ -19,6 +19,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.drag import DragLaw
+from tree_sway.core.rotation import about_up
 from tree_sway.core.run import SwaySimulator
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.settings import Settings
@@ -27,7 +28,7 @@ from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import place_on
 from tree_sway_lab.segments.articulated import ArticulatedTree
-from tree_sway_lab.twin.gust_field import DECAYS, GustField, nearest_of, spread_points
+from tree_sway_lab.twin.gust_field import GustField, nearest_of, OtherField, spread_points
 from tree_sway_lab.twin.true_tree import DT, pose_at, TrueMotion
 
 POINTS = 144
@@ -73,6 +74,10 @@ class Outside:
         Whether the wind is the mast's everywhere.
     points
         Places of the crown that have gusts of their own.
+    heading
+        Direction that the wind goes to, from east to north [rad].
+    is_other
+        Whether the gusts follow another law than the model's (`OtherField`).
 
     """
 
@@ -87,6 +92,8 @@ class Outside:
     seed: int = 101
     is_uniform: bool = False
     points: int = POINTS
+    heading: float = 0.0
+    is_other: bool = False
 
     def drawn(self, tree: Tree) -> Outside:
         """Draw the tree by the seed."""
@@ -103,14 +110,16 @@ class Outside:
         area = tree.length * (tree.base_diameter + tree.tip_diameter)
         points = spread_points(middle, area, self.points)
         near = nearest_of(middle, points) + 1
-        places = np.vstack([top_of(tree) + self.mast, points])
-        return GustField(places, self.speed, self.intensity), near
+        mast = about_up(self.heading) @ self.mast
+        places = np.vstack([top_of(tree) + mast, points])
+        kind = OtherField if self.is_other else GustField
+        return kind(places, self.speed, self.intensity, heading=self.heading), near
 
 
 def mast_of(outside: Outside) -> tuple[float, float]:
     """Return distance [m], 0.1 on top of the tree, and bearing [rad] of the mast."""
-    east, north, _ = outside.mast
-    return max(math.hypot(east, north), 0.1), math.atan2(east, north)
+    x, y, _ = outside.mast
+    return max(math.hypot(x, y), 0.1), math.atan2(y, x) + outside.heading
 
 
 def known_tree(
@@ -143,8 +152,8 @@ def told_wind(tree: Tree, outside: Outside, measured: Floats) -> Floats:
     area = tree.length * (tree.base_diameter + tree.tip_diameter)
     share = np.bincount(near, area, len(field.places)) / area.sum()
     frequency = np.fft.rfftfreq(2 * len(measured), DT)
-    apart = np.linalg.norm((field.places - field.places[0]) * DECAYS / field.speed, axis=1)
-    late = (field.places[:, 0] - field.places[0, 0]) / field.speed
+    apart, along = field.apart()[0], field.along[:, 0]
+    late = (along - along[0]) / field.speed
     told = np.exp(-frequency[:, None] * (apart + 2j * np.pi * late)) @ share
     mean = measured.mean(axis=0)
     lines = np.fft.rfft(measured - mean, 2 * len(measured), axis=0)
