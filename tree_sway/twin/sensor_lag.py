@@ -119,10 +119,15 @@ class SensorLag(NamedTuple):
     expected: float = np.inf
 
     @property
+    def is_long(self) -> bool:
+        """Whether enough motion was compared for a sensor to be left for what the wind tells."""
+        return self.motion >= _LONG
+
+    @property
     def is_by_chance(self) -> bool:
         """Whether the motion has nothing of the model's, long enough for that to be known."""
-        is_long = self.motion >= _LONG and self.expected > _EXPECTED * _CHANCE
-        return self.evidence < _CHANCE and is_long
+        can_tell = self.is_long and self.expected > _EXPECTED * _CHANCE
+        return self.evidence < _CHANCE and can_tell
 
     @property
     def is_sure(self) -> bool:
