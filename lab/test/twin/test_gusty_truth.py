@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import coherence
 from tree_sway_lab.twin.gust_field import GustField, OtherField, spread_points
-from tree_sway_lab.twin.gusty_truth import gusty_motion, Outside
+from tree_sway_lab.twin.gusty_truth import gusty_motion, mast_of, Outside
 from tree_sway_lab.twin.trial import plain_score
 from tree_sway_lab.twin.true_tree import tree_called
 
@@ -49,6 +49,13 @@ def test_other_gusts_go_another_way_and_are_weaker_near_the_ground() -> None:
     fast = np.array([2.0])
     kaimal = GustField(places, intensity=0.2).spectrum(fast)
     assert field.spectrum(fast)[0, 0] == pytest.approx(0.57 * kaimal[0, 0], rel=0.05)
+
+
+def test_a_mast_upwind_stands_where_the_wind_comes_from() -> None:
+    westerly = mast_of(Outside(mast=(-12.0, 0.0, 0.0)))
+    southerly = mast_of(Outside(mast=(-12.0, 0.0, 0.0), heading=0.5 * np.pi))
+    assert np.rad2deg(westerly[1]) % 360.0 == pytest.approx(270.0)
+    assert np.rad2deg(southerly[1]) % 360.0 == pytest.approx(180.0)
 
 
 def test_points_represent_what_they_stand_for() -> None:

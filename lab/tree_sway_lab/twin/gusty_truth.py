@@ -118,8 +118,8 @@ class Outside:
 
 def mast_of(outside: Outside) -> tuple[float, float]:
     """Return distance [m], 0.1 on top of the tree, and bearing [rad] of the mast."""
-    x, y, _ = outside.mast
-    return max(math.hypot(x, y), 0.1), math.atan2(y, x) + outside.heading
+    east, north, _ = (about_up(outside.heading) @ outside.mast).tolist()
+    return max(math.hypot(east, north), 0.1), math.atan2(east, north)
 
 
 def known_tree(
