@@ -51,7 +51,12 @@ class Drawn(NamedTuple):
 
 @pytest.fixture(scope='module')
 def film(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
-    """Draw a spruce in a wind that swells and falls; the film begins again where it ends."""
+    """
+    Draw a spruce in a wind that swells and falls; the film begins again where it ends.
+
+    The clicks are those of a tree at rest, and the page takes its first picture at any moment of
+    the film: the sway of 5 px is about the width of the wood.
+    """
     cv2 = pytest.importorskip('cv2', reason='needs OpenCV: pip install .[camera]')
     tree = spruce()
     true = make_simulator(tree)
@@ -59,7 +64,7 @@ def film(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     for k in range(3 * PERIOD * FILM_RATE):
         for half in range(2):
             turn = 2.0 * np.pi * (k + 0.5 * half) / (PERIOD * FILM_RATE)
-            true.step([7.0 + 7.0 * np.sin(turn), 0.0, 0.0], 0.5 / FILM_RATE)
+            true.step([4.0 + 4.0 * np.sin(turn), 0.0, 0.0], 0.5 / FILM_RATE)
         if k >= 2 * PERIOD * FILM_RATE:
             tips.append(true.tip_displacement)
             drawn = cv2.cvtColor(picture(cv2, tree, true.place()), cv2.COLOR_GRAY2BGR)
@@ -259,6 +264,40 @@ def test_a_camera_that_is_taken_away_and_a_closed_page_are_told(page: Page) -> N
         assert time.monotonic() < end
         time.sleep(0.02)
     assert page.session.failure is None
+
+
+def test_a_slow_drawing_leaves_every_other_frame_to_the_camera(page: Page) -> None:
+    async def count(browser: Browser) -> tuple[int, int]:
+        """Return a number of frames, and in how many of them the tree was drawn."""
+        await browser.run(
+            """(() => {
+              window.frames = window.drawn = 0;
+              requestAnimationFrame(function count() {
+                frames += 1;
+                if (drawn < 30) requestAnimationFrame(count);
+              });
+            })()"""
+        )
+        await browser.until('drawn >= 30', DEADLINE)
+        frames, drawn = await browser.run('[frames, drawn]')
+        return frames, drawn
+
+    async def script(browser: Browser) -> None:
+        await browser.run(
+            """treeSway.scene.draw = () => {
+              window.drawn += 1;
+              for (const end = performance.now() + 60; performance.now() < end;);
+            }"""
+        )
+        await browser.until('0 < treeSway.fps && treeSway.fps < 20', DEADLINE)
+        frames, drawn = await count(browser)
+        assert frames <= drawn + 2
+        await start(browser)
+        await browser.until('treeSway.hands.film?.video?.videoWidth', DEADLINE)
+        frames, drawn = await count(browser)
+        assert 1.8 * drawn < frames < 2.2 * drawn
+
+    visit(page, script, *_FLAGS)
 
 
 def test_a_second_camera_is_ended_and_told(page: Page) -> None:

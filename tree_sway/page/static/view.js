@@ -12,6 +12,8 @@ import { language, sentences, setLanguage, windFrom, windSource, word } from "./
 
 /** Interval at which numbers are written [ms]. */
 const FACTS_EVERY = 400;
+/** Drawings per second below which every other frame is left to the visitor's camera. */
+const FEW = 25;
 const DAYS = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 
 /** A whole number in groups of three digits, apart by a thin space: a comma or point is a decimal one elsewhere.
@@ -41,6 +43,8 @@ export class View {
     this.time = 0;
     this.day = DAYS[0];
     this._lastDrawn = 0;
+    /** Whether the last frame was left to the camera. */
+    this._skips = false;
     /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
     this._since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
     scene.camera.room = () => this._room();
@@ -188,6 +192,8 @@ export class View {
     const { scene, stream, state, traces, hands } = this;
     const { playout } = stream;
     if (hands.headset?.session) return;
+    // Pictures of the camera come with the frames, and without a graphics unit a frame waits for the drawing before it.
+    if (hands.film?.video && this.fps < FEW && (this._skips = !this._skips)) return;
     const coordinates = stream.sample();
     const isStill = playout.isPaused || playout.back > 0;
     scene.wind = playout.wind;
