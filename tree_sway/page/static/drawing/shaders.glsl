@@ -590,16 +590,20 @@ vec4 treeRow(vec3 way, float round, float seed) {
   return best;
 }
 #endif
-// Blades of grass as they stand before each other, towards the eye: across and along the way of sight.
-float blades(vec2 p, float far, float size) {
-  float up = log(far) * (eye.z - ground) / (4.0 * size);
-  float level = log2(far / size);
-  float turn = atan(p.y, p.x);
+// Brightness of blades that stand in rows, at a place from below the eye over its height.
+float blades(vec2 p, float size) {
+  float turn = atan(p.y, p.x) / size / size;
+  float at = inversesqrt(length(p) + 1e-6) / size; // in rows
   float sum = 0.0;
-  for (float part = 0.0; part < 2.0; part++) {
-    float wide = exp2(floor(level) + part);
-    float share = part > 0.5 ? fract(level) : 1.0 - fract(level);
-    sum += share * noise(vec2(turn * wide, up + 7.0 * (floor(level) + part)));
+  for (float row = ceil(at); row < at + 4.0; row++) {
+    vec2 q = vec2(turn / row, row);
+    float high = 0.25 * (row - at);
+    float tuft = noise(0.4 * q);
+    q.x += 8.0 * high * high * (tuft - 0.5);
+    float own = hash(floor(q));
+    high -= 0.25 * own;
+    float edge = 0.5 - 0.5 * high / (0.2 + 0.4 * tuft + 0.4 * fract(9.0 * own)) - abs(fract(q.x) - 0.5);
+    sum = mix(sum, high + 0.6 * fract(33.0 * own), smoothstep(-0.1, 0.1, edge));
   }
   return sum - 0.5;
 }
@@ -620,16 +624,13 @@ void main() {
       soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      // Patches of lush and of dry grass, clover and moss, tufts, and blades.
+      // Patches of lush and of dry grass, clover, moss; blades.
       float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
       float clumps = cloudy(p / 1.3) - 0.5;
       soil = mix(vec3(0.3, 0.39, 0.17), vec3(0.46, 0.49, 0.26), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
       soil = mix(soil, vec3(0.32, 0.43, 0.22), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
-      vec2 seen = p - eye.xy;
-      float fine = far * length(fwidth(ray));
-      float size = min(max(0.012, 1.3 * fine), 4.0 * fine);
-      soil *= 1.0 + 0.7 * clumps / (1.0 + 0.03 * far) + (0.75 * blades(seen, far, size) + 0.5 * blades(seen, far, 3.1 * size)) / (1.0 + 0.012 * far);
-      soil *= 1.0 + 0.3 * (cloudy(vec2(0.2, 1.0) * p / 90.0) - 0.5);
+      float size = 4.5 * pow(eye.z - ground, -0.2) * length(fwidth(ray));
+      soil *= 1.0 + 0.5 * clumps / (1.0 - 2.0 * pixel / way.z) + 0.7 * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z);
     }
     soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
