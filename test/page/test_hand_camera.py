@@ -51,12 +51,7 @@ class Drawn(NamedTuple):
 
 @pytest.fixture(scope='module')
 def film(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
-    """
-    Draw a spruce in a wind that swells and falls; the film begins again where it ends.
-
-    The clicks are those of a tree at rest, and the page takes its first picture at any moment of
-    the film: the sway of 5 px is about the width of the wood.
-    """
+    """Draw a spruce in a wind that swells and falls; the film begins again where it ends."""
     cv2 = pytest.importorskip('cv2', reason='needs OpenCV: pip install .[camera]')
     tree = spruce()
     true = make_simulator(tree)
@@ -64,7 +59,7 @@ def film(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     for k in range(3 * PERIOD * FILM_RATE):
         for half in range(2):
             turn = 2.0 * np.pi * (k + 0.5 * half) / (PERIOD * FILM_RATE)
-            true.step([4.0 + 4.0 * np.sin(turn), 0.0, 0.0], 0.5 / FILM_RATE)
+            true.step([7.0 + 7.0 * np.sin(turn), 0.0, 0.0], 0.5 / FILM_RATE)
         if k >= 2 * PERIOD * FILM_RATE:
             tips.append(true.tip_displacement)
             drawn = cv2.cvtColor(picture(cv2, tree, true.place()), cv2.COLOR_GRAY2BGR)
@@ -96,7 +91,7 @@ def page() -> Iterator[Page]:
     feed = MotionFeed()
     filmed = PageFilm(tree, 'bearing=0; distance=6', print)
     feed.film = filmed
-    wind = RecordedWind(np.array([0.0, 1e4]), np.zeros((2, 3)))
+    wind = RecordedWind(np.arange(1000.0), np.zeros((1000, 3)))
     session = Session(lambda _: FilmedTree(tree, rate=RATE), Choices('spruce'), wind, motion=feed)
     panel = ControlPanel(PAUSE_AND_RESET, session.apply, session.pull)
     with PageServer(PageSettings(port=0), panel, session.status, film=filmed) as server:

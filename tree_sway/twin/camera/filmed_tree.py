@@ -75,9 +75,6 @@ _USED = 0.25
 _FEWEST = 6
 """Least number of points that a picture must tell."""
 
-_SHAKES = 0.5
-"""Shake of the camera from which it is said [px]."""
-
 _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
 
@@ -312,8 +309,6 @@ class FilmedTree(ObservedTree):
             told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
         if used < 0.25 * n_points:
             told += '; most points are lost: was the camera moved, or did the light change?'
-        if (shake := self.filter.shake) > _SHAKES:
-            told += f'; the camera shakes by {shake:.1f} px, which is taken off: use a tripod'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '

@@ -10,7 +10,7 @@ weights W and missed r, ``H' W H`` and ``H' W r``.
 
 Each point has an error of its own, which follows its residual; beyond that its weight in a picture
 falls with its residual as Geman & McClure's (1987). So a fluttering leaf, a shadow or a bird move
-nothing. A shift of all points of a picture is the shake of the camera, whose size is learned.
+nothing.
 """
 
 from __future__ import annotations
@@ -38,10 +38,6 @@ _FOLLOWED = 0.02
 _OUTLIER = 3.0
 """Residual over its expected size at which the weight of a point is a quarter."""
 _ROUNDS = 2
-_FIRST_SHAKE, _LEAST_SHAKE = 1.0, 0.05
-"""Shift of a picture that is expected of a camera at first, and at least, in pixels."""
-_SHAKEN = 0.02
-"""Share of a picture in the expected shift."""
 
 
 class MotionFilter:
@@ -69,8 +65,6 @@ class MotionFilter:
         """How far each point was from its place after the last picture, in pixels, (p, 2)."""
         self.weights = np.zeros(0)
         """Weight of each point in the last picture, 0 to 1, (p,)."""
-        self.shake = _FIRST_SHAKE
-        """How far the camera's shake shifts pictures along x or y, in pixels."""
         self.set_law(law)
 
     def set_law(self, law: SwayLaw) -> None:
@@ -136,29 +130,17 @@ class MotionFilter:
             moves = self.covariance[:n, :n]
             spread = np.einsum('ij,ij->i', rows @ moves, rows).reshape(-1, 2).sum(axis=1)
             left, allowed = apart, expected + spread
-            both = np.hstack([rows, np.tile(np.eye(2), (len(rows) // 2, 1))])
-            shake = self.shake * self.shake
-            all_moves = np.zeros((n + 2, n + 2))
-            all_moves[:n, :n] = moves
             for _ in range(1 + _ROUNDS):
                 squares = np.square(left).reshape(-1, 2).sum(axis=1)
                 shares = 1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed))
                 weights = np.repeat(shares / (_JOINED * expected), 2)
-                all_moves[n:, n:] = shake * np.eye(2)
-                weighted = both * weights[:, None]
-                told, towards = both.T @ weighted, weighted.T @ apart
-                inner = np.linalg.solve(
-                    np.eye(n + 2) + told @ all_moves, np.column_stack([towards, told])
-                )
-                left, allowed = apart - both @ (all_moves @ inner[:, 0]), 2.0 * expected
-                shift = shake * inner[n:, 0]
-                unsure = shake - shake * shake * np.diag(inner[n:, n + 1 :])
-                shake = max(shake, float(np.square(shift).max()))
+                weighted = rows * weights[:, None]
+                told, towards = rows.T @ weighted, weighted.T @ apart
+                inner = np.linalg.solve(np.eye(n) + told @ moves, np.column_stack([towards, told]))
+                left, allowed = apart - rows @ (moves @ inner[:, 0]), 2.0 * expected
             across = self.covariance[:, :n]
-            self.state += (across @ inner[:n, 0]).reshape(3, n)
-            self.covariance -= across @ inner[:n, 1 : n + 1] @ across.T
-        self.shake += _SHAKEN * (float(np.sqrt((np.square(shift) + unsure).mean())) - self.shake)
-        self.shake = max(self.shake, _LEAST_SHAKE)
+            self.state += (across @ inner[:, 0]).reshape(3, n)
+            self.covariance -= across @ inner[:, 1:] @ across.T
         self.covariance = 0.5 * (self.covariance + self.covariance.T)
         self.weights[:] = 0.0
         self.residuals[:] = np.nan
