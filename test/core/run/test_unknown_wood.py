@@ -15,7 +15,6 @@ from tree_sway.core.run import SwaySimulator
 from tree_sway.core.run.bank import Tunable
 from tree_sway.core.scene import make_simulator
 from tree_sway.core.species import WOOD_SPREAD
-from tree_sway.twin import ObservedTree
 
 TREE = crown((4, 2), 4)
 FAR: dict[str, Any] = {'anemometer_distance': 12.0}
@@ -54,9 +53,6 @@ def test_only_the_expected_sway_of_a_tree_apart_is_of_unknown_wood() -> None:
     others: tuple[dict[str, Any], ...] = {'gusts': 'sample'}, {'gusts': 'measured'}
     for other in others:
         np.testing.assert_array_equal(damping(make_simulator(TREE, **FAR, **other)), own)
-    with_sensor = ObservedTree(TREE, at={'phone': 'stem:0.5'}, **FAR)
-    np.testing.assert_array_equal(damping(with_sensor), own)
-    np.testing.assert_array_equal(damping(ObservedTree(TREE, at={}, **FAR)), damping(expected))
 
 
 def test_a_tuned_tree_keeps_what_stands_for_unknown_wood() -> None:
