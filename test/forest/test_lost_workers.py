@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Which changes of a worker are reported, and how often."""
+"""A worker that is ended is reported, whether it did its work or had just done it."""
 
 from __future__ import annotations
 
@@ -11,40 +11,33 @@ import pytest
 
 from tree_sway.forest.lost_workers import told_lost_workers
 
-Hear = Callable[[tuple[float, Any]], None]
 
+class Client:
+    """A client whose scheduler reports what a test says."""
 
-class Events:
-    """What a Dask client offers to hear about its scheduler."""
+    hear: Callable[[tuple[float, Any]], None]
 
-    def __init__(self) -> None:
-        self.hear: Hear | None = None
-
-    def subscribe_topic(self, _topic: str, hear: Hear) -> None:
+    def subscribe_topic(self, _topic: str, hear: Callable[[tuple[float, Any]], None]) -> None:
+        """Give events to a function."""
         self.hear = hear
 
     def unsubscribe_topic(self, _topic: str) -> None:
-        self.hear = None
-
-    def lose(self, *tasks: str, action: str = 'remove-worker') -> None:
-        assert self.hear is not None
-        self.hear((0.0, {'action': action, 'worker': 'tcp://a', 'processing-tasks': {*tasks}}))
+        """Give it none any more."""
 
 
-@pytest.mark.parametrize('n_lost', [0, 1, 3])
-def test_a_lost_worker_is_reported_once_and_all_are_counted(
-    n_lost: int, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ('had', 'is_told'),
+    [
+        ({'processing-tasks': ['a']}, True),
+        ({'processing-tasks': [], 'lost-computed-tasks': ['b']}, True),
+        ({'processing-tasks': ['c'], 'lost-computed-tasks': []}, False),
+        ({}, False),
+    ],
+)
+def test_a_worker_that_had_work_is_reported(
+    had: dict[str, list[str]], is_told: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    events = Events()
-    with told_lost_workers(events, ['case 1', 'case 2']):
-        for _ in range(n_lost):
-            events.lose('case 2', 'of somebody else')
-        events.lose()
-        events.lose('of somebody else')
-        events.lose('case 1', action='add-worker')
-        assert events.hear is not None
-        events.hear((0.0, 'another event'))
-    assert events.hear is None
-    said = capsys.readouterr().err
-    assert said.count('a worker was ended') == min(n_lost, 1)
-    assert ('3 workers were ended' in said) == (n_lost > 1)
+    client = Client()
+    with told_lost_workers(client, ['a', 'b']):
+        client.hear((0.0, {'action': 'remove-worker', 'worker': 'tls://here', **had}))
+    assert capsys.readouterr().err.count('a worker was ended') == is_told

@@ -12,17 +12,21 @@ from typing import Any
 _TOPIC = 'all'
 """Topic of a Dask scheduler on which it reports every change of a worker."""
 
+_HAD = 'processing-tasks', 'lost-computed-tasks'
+"""What a worker that was ended did, and what it had done and not yet given away."""
+
 
 @contextmanager
 def told_lost_workers(client: Any, names: Collection[str]) -> Iterator[None]:
-    """Report workers that end inside the block while they have one of some pieces of work."""
+    """Report workers that end inside the block with one of some pieces of work, or its result."""
     lost = list[str]()
 
     def hear(event: tuple[float, Any]) -> None:
         message = event[1]
         if not isinstance(message, dict) or message.get('action') != 'remove-worker':
             return
-        if not set(names).isdisjoint(message.get('processing-tasks', ())):
+        had = {name for kind in _HAD for name in message.get(kind, ())}
+        if not had.isdisjoint(names):
             lost.append(str(message.get('worker')))
             if len(lost) == 1:
                 _say('a worker was ended (out of memory?): another one does its cases again')
