@@ -65,14 +65,12 @@ def strength_of(sensors: Sequence[BeyondModel], law: UsualLaw) -> float:
     It is the geometric mean over slow and fast sway of the power measured, less that of the noise,
     over that expected.
     """
-    logs = [
-        math.log(min(max(measured / expected, _LEAST), 1.0))
-        for measured, expected in (
-            np.sum([_powers(each, law, low, high) for each in sensors], axis=0).tolist()
-            for low, high in _BANDS
-        )
-        if expected
-    ]
+    logs = list[float]()
+    for low, high in _BANDS:
+        powers = [_powers(each, law, low, high) for each in sensors]
+        measured, expected = np.sum(powers, axis=0).tolist()
+        if expected:
+            logs.append(math.log(min(max(measured / expected, _LEAST), 1.0)))
     return math.exp(sum(logs) / len(logs)) if logs else 1.0
 
 
