@@ -284,8 +284,9 @@ typedef struct sway_correction {
 } sway_correction;
 
 /* Bring a calm motion (3, n) to the present by `ahead` (3, 3, n), as far as each coordinate of it
- * is trusted, where the trust goes a share of the way to that wanted. The motion without correction
- * has displacements and rates (n). */
+ * is trusted, where the trust goes a share of the way to that wanted. Its lean, force over
+ * stiffness, is trusted as that of the most trusted one. The motion without correction has
+ * displacements and rates (n). */
 SWAY_API void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,
                          double share, const double *eta, const double *rate);
 

@@ -251,15 +251,20 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
                 double share, const double *eta, const double *rate) {
   const int64_t n = correction->coordinates;
   double *trust = correction->trust, *moved = correction->moved, *moving = moved + n;
-  double whole = 0.0, own = 0.0;
+  double whole = 0.0, own = 0.0, most = 0.0;
   for (int64_t i = 0; i < n; i++) {
     trust[i] += share * (correction->wanted[i] - trust[i]);
+    most = fmax(most, trust[i]);
+  }
+  for (int64_t i = 0; i < n; i++) {
     for (int64_t j = 0; j < 2; j++) {
       const double *by = ahead + 3 * j * n + i;
       moved[j * n + i] =
           trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
     }
     const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
+    const double lean = ahead[8 * n + i] * calm[2 * n + i] / stiffness;
+    moved[i] += (most - trust[i]) * lean;
     const double at = x + moved[i], going = v + moving[i];
     whole += stiffness * at * at + going * going;
     own += stiffness * x * x + v * v;

@@ -80,7 +80,9 @@ def test_the_calm_motion_is_carried_to_the_present(gains: SteadyFilter, late: in
     swing = rng.normal(size=(2, M))
     trust = before + 0.3 * (wanted - before)
     by_matrix = np.linalg.matrix_power(gains.law.matrix, late) @ calm.ravel()
-    expected = trust * by_matrix.reshape(3, M)[:2]
+    eta, rate, force = by_matrix.reshape(3, M)
+    lean = (trust.max() - trust) * force / stiffness
+    expected = np.stack([trust * eta + lean, trust * rate])
     moved, energies = np.zeros((2, M)), np.zeros(2)
     native = NativeCorrection(
         coordinates=M, stiffness=stiffness, wanted=wanted, trust=before, moved=moved,

@@ -4,9 +4,10 @@
 Gains for the sensors in use and the present wind, found beside the steps.
 
 A sensor on the stem tells about a hanging twig only what both have in common by the law of the
-gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
-the sensors take away enough of its variance even if each limb meets gusts of its own; elsewhere
-the tree sways in the wind alone.
+gusts, and of all that the filter knows, that law is known least for fast gusts: slow ones hold a
+whole crown. The sway of a coordinate is corrected where the sensors take away enough of its
+variance even if each limb meets gusts of its own; its lean, force over stiffness, where they do so
+of any coordinate. Elsewhere the tree sways in the wind alone.
 """
 
 from __future__ import annotations

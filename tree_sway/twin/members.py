@@ -319,7 +319,9 @@ class Members:
         estimate += correction.reshape(estimate.shape)
         ahead = beyond[: self._count]
         trust = self._observer.trust[:, None]
-        self.errors = ahead - estimate[0] * trust
+        lean = estimate[2] / self._observer.stiffness[:, None]
+        told = trust * estimate[0] + (trust.max() - trust) * lean
+        self.errors = ahead - told
 
     def _beyond(self, eta: Floats, rate: Floats, force: Floats) -> Floats:
         """Displacement, rate and force of each member beyond those of the model, (3 n, e)."""

@@ -29,8 +29,8 @@ from tree_sway.errors import nearest, ParameterError
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
-_PER_STRAIN = 400.0
-"""Rotation [rad] in place of a strain: the least noise of a rotation is a strain of 5e-6."""
+_PER_STRAIN = 100.0
+"""Rotation [rad] in place of a strain: the least noise of a rotation is a strain of 2e-5."""
 
 _TURN = 1e-4
 """Largest key rotation in [rad] of the difference quotients."""
