@@ -10,7 +10,8 @@ import math
 
 import numpy as np
 import pytest
-from tree_sway_lab.twin.trial import _compared, _held, DT, squared_score
+from scipy.signal import butter, sosfilt
+from tree_sway_lab.twin.trial import _compared, _held, DT, linear_score, squared_score
 from tree_sway_lab.twin.true_tree import (
     Circumstances,
     drawn,
@@ -46,6 +47,20 @@ def test_a_band_holds_its_share_of_normal_errors() -> None:
     half = np.full_like(wrong, 1.2816 * 0.2)
     band = np.stack([-half, half], axis=1)
     assert _held(wrong, np.zeros_like(wrong), band) == pytest.approx(0.8, abs=0.01)
+
+
+def test_a_linear_filter_finds_what_sensors_tell_and_nothing_else() -> None:
+    rng = np.random.default_rng(9)
+    low = butter(2, 1.0, fs=1.0 / DT, output='sos')
+    sway = sosfilt(low, 0.1 * rng.normal(size=(12_000, 4)), axis=0)
+    told, untold = sway[:, None, :2], sway[:, None, 2:]
+    flat = np.zeros((len(sway), 1))
+    # It tilts, and gravity tells by how much.
+    poses = np.hstack([flat, flat, flat, told[:, 0], flat, flat + 1.0])
+    for moved, least, most in ((3.0 * told, 0.0, 0.3), (untold, 0.95, 1.1)):
+        tips = np.concatenate([moved, flat[:, None]], axis=2)
+        true = TrueMotion(rng.normal(size=(len(sway), 3)), tips, {'stem': poses})
+        assert least < linear_score(true, ['stem']).error < most
 
 
 def test_the_square_of_the_wind_explains_a_motion_that_is_one() -> None:

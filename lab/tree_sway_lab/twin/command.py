@@ -28,6 +28,9 @@ columns the power of all tips over the true one in four bands. ``(known tree)`` 
 damping and drag of the true one, and ``bound`` the wind too that all of the mast's record tells by
 the true law: no estimate from the mast's wind alone errs less, but by chance.
 
+``1 linear`` is a linear filter of what that number of sensors measure, fitted to the true tips
+(`linear_filter`): about the least error that such sensors leave.
+
 One tree of one wood tells little about a band: what the model errs in its lean stays for the whole
 record, so that a band of 80 % holds it always or never. ``--drawn`` draws wood, damping and drag
 of several true trees from the spreads that the band assumes; the rows are means over them.
@@ -65,6 +68,7 @@ from tree_sway_lab.twin.record_score import score_record
 from tree_sway_lab.twin.sensor_faults import FAULTS
 from tree_sway_lab.twin.sway_comparison import BANDS
 from tree_sway_lab.twin.trial import (
+    linear_score,
     mean_score,
     plain_score,
     Score,
@@ -257,6 +261,9 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
         if not arguments.only_sensors:
             known.reset()
             scores.setdefault('model', []).append(plain_score(known, true))
+            for count in filter(None, arguments.sensors):
+                linear = linear_score(true, places[:count])
+                scores.setdefault(f'{count} linear', []).append(linear)
         for count, fault in product(arguments.sensors, arguments.fault):
             score = twin_score(
                 tree,

@@ -19,6 +19,7 @@ from tree_sway.core.setup import prepare
 from tree_sway.core.species import Species
 from tree_sway.core.tree import tips_of_poses, Tree
 from tree_sway.twin import ObservedTree, sensor_reports
+from tree_sway_lab.twin.linear_filter import linear_filter
 from tree_sway_lab.twin.sensor_faults import FAULTS, FIRST, LIVE, WAY
 from tree_sway_lab.twin.simulated_sensor import SensedMotion, SimulatedSensor
 from tree_sway_lab.twin.sway_comparison import compare_sway
@@ -144,6 +145,13 @@ def squared_score(true: TrueMotion, frequency: float, like: Floats | None = None
     tips = (inputs @ gains).reshape(true.tips.shape)
     error, roughness, stem = _compared(tips, true.tips)
     return Score(error, roughness, stem, np.nan, 0.0, 0.0)
+
+
+def linear_score(true: TrueMotion, places: Sequence[str]) -> Score:
+    """Score a linear filter that is fitted to the true tips by what sensors at places measure."""
+    tips, wanted = linear_filter(true, places)
+    error, _, stem = _compared(tips, wanted)
+    return Score(error, np.nan, stem, np.nan, np.nan, np.nan)
 
 
 def twin_score(
