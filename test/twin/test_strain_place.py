@@ -111,13 +111,15 @@ def error_alone() -> float:
     return error(ObservedTree(TREE, SPRUCE, at={}))
 
 
-@pytest.mark.parametrize('facing', ['', ' facing 0'])
-def test_a_tree_follows_the_strain_at_the_foot_of_an_unknown_one(facing: str) -> None:
-    strains = truth()[0][::6]
+@pytest.mark.parametrize(('facing', 'offset'), [('', 0.0), ('', 3e-3), (' facing 0', 0.0)])
+def test_a_tree_follows_the_strain_at_the_foot_of_an_unknown_one(
+    facing: str, offset: float
+) -> None:
+    strains = truth()[0][::6] + offset
     measured = strains + 2e-6 * np.random.default_rng(1).normal(size=strains.shape)
     twin = ObservedTree(TREE, SPRUCE, at={'gauge': f'1.3 strain{facing}'})
     time = DT * (1.0 + np.arange(0, len(WINDS), 6))
     twin.replay('gauge', time, orientation=as_orientation(measured))
     found = error(twin)
     print(f'alone {error_alone():.3f}, with the gauge {found:.3f}', twin.problems)
-    assert found < 0.6 * error_alone()
+    assert found < 0.4 * error_alone()
