@@ -192,6 +192,28 @@ def test_what_is_usual_of_a_sensor_is_no_disagreement() -> None:
     assert not track.in_use
 
 
+def test_a_limb_of_more_modes_than_the_filter_is_no_disagreement_and_a_later_fault_is() -> None:
+    of, *_ = readings(1)
+    track, rng = track_of(of), np.random.default_rng(5)
+    track.native.is_mounted = track.native.in_use = 1
+    for size in 20.0 * rng.gamma(2.0, size=3600):
+        track.judge(size)
+    assert track.in_use
+    for _ in range(180):
+        track.judge(1e6)
+    assert not track.in_use
+
+
+def test_steps_before_a_knock_are_none_of_its_whole_motion() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.count = -300
+    track.note_step(1800)
+    track.native.count = 1200
+    track.note_step(3300)
+    assert track.whole == 1200
+
+
 def test_one_spike_in_a_hundred_samples_is_no_disagreement() -> None:
     of, *_ = readings(1)
     track = track_of(of)

@@ -65,3 +65,14 @@ def test_which_end_of_the_axis_is_which_is_not_told_by_a_motion_of_other_gusts()
     wrong, stated = errors_of(40.0, 1e9, np.eye(2))
     assert np.median(np.abs(np.sin(wrong))) < 0.4
     assert np.mean(stated > SURE) > 0.9
+
+
+def test_leans_that_are_skewed_downwind_tell_which_end_of_the_axis_is_which() -> None:
+    north, sway = np.array([np.sin(TURN), np.cos(TURN)]), Sway(np.eye(2), F1, DT)
+    angles = []
+    for seed in range(20):
+        moved, model = leans(seed, 40.0, 1e9, np.eye(2))
+        along = (moved - moved.mean(axis=0)) @ north
+        moved += 0.3 * np.outer(np.square(along) / along.std(), north)
+        angles.append(sway_azimuth(moved, model, 1e-3, sway)[0])
+    assert np.mean(np.cos(np.array(angles) - TURN) > 0.0) > 0.9

@@ -404,7 +404,7 @@ class SensorTrack:
         self.native = NativeSensor(
             ring=sensor.ring.memory, mounting=self._mounting, kept=self._sensed,
             computed=self._computed, moved=self._moved, rows=len(self._sensed), dt=dt,
-            newest=sensor.ring.newest, excess=1.0, usual=1.0, heard=-math.inf, came=-math.inf,
+            newest=sensor.ring.newest, excess=1.0, usual=math.inf, heard=-math.inf, came=-math.inf,
             is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
@@ -502,7 +502,7 @@ class SensorTrack:
         self.alignment = None
         native.in_use = native.is_mounted = native.is_refused = native.count = 0
         native.is_awaited = 1
-        native.excess = native.usual = 1.0
+        native.excess, native.usual = 1.0, math.inf
         self._next_fit = round(_LEARNING / self._dt)
         return True
 
@@ -568,7 +568,7 @@ class SensorTrack:
     @property
     def whole(self) -> int:
         """Number of the last steps of which none is missing."""
-        return min(max(self.native.count - self._whole_from, 0), len(self._sensed))
+        return min(max(self.native.count - max(self._whole_from, 0), 0), len(self._sensed))
 
     def beside(self, track: SensorTrack, about: float) -> OtherSensor:
         """Return it as another sensor beside one, by their last samples of the same steps."""

@@ -13,6 +13,10 @@ ellipse, the longer axis of which the mean lean of the model tells: G G' + (k - 
 the lean per load to east and north, and l that in the mean wind. It tells an axis whatever the
 distance of the anemometer; x tells which of its ends is which.
 
+So does the skewness of the lean: a load by the square of the wind leans a tree farther downwind of
+its mean than upwind of it, and gusts near a canopy are skewed the same way (Raupach, Finnigan &
+Brunet 1996, Boundary-Layer Meteorology 78, 351-382).
+
 The covariance of n in a band of frequencies is taken to be of a Wishart distribution about that
 ellipse (Gupta & Nagar 2000, *Matrix Variate Distributions*, 3.4), of any size, so that a tree
 whose own ellipse is another is not sure of a wrong angle. The probabilities of angles are sums
@@ -43,6 +47,12 @@ _GAINS = {0.0: 1.0, 0.25: 2.0, 0.5: 3.0, 1.0: 4.0, 2.0: 2.0}
 """
 Values of a in [s], and of b with their weights [-]: a sensor whose lean has nothing of the wind
 has both ends of its axis, and all that are right are found later the more that counts.
+"""
+
+_SKEWED = 1.8
+"""
+Logarithm of the likelihood of an angle by a skewness along the mean lean of 1, which is the most
+that counts: on 17 trees of the laboratory it is 0.4, with a deviation of 0.5 over 30 to 120 s.
 """
 
 _ANGLES = np.radians(np.arange(-180.0, 180.0, 4.0))
@@ -110,6 +120,7 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
                 trace = np.einsum('ij,ija->a', whitened, left)
                 size = left[0, 0] * left[1, 1] - left[0, 1] ** 2
                 found[i, j] += _of_any_size(trace, size * np.linalg.det(whitened), n)
+    found += _SKEWED * _skewness(moved, np.einsum('ija,i->ja', turn, model.mean(axis=0)), sway)
     weights = np.array(list(_GAINS.values()))
     chance = np.einsum('ija,j->a', np.exp(found - found.max()), weights)
     chance /= chance.sum()
@@ -127,6 +138,15 @@ def _ellipse(bend: Floats, lean: Floats) -> Floats:
     along = lean / max(load, 1e-300)
     found = bend @ bend.T + (_LONGER - 1.0) * np.outer(along, along)
     return np.asarray(found / max(float(np.trace(found)), 1e-300))
+
+
+def _skewness(moved: Floats, ways: Floats, sway: Sway) -> Floats:
+    """Skewness of a lean (n, 2) along some ways (2, a), -1 to 1, (a,); spikes do not count."""
+    block = max(round(1.0 / (sway.frequency * sway.dt)), 1)
+    slow = np.median(moved[: len(moved) // block * block].reshape(-1, block, 2), axis=1)
+    along = (slow - slow.mean(axis=0)) @ ways
+    size = np.maximum(np.square(along).mean(axis=0), 1e-100) ** 1.5
+    return np.clip((along**3).mean(axis=0) / size, -1.0, 1.0)
 
 
 def _products(one: Complexes, other: Complexes) -> Floats:
