@@ -29,7 +29,7 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import Value, wide_table
+from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
     signalk_values,
@@ -58,14 +58,47 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
+    # One with a wind before a longer one of another sensor.
+    winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
+    if not winds and (spread := _spread_columns(document, source)):
+        return spread
     if not tables:
         raise FormatError(
             'no table in the JSON',
             cure='give columns or records with a time, a speed and a direction',
         )
-    # One with a wind before a longer one of another sensor.
-    winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     return max(winds or tables, key=lambda table: len(table.texts))
+
+
+def _spread_columns(document: Any, source: str) -> TextTable | None:
+    """Return the columns as long as that of the time, wherever they are; None without two."""
+    units: Cells = {}
+    columns = dict(_lists(document, '', units))
+    clock = next((name for name in columns if rank_of(name, 'time') is not None), '')
+    long = [name for name, each in columns.items() if len(each) == len(columns.get(clock, ()))]
+    if len(long) < 2:
+        return None
+    rows = [[*map(text_of, row)] for row in zip(*map(columns.__getitem__, long), strict=True)]
+    return table_of_cells(long, rows, source, units=[units.get(name, '') for name in long])
+
+
+def _lists(node: Any, group: str, units: Cells, depth: int = 0) -> Iterator[tuple[str, list[Any]]]:
+    """
+    Yield name and values of the lists in a document, and note the units of names.
+
+    ``data`` and ``values`` are those of their group, as in CoverageJSON and at GeoSphere Austria.
+    """
+    for item in node if isinstance(node, list) and len(node) == 1 else [node]:
+        for name, each in object_of(item).items() if depth < DEEPEST else ():
+            if name in ('data', 'values') and len(list_of(each)) > 1:
+                yield group, each
+            elif name == 'unit':
+                told = object_of(object_of(each).get('symbol', each)).get('value', each)
+                units.setdefault(group, _unit(told))
+            elif len(list_of(each)) > 1:
+                yield name, each
+            else:
+                yield from _lists(each, name, units, depth + 1)
 
 
 def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
@@ -199,6 +232,12 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         records.append(record)
         empty |= dict.fromkeys(record, '')
     names = list(empty)
+    if wanted := long_columns(name.rpartition('.')[2] for name in names):
+        short = [
+            {key.rpartition('.')[2]: each for key, each in (empty | record).items()}
+            for record in records
+        ]
+        return long_table(enumerate(short, start=1), wanted, source)
     units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
     titles = [units.get(f'#{name}', name) for name in names]
