@@ -29,7 +29,7 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
+from tree_sway.files.layouts.long import long_columns, long_table, wide_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
     signalk_values,
@@ -147,15 +147,11 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
-        states = _lists_of_states(node)
-        node = list(_samples(node)) or node
-        if states:
-            yield _of_states(states, source)
-        elif node and all(isinstance(each, dict) for each in node):
+        node = list(_samples(node)) or list(_states(node)) or node
+        if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        if not states:
-            for each in node:
-                yield from _tables(each, units, source, depth + 1)
+        for each in node:
+            yield from _tables(each, units, source, depth + 1)
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -265,26 +261,14 @@ def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
     return wide_table(values, source, 'time', {each.name: each.unit for each in quantities})
 
 
-def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
-    """Return those elements of a list that are lists of states of Home Assistant."""
-    lists = [each for each in node if each and isinstance(each, list)]
-    return [each for each in lists if all('state' in object_of(state) for state in each)]
-
-
-def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
-    """Return the table of the states of some entities; only the first of each may name it."""
-    values: list[Value] = []
-    unit_of: Cells = {}
-    for states in lists:
-        name = ''
-        for state in states:
-            name = text_of(state.get('entity_id', name))
-            if attributes := object_of(state.get('attributes')):
-                unit_of.setdefault(name, _unit(attributes.get('unit_of_measurement')))
-            time = text_of(state.get('last_changed', state.get('last_updated')))
-            if state['state'] not in ('unavailable', 'unknown'):
-                values.append((len(values) + 1, time, name, text_of(state['state'])))
-    return wide_table(values, source, 'last_changed', unit_of)
+def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
+    """Yield the states of Home Assistant's lists; only the first of each may name its entity."""
+    for states in node if all(map(list_of, node)) else ():
+        known: dict[str, Any] = {}
+        for state in map(object_of, states):
+            known = known | {'last_changed': state.get('last_updated')} | state
+            if 'state' in state:
+                yield known
 
 
 def _unit(cell: Any) -> str:

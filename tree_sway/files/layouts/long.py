@@ -91,7 +91,7 @@ def _values(
                 cure='write a table for each',
             )
         if value not in _NO_STATE:
-            units.setdefault(name, record.get('unit', ''))
+            units.setdefault(name, record.get('unit', record.get('unit_of_measurement', '')))
             yield line, time, name, value
 
 
