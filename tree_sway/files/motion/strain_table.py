@@ -67,7 +67,7 @@ def read_strain(path: Path) -> StrainRecord:
     split = partial(split_row, separator=next((each for each in '\t;,' if each in first), ' '))
     columns = tuple(split(first))
     begin = len(columns) > 1 and finite(columns[1]) is None
-    table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path), *numbers[:1])
+    table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path))
     size = len(columns)
     if size < 3 or not size % 2:
         raise table.error(
