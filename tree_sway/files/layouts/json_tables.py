@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
@@ -29,7 +29,8 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import long_columns, long_table, wide_table
+from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
+from tree_sway.files.layouts.spread_columns import spread_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
     signalk_values,
@@ -43,14 +44,6 @@ _BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 Cells = dict[str, str]
 
 
-class _Quantity(NamedTuple):
-    """Values of a quantity by time."""
-
-    name: str
-    unit: str
-    by_time: dict[str, Any]
-
-
 def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
     document = document_of(lines)
@@ -60,7 +53,7 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
-    if not winds and (spread := _spread_columns(document, source)):
+    if not winds and (spread := spread_table(document, source)):
         return spread
     if not tables:
         raise FormatError(
@@ -68,37 +61,6 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
             cure='give columns or records with a time, a speed and a direction',
         )
     return max(winds or tables, key=lambda table: len(table.texts))
-
-
-def _spread_columns(document: Any, source: str) -> TextTable | None:
-    """Return the columns as long as that of the time, wherever they are; None without two."""
-    units: Cells = {}
-    columns = dict(_lists(document, '', units))
-    clock = next((name for name in columns if rank_of(name, 'time') is not None), '')
-    long = [name for name, each in columns.items() if len(each) == len(columns.get(clock, ()))]
-    if len(long) < 2:
-        return None
-    rows = [[*map(text_of, row)] for row in zip(*map(columns.__getitem__, long), strict=True)]
-    return table_of_cells(long, rows, source, units=[units.get(name, '') for name in long])
-
-
-def _lists(node: Any, group: str, units: Cells, depth: int = 0) -> Iterator[tuple[str, list[Any]]]:
-    """
-    Yield name and values of the lists in a document, and note the units of names.
-
-    ``data`` and ``values`` are those of their group, as in CoverageJSON and at GeoSphere Austria.
-    """
-    for item in node if isinstance(node, list) and len(node) == 1 else [node]:
-        for name, each in object_of(item).items() if depth < DEEPEST else ():
-            if name in ('data', 'values') and len(list_of(each)) > 1:
-                yield group, each
-            elif name == 'unit':
-                told = object_of(object_of(each).get('symbol', each)).get('value', each)
-                units.setdefault(group, _unit(told))
-            elif len(list_of(each)) > 1:
-                yield name, each
-            else:
-                yield from _lists(each, name, units, depth + 1)
 
 
 def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
@@ -137,9 +99,10 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if depth > DEEPEST:
         return
     if isinstance(node, dict):
-        quantities = list(_quantities(node, ''))
-        if quantities:
-            yield _by_time(quantities, source)
+        own: Cells = {}
+        values = list(_values_by_time(node, '', own))
+        if values:
+            yield wide_table(values, source, 'time', own)
         for table in (_columns(node, units, source), _rows(node, source)):
             if table is not None:
                 yield table
@@ -228,37 +191,28 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         records.append(record)
         empty |= dict.fromkeys(record, '')
     names = list(empty)
-    if wanted := long_columns(name.rpartition('.')[2] for name in names):
-        short = [
-            {key.rpartition('.')[2]: each for key, each in (empty | record).items()}
-            for record in records
-        ]
-        return long_table(enumerate(short, start=1), wanted, source)
-    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
+    short = [name.rpartition('.')[2] for name in names]
+    wanted = long_columns(short)
+    if wanted is not None:
+        named = (dict(zip(short, row, strict=True)) for row in rows)
+        return long_table(enumerate(named, start=1), wanted, source)
+    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     titles = [units.get(f'#{name}', name) for name in names]
     return table_of_cells(titles, rows, source, units=units_of_columns)
 
 
-def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
-    """Yield Ecowitt's quantities."""
-    for name, each in node.items():
-        if not isinstance(each, dict):
-            continue
-        if isinstance(each.get('list'), dict):
-            yield _Quantity(f'{before}{name}', text_of(each.get('unit', '')), each['list'])
+def _values_by_time(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
+    """Yield the values of Ecowitt's quantities, and note their units."""
+    for own, each in node.items():
+        inside = object_of(each)
+        name = f'{before}{own}'
+        if 'list' in inside:
+            units[name] = text_of(inside.get('unit', ''))
+            for time, value in object_of(inside['list']).items():
+                yield 0, time, name, text_of(value)
         else:
-            yield from _quantities(each, f'{name}_')
-
-
-def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
-    """Return the table of quantities, with a row for each time that any of them has."""
-    values = [
-        (0, time, each.name, text_of(value))
-        for each in quantities
-        for time, value in each.by_time.items()
-    ]
-    return wide_table(values, source, 'time', {each.name: each.unit for each in quantities})
+            yield from _values_by_time(inside, f'{own}_', units)
 
 
 def _states(node: list[Any]) -> Iterator[dict[str, Any]]:

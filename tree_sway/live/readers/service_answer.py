@@ -38,18 +38,21 @@ class ServiceAnswer:
     def __call__(self, message: Message) -> Sequence[Reading]:
         """Read an answer; its reason is the refusal of one without a wind."""
         document = parse_json(message.data)
-        reason = 'no report' if document == [] else object_of(document).get('reason')
+        reason = object_of(document).get('reason')
+        if document == []:
+            reason = 'no report'
         if isinstance(reason, str):
             return [Refusal(self._kind, reason[:80])]
         about = {each: path.find(document) for each, path in self._about.items()}
         time = about['time']
         dated = dates([str(time)[:40]])
+        is_date = bool(dated.seconds[0] == 0.0)
         fields: dict[str, Any] = {
-            'time': dated.epoch if dated.seconds[0] == 0.0 else number(time),
+            'time': dated.epoch if is_date else number(time),
             'interval': number(about.get('lasting')),
             'place': str(about.get('station') or '').partition(',')[0][:60],
         }
-        found = self._names.read(document, self._kind)
         return [
-            replace(each, **fields) if isinstance(each, WindReading) else each for each in found
+            replace(each, **fields) if isinstance(each, WindReading) else each
+            for each in self._names.read(document, self._kind)
         ]
