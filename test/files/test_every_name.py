@@ -34,6 +34,7 @@ WIND = ('time', 'wind_x', 'wind_y', 'wind_z', 'wind_speed', 'wind_direction', 'g
 INVENTORY = tuple(each for each in COLUMNS if each not in WIND and each not in MOTIONS)
 BY_RULE = {
     'species': 'epithet', 'speciesname': 'epithet', 'art': 'epithet', 'espece': 'epithet',
+    'specie': 'epithet',
 }  # fmt: skip
 """Names of the whole name, which are those of the epithet where a column of the genus is."""
 
@@ -147,9 +148,10 @@ def test_every_maker_has_its_unit(maker: dict[str, object], tmp_path: Path) -> N
         columns[name] = '10.0' if ranks['wind_speed'] else cells.get(name, usual)
     columns |= {} if {'27', '270'} & {*columns.values()} else {'dd': '270'}
     columns |= {} if any('{k}' in each for each in columns.values()) else {'zeit': cells['zeit']}
-    assert '10.0' in columns.values(), columns
+    columns |= {} if '10.0' in columns.values() else {'ws': '10.0'}
     path = tmp_path / 'wind.csv'
-    lines = [';'.join(columns), *(';'.join(columns.values()).replace('{k}', k) for k in '1234')]
+    rows = [';'.join(columns.values()).replace('{k}', k) for k in '1234']
+    lines = [str(maker['above'] or '#'), ';'.join(columns), *rows]
     path.write_text('\n'.join(lines), encoding='utf-8')
     if maker['speed'] == '?':
         with pytest.raises(FormatError, match='does not say the unit'):
@@ -177,7 +179,8 @@ def test_every_maker_of_motion_sensors_has_its_units(
     columns = [each for each in columns if each != 'accelerometerms20']
     lines = [str(maker['above'] or '#'), ','.join(columns)]
     for k in range(20):
-        cells = dict.fromkeys(columns, '0.5') | {
+        cells = dict.fromkeys(columns, '0.577') | {
+            str(maker['by']): str(maker['value']),
             columns[0]: f'{1000 + k * step:.6f}', 'packetcounter': str(k),
             'rtcdate': '2026-03-01', 'rtctime': f'10:00:{0.02 * k:06.3f}',
         }  # fmt: skip
@@ -191,7 +194,7 @@ def test_every_maker_of_motion_sensors_has_its_units(
         if values is not None:
             sign = (maker['sign'] or 1) if quantity == 'acceleration' else 1
             factor = sign * (unit_factor(quantity, str(maker[quantity])) or 0.0)
-            np.testing.assert_allclose(values, 0.5 * factor)
+            np.testing.assert_allclose(values, 0.577 * factor)
     assert record.acceleration is not None or record.rate is not None
 
 

@@ -22,9 +22,7 @@ from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.json_path import JsonPath, parse_json
-from tree_sway.live.readers.metar_report import read_reports
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.readers.open_meteo import read_forecast
 from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.readers.weatherlink import read_conditions
 from tree_sway.live.reading import Refusal, WindReading
@@ -36,8 +34,8 @@ READERS = {
     'lines': lambda: InstrumentLines(),
     'named lines': lambda: InstrumentLines(columns=('direction', 'speed')),
     'upload': lambda: read_upload,
-    'METAR': lambda: read_reports,
-    'Open-Meteo': lambda: read_forecast,
+    'METAR': lambda: open_source('metar:EDDB').source.read,
+    'Open-Meteo': lambda: open_source('open-meteo:52,13').source.read,
     'WeatherLink': lambda: read_conditions,
     'Signal K': lambda: SignalKWind(),
     'Tempest': lambda: open_source('tempest').source.read,
@@ -106,6 +104,7 @@ REFUSED = [
     ('upload', b'&'.join(b'a=1' for _ in range(600)), 'too many fields'),
     ('METAR', b'[]', 'no report'),
     ('METAR', b'METAR EDDB 251920Z ///// 9999', None),
+    ('METAR', b'[{"wdir": 270, "wspd": null}]', None),
     ('Open-Meteo', b'{"error": true, "reason": "Latitude must be in range"}', 'Latitude must be'),
     ('Open-Meteo', b'{"current": {"wind_speed_10m": null}}', None),
     ('Signal K', b'{"updates":[{"values":[{"path":"environment.wind.speedTrue","value":"x"}]}]}',

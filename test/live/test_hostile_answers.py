@@ -193,14 +193,15 @@ WORDS: list[Any] = [
 
 @pytest.mark.parametrize('seed', range(40))
 def test_no_delta_or_report_breaks_a_reader(seed: int) -> None:
-    from tree_sway.live.readers.metar_report import read_reports
     from tree_sway.live.readers.signalk import SignalKWind
     from tree_sway.live.reading import Refusal, WindReading
+    from tree_sway.live.registry import open_source
     from tree_sway.live.transports.transport import Message
 
     rng = random.Random(seed)
     wind = 'environment.wind.'
     read = SignalKWind()
+    read_reports = open_source('metar:EDDB').source.read
 
     def any_of(*others: Any) -> Any:
         return rng.choice([*WORDS, *others])

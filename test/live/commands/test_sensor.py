@@ -119,7 +119,8 @@ def test_means_are_recorded_with_their_gusts(tmp_path: Path, no_ros: None) -> No
             current = {'time': minute, 'interval': 900, **wind}
             self.send_response(200)
             self.end_headers()
-            self.wfile.write(json.dumps({'current': current}).encode())
+            units = {'wind_speed_10m': 'm/s'}
+            self.wfile.write(json.dumps({'current_units': units, 'current': current}).encode())
 
         def log_message(self, *_: Any) -> None:
             """Stay silent."""

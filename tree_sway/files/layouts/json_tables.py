@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
@@ -29,7 +29,8 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import Value, wide_table
+from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
+from tree_sway.files.layouts.spread_columns import spread_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
     signalk_values,
@@ -43,14 +44,6 @@ _BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 Cells = dict[str, str]
 
 
-class _Quantity(NamedTuple):
-    """Values of a quantity by time."""
-
-    name: str
-    unit: str
-    by_time: dict[str, Any]
-
-
 def _read_json_table(lines: list[str], source: str) -> TextTable:
     """Return the longest table of a JSON document; a `FormatError` if there is none."""
     document = document_of(lines)
@@ -58,13 +51,15 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
+    # One with a wind before a longer one of another sensor.
+    winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
+    if not winds and (spread := spread_table(document, source)):
+        return spread
     if not tables:
         raise FormatError(
             'no table in the JSON',
             cure='give columns or records with a time, a speed and a direction',
         )
-    # One with a wind before a longer one of another sensor.
-    winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     return max(winds or tables, key=lambda table: len(table.texts))
 
 
@@ -104,9 +99,10 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if depth > DEEPEST:
         return
     if isinstance(node, dict):
-        quantities = list(_quantities(node, ''))
-        if quantities:
-            yield _by_time(quantities, source)
+        own: Cells = {}
+        values = list(_values_by_time(node, '', own))
+        if values:
+            yield wide_table(values, source, 'time', own)
         for table in (_columns(node, units, source), _rows(node, source)):
             if table is not None:
                 yield table
@@ -114,15 +110,11 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
             yield from _tables(each, own_units, source, depth + 1)
     elif isinstance(node, list):
-        states = _lists_of_states(node)
-        node = list(_samples(node)) or node
-        if states:
-            yield _of_states(states, source)
-        elif node and all(isinstance(each, dict) for each in node):
+        node = list(_samples(node)) or list(_states(node)) or node
+        if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
-        if not states:
-            for each in node:
-                yield from _tables(each, units, source, depth + 1)
+        for each in node:
+            yield from _tables(each, units, source, depth + 1)
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -199,53 +191,38 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         records.append(record)
         empty |= dict.fromkeys(record, '')
     names = list(empty)
-    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     rows = [list((empty | record).values()) for record in records]
+    short = [name.rpartition('.')[2] for name in names]
+    wanted = long_columns(short)
+    if wanted is not None:
+        named = (dict(zip(short, row, strict=True)) for row in rows)
+        return long_table(enumerate(named, start=1), wanted, source)
+    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
     titles = [units.get(f'#{name}', name) for name in names]
     return table_of_cells(titles, rows, source, units=units_of_columns)
 
 
-def _quantities(node: dict[str, Any], before: str) -> Iterator[_Quantity]:
-    """Yield Ecowitt's quantities."""
-    for name, each in node.items():
-        if not isinstance(each, dict):
-            continue
-        if isinstance(each.get('list'), dict):
-            yield _Quantity(f'{before}{name}', text_of(each.get('unit', '')), each['list'])
+def _values_by_time(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
+    """Yield the values of Ecowitt's quantities, and note their units."""
+    for own, each in node.items():
+        inside = object_of(each)
+        name = f'{before}{own}'
+        if 'list' in inside:
+            units[name] = text_of(inside.get('unit', ''))
+            for time, value in object_of(inside['list']).items():
+                yield 0, time, name, text_of(value)
         else:
-            yield from _quantities(each, f'{name}_')
+            yield from _values_by_time(inside, f'{own}_', units)
 
 
-def _by_time(quantities: list[_Quantity], source: str) -> TextTable:
-    """Return the table of quantities, with a row for each time that any of them has."""
-    values = [
-        (0, time, each.name, text_of(value))
-        for each in quantities
-        for time, value in each.by_time.items()
-    ]
-    return wide_table(values, source, 'time', {each.name: each.unit for each in quantities})
-
-
-def _lists_of_states(node: list[Any]) -> list[list[dict[str, Any]]]:
-    """Return those elements of a list that are lists of states of Home Assistant."""
-    lists = [each for each in node if each and isinstance(each, list)]
-    return [each for each in lists if all('state' in object_of(state) for state in each)]
-
-
-def _of_states(lists: list[list[dict[str, Any]]], source: str) -> TextTable:
-    """Return the table of the states of some entities; only the first of each may name it."""
-    values: list[Value] = []
-    unit_of: Cells = {}
-    for states in lists:
-        name = ''
-        for state in states:
-            name = text_of(state.get('entity_id', name))
-            if attributes := object_of(state.get('attributes')):
-                unit_of.setdefault(name, _unit(attributes.get('unit_of_measurement')))
-            time = text_of(state.get('last_changed', state.get('last_updated')))
-            if state['state'] not in ('unavailable', 'unknown'):
-                values.append((len(values) + 1, time, name, text_of(state['state'])))
-    return wide_table(values, source, 'last_changed', unit_of)
+def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
+    """Yield the states of Home Assistant's lists; only the first of each may name its entity."""
+    for states in node if all(map(list_of, node)) else ():
+        known: dict[str, Any] = {}
+        for state in map(object_of, states):
+            known = known | {'last_changed': state.get('last_updated')} | state
+            if 'state' in state:
+                yield known
 
 
 def _unit(cell: Any) -> str:

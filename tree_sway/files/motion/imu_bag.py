@@ -10,15 +10,13 @@ east, north, up. A quantity whose covariance begins with -1 is not measured.
 from __future__ import annotations
 
 from pathlib import Path
-import struct
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
-from tree_sway.files.recording.bag_reader import header_of, read_bag
+from tree_sway.files.recording.bag_reader import numbers_of, read_bag
 
 IMU = 'sensor_msgs/msg/Imu'
 _NUMBERS = 37
@@ -46,9 +44,10 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
     """
     bag = read_bag(path, (IMU,))
     chosen = bag.chosen(topic, (IMU,), 'motion', path, f'{path.name}?topic=')
-    rows = [_sample(data, recorded) for recorded, data in bag.messages[chosen]]
-    frames = {frame for _, frame, _ in rows if frame is not None}
-    n_short = sum(frame is None for _, frame, _ in rows)
+    recorded = [stamp for stamp, _ in bag.messages[chosen]]
+    rows = [numbers_of(data, _NUMBERS) for _, data in bag.messages[chosen]]
+    frames = {row.frame for row in rows if row}
+    n_short = rows.count(None)
     if n_short == len(rows):
         what = f'no message on {chosen}' + (f', {n_short} are too short' if rows else '')
         raise FormatError(what, cure='record while the sensor publishes')
@@ -57,9 +56,9 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
             f'{chosen} has messages of {len(frames)} frames: {", ".join(sorted(frames)[:4])}',
             cure='record each sensor on a topic of its own',
         )
-    epoch = rows[0][0] * 1e-9
-    time = np.array([(stamp - rows[0][0]) * 1e-9 for stamp, _, _ in rows])
-    values = np.stack([numbers for _, _, numbers in rows])
+    stamps = [(row and row.stamp) or stamp for row, stamp in zip(rows, recorded, strict=True)]
+    time = np.array([(stamp - stamps[0]) * 1e-9 for stamp in stamps])
+    values = np.array([row.values if row else [np.nan] * _NUMBERS for row in rows])
     parts = []
     for first, size in ((25, 3), (13, 3), (0, 4)):
         is_absent = float(values[0, first + size]) == -1.0
@@ -72,19 +71,4 @@ def read_imu_bag(path: Path, topic: str | None = None) -> MotionRecord:
         )
     counted = ((n_short, 'are too short'), (n_back, 'are not later than the one before'))
     notes = (f'topic {chosen}, {IMU}', *(f'{n} messages {what}' for n, what in counted if n))
-    return MotionRecord(time, parts[0], parts[1], parts[2], str(path), epoch, notes)
-
-
-def _sample(data: bytes, recorded: int) -> tuple[int, str | None, Floats]:
-    """
-    Read a message of CDR.
-
-    The stamp in [ns] is that of recording where it is zero; the frame and the numbers follow, of a
-    message that is too short None and not a number.
-    """
-    try:
-        order, stamp, frame, at = header_of(data)
-        numbers = struct.unpack_from(f'{order}{_NUMBERS}d', data, at)
-    except struct.error:
-        return recorded, None, np.full(_NUMBERS, np.nan)
-    return stamp or recorded, frame, np.array(numbers)
+    return MotionRecord(time, parts[0], parts[1], parts[2], str(path), stamps[0] * 1e-9, notes)

@@ -11,18 +11,18 @@ a pair sits. A header is optional; a unit in its brackets counts.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.files.column_names import name_and_unit, unit_factor
+from tree_sway.files.column_names import name_and_unit
 from tree_sway.files.motion.motion_record import MotionRecord
 from tree_sway.files.paths import of_file
-from tree_sway.files.table_file import filled_lines, split_row
+from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.time_stamps import times_of
 from tree_sway.twin import as_orientation
@@ -62,24 +62,26 @@ def read_strain(path: Path) -> StrainRecord:
         No time in its first column, no pairs, an unknown unit, or values that wood does not bear.
 
     """
-    _, lines = filled_lines(read_lines(path))
+    numbers, lines = filled_lines(read_lines(path))
     first = lines[0] if lines else ''
-    separator = next((each for each in '\t;,' if each in first), ' ')
-    head, *rows = (split_row(line, separator) for line in lines or [''])
-    if len(head) > 1 and finite(head[1]) is not None:
-        rows.insert(0, head)
-    size = max((len(row) for row in rows), default=0)
+    split = partial(split_row, separator=next((each for each in '\t;,' if each in first), ' '))
+    columns = tuple(split(first))
+    begin = len(columns) > 1 and finite(columns[1]) is None
+    table = TextTable(columns, numbers[begin:], lines[begin:], split, str(path))
+    size = len(columns)
     if size < 3 or not size % 2:
-        raise FormatError(
+        raise table.error(
             f'{max(size - 1, 0)} columns beside the time',
             cure='give the time, then two columns for each place: north side, east side',
         )
-    times = times_of([row[0] for row in rows])
-    numbers = [[finite(cell) for cell in row[1:]] + [None] * (size - len(row)) for row in rows]
-    values = np.array(numbers, dtype=float) * _factor(head)
+    dated = table.cells(0, range(len(table.texts)))
+    times = times_of(dated)
+    unit = name_and_unit(columns[1], 'strain')[1]
+    factor = table.known_factor('strain', unit) if unit else 1.0
+    values = table.values(range(1, size)) * factor
     if not (np.isfinite(times.seconds).any() and np.isfinite(values).any(axis=0).all()):
-        raise FormatError(
-            f"no time in '{rows[0][0]}', or a column without numbers",
+        raise table.error(
+            f"no time in '{dated[0]}', or a column without numbers",
             cure='put the time first, and leave that pair out',
         )
     away = np.abs(values - np.nanmedian(values, axis=0))
@@ -90,17 +92,5 @@ def read_strain(path: Path) -> StrainRecord:
             'voltages',
         )
     notes = f'{path.name}: {size // 2} pairs of strain, north and east side', times.note
-    pairs = values.reshape(len(rows), -1, 2)
+    pairs = values.reshape(len(values), -1, 2)
     return StrainRecord(times.seconds, pairs, str(path), times.epoch, tuple(filter(None, notes)))
-
-
-def _factor(head: Sequence[str]) -> float:
-    """Factor to strain by the unit of the second column of a header."""
-    unit = name_and_unit(head[1], 'strain')[1] if len(head) > 1 else ''
-    factor = unit_factor('strain', unit) if unit else 1.0
-    if factor is None:
-        raise FormatError(
-            f"unknown unit of strain '{unit[:20]}'",
-            cure='give strain as - or microstrain; calibrate voltages first',
-        )
-    return factor

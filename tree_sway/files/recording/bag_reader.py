@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
 import struct
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from tree_sway.files.bounded import Arrays, bounded_arrays
 _CURE = "if it was cut off, repair it with 'mcap recover' or 'sqlite3 FILE .recover'"
 
 
-BODY = 4
+_BODY = 4
 """Bytes of encapsulation, from which on numbers are aligned."""
 
 
@@ -86,12 +87,27 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
     return content
 
 
-def header_of(data: bytes) -> tuple[str, int, str, int]:
-    """Order of bytes of a message of CDR, stamp [ns] and frame of its header, and its end."""
+class Numbers(NamedTuple):
+    """Stamp [ns] and frame of a message's header, and the numbers behind it."""
+
+    stamp: int
+    frame: str
+    values: tuple[float, ...]
+
+
+def numbers_of(data: bytes, count: int, *, has_header: bool = True) -> Numbers | None:
+    """Return the first numbers of a message of CDR; None if it is too short."""
     order = '<' if data[1:2] == b'\1' else '>'
-    second, nanosecond, size = struct.unpack_from(f'{order}iII', data, BODY)
-    frame = data[BODY + 12 : BODY + 12 + size].rstrip(b'\0').decode('utf-8', 'replace')
-    return order, second * 1_000_000_000 + nanosecond, frame, BODY - (-(12 + size) // 8) * 8
+    stamp, frame, at = 0, '', _BODY
+    try:
+        if has_header:
+            second, nanosecond, size = struct.unpack_from(f'{order}iII', data, at)
+            stamp = second * 1_000_000_000 + nanosecond
+            frame = data[at + 12 : at + 12 + size].rstrip(b'\0').decode('utf-8', 'replace')
+            at -= -(12 + size) // 8 * 8
+        return Numbers(stamp, frame, struct.unpack_from(f'{order}{count}d', data, at))
+    except struct.error:
+        return None
 
 
 def _messages_of_bag(path: str, *types: str) -> Arrays:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from tree_sway.files.wind.instruments import INSTRUMENTS as INSTRUMENTS
     from tree_sway.files.wind.instruments import LOGGED as LOGGED
     from tree_sway.files.wind.instruments import read_instrument as read_instrument
-    from tree_sway.files.wind.metar import METAR as METAR
     from tree_sway.files.wind.nmea import parse_nmea as parse_nmea
     from tree_sway.files.wind.nmea import SENTENCES as SENTENCES
     from tree_sway.files.wind.phone import read_phone_sway as read_phone_sway

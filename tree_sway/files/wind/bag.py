@@ -12,10 +12,9 @@ north, up (REP-103); ``direction_convention`` and ``yaw`` change that.
 from __future__ import annotations
 
 from pathlib import Path
-import struct
 
 from tree_sway.core.wind import WindConvention
-from tree_sway.files.recording.bag_reader import BODY, header_of, read_bag
+from tree_sway.files.recording.bag_reader import numbers_of, read_bag
 from tree_sway.files.wind.record import WindRecord, WindRows
 
 WIND_TYPES = tuple(
@@ -53,26 +52,18 @@ def read_bag_wind(
     epoch = -1
     n_unstamped = 0
     for number, (recorded, data) in enumerate(messages, start=1):
-        try:
-            stamp, velocity = _sample(data, has_header=not kind.endswith('/Vector3'))
-        except struct.error:
+        found = numbers_of(data, 3, has_header=not kind.endswith('/Vector3'))
+        if found is None:
             rows.refuse(number, 'it is too short')
             continue
-        n_unstamped += not stamp
-        epoch = (stamp or recorded) if epoch < 0 else epoch
-        rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
+        n_unstamped += not found.stamp
+        stamp = found.stamp or recorded
+        epoch = stamp if epoch < 0 else epoch
+        x, y, z = found.values
+        rows.add(number, (stamp - epoch) * 1e-9, (x, y, z))
     notes = [f'topic {chosen}, {kind}']
     if n_unstamped:
         notes.append(f'{n_unstamped} messages without a stamp have their time of recording')
     return rows.record(
         epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
     )
-
-
-def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
-    """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
-    order, stamp, at = '<' if data[1:2] == b'\1' else '>', 0, BODY
-    if has_header:
-        order, stamp, _, at = header_of(data)
-    x, y, z = struct.unpack_from(f'{order}3d', data, at)
-    return stamp, (x, y, z)

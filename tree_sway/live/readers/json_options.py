@@ -10,7 +10,7 @@ from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.source_address import SourceAddress
 
 
-def names_of(address: SourceAddress, interval: float | None = None) -> WindNames:
+def names_of(address: SourceAddress) -> WindNames:
     """
     Read the paths ``speed``, ``direction`` and ``gust``, and ``unit``.
 
@@ -21,7 +21,6 @@ def names_of(address: SourceAddress, interval: float | None = None) -> WindNames
         _path(address, 'direction'),
         _path(address, 'gust'),
         address.text_of('unit'),
-        interval,
     )
 
 

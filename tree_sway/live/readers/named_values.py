@@ -68,7 +68,7 @@ class WindNames:
             reading_of(
                 kind,
                 speed,
-                None if direction in (_ABSENT, '') else direction,
+                None if direction in (_ABSENT, *_NO_DIRECTION) else direction,
                 factor=factor,
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
@@ -94,6 +94,8 @@ class WindNames:
 
 
 _ABSENT = object()
+_NO_DIRECTION = ('', 'VRB')
+"""Cells of a direction that is not measured, or variable."""
 
 
 def _sender(leaves: Mapping[str, Any]) -> str:

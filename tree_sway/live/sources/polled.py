@@ -7,7 +7,7 @@ Documents of known services and instruments that are asked for now and then: `po
 ``server``, which is that of another installation; ``example`` is the cure for a wrong place.
 ``every`` is the time between requests, ``interval`` the length of a mean that the document does
 not tell, and ``lasts`` the time for which it is used [s]; ``upper`` says that capital letters are
-meant. ``read`` is a function of `readers`.
+meant. ``read`` is a function of `readers`, or a class that is made with the row.
 """
 
 from __future__ import annotations
@@ -38,5 +38,6 @@ def open_source(address: SourceAddress) -> Source:
     name = known['name'] if 'name' in address.options else known['shown'].format(place=place)
     module, function = known['read'].split('.')
     read = getattr(import_module(f'{readers.__name__}.{module}'), function)
+    read = read(known) if known['speed'] else read
     lasts = known['lasts'] or None
     return Source(HttpPoll(url, every), read, name, known['expects'], known['interval'], lasts)

@@ -11,7 +11,7 @@ and Opendatasoft, and records in a list or one in each line.
 from __future__ import annotations
 
 from collections.abc import Iterator
-import math
+import json
 from pathlib import Path
 import re
 from typing import Any
@@ -19,10 +19,11 @@ from typing import Any
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.json_values import cell_of, document_of, list_of, object_of
+from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
 
-_DEEPEST = 6
+_GEOMETRY = 'geometry'
 _LISTS = ('features', 'elements', 'records', 'results')
 _PROPERTIES = ('properties', 'attributes', 'fields', 'tags')
 _BEGINS = re.compile(
@@ -63,7 +64,7 @@ def read_geojson(path: Path) -> TextTable:
             cure='export degrees, as by outSR=4326 in ArcGIS',
         )
     names = list(dict.fromkeys(name for record in records for name in record))
-    if listed == 'features' and not {'x', 'longitude'} & {*names}:
+    if listed == 'features' and _GEOMETRY not in names:
         raise FormatError(
             'no feature has a place',
             cure='give each feature a geometry with coordinates of two numbers',
@@ -77,8 +78,10 @@ def _cells(record: dict[str, Any]) -> Iterator[tuple[str, str]]:
     own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
     before = 'tags.' if own == 'tags' else ''
     geometry = object_of(record.get('geometry'))
-    place = _place(geometry.get('coordinates', [geometry.get('x'), geometry.get('y')]))
-    taken = PLACES if place else ()
+    place = geometry.get('coordinates', [geometry.get('x'), geometry.get('y')])
+    corners = json.dumps({'coordinates': place})
+    is_placed = point_of_cell(corners) is not None
+    taken = PLACES if is_placed else ()
     for name, each in _flat(object_of(record[own]) if own else record).items():
         if name.lower() not in taken:
             inside = each if isinstance(each, dict) else {'': each}
@@ -86,7 +89,8 @@ def _cells(record: dict[str, Any]) -> Iterator[tuple[str, str]]:
                 yield f'{before}{name}.{last}'.removesuffix('.'), cell_of(cell)
     if own == 'tags':
         yield from ((name, cell_of(record[name])) for name in ('lat', 'lon') if name in record)
-    yield from place.items()
+    if is_placed:
+        yield _GEOMETRY, corners
 
 
 def _flat(properties: dict[str, Any]) -> dict[str, Any]:
@@ -96,32 +100,3 @@ def _flat(properties: dict[str, Any]) -> dict[str, Any]:
         for record in reversed(list(map(object_of, list_of(each)))):
             inside |= {name: cell for name, cell in record.items() if cell is not None}
     return inside | properties
-
-
-def _place(coordinates: Any) -> dict[str, str]:
-    """Cells of the mean of the corners; none if there are none, or one is broken."""
-    try:
-        corners = list(_corners(coordinates, 0))
-    except (ValueError, TypeError, OverflowError):
-        return {}
-    if not corners:
-        return {}
-    x = sum(corner[0] for corner in corners) / len(corners)
-    y = sum(corner[1] for corner in corners) / len(corners)
-    if not math.isfinite(x + y):
-        return {}
-    is_degrees = abs(x) <= 360.0 and abs(y) <= 90.0
-    names = ('longitude', 'latitude') if is_degrees else ('x', 'y')
-    return {names[0]: repr(x), names[1]: repr(y)}
-
-
-def _corners(node: Any, depth: int) -> Iterator[list[float]]:
-    if not isinstance(node, list) or depth > _DEEPEST or not node:
-        return
-    if isinstance(node[0], int | float):
-        if len(node) < 2:
-            raise ValueError(f'a place of one number, {node[0]}')
-        yield [float(each) for each in node[:2]]
-    else:
-        for each in node:
-            yield from _corners(each, depth + 1)

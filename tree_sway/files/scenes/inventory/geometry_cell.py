@@ -4,16 +4,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import NamedTuple
 
 _NUMBER = r'-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?'
-_NUMBERS = re.compile(_NUMBER)
 _LATITUDE_FIRST = re.compile(rf'\s*\(?\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\)?\s*')
 """As in ``48.85, 2.32`` or ``(48.85, 2.32)``."""
 
-_GEOMETRY = re.compile(r'(?:POINT[\sZM]*\(|coordinates)(.*)', re.IGNORECASE | re.DOTALL)
+_GEOMETRY = re.compile(r'(?:[A-Z ]*\(|coordinates)(.*)', re.IGNORECASE | re.DOTALL)
 """Coordinates of a geometry, without its reference system, as in ``SRID=4326;POINT...``."""
+_CORNER = re.compile(
+    rf'\[\s*({_NUMBER})\s*,\s*({_NUMBER})|({_NUMBER})\s+({_NUMBER})(?:\s+{_NUMBER})*'
+)
+"""East and north of a corner, maybe before its height: of GeoJSON, and of WKT."""
 
 
 class Point(NamedTuple):
@@ -25,7 +29,7 @@ class Point(NamedTuple):
 
 def point_of_cell(cell: str) -> Point | None:
     """
-    Return the point of a cell, the first of several; None without one.
+    Return the point of a cell, the mean of several; None without one.
 
     A pair is latitude and longitude, ``48.85, 2.32``. Geometries have longitude or easting first:
     WKT ``POINT (2.32 48.85)`` and GeoJSON ``{"type": "Point", "coordinates": [2.32, 48.85]}``.
@@ -34,7 +38,12 @@ def point_of_cell(cell: str) -> Point | None:
     if pair is not None:
         return Point(east=float(pair[2]), north=float(pair[1]))
     geometry = _GEOMETRY.search(cell)
-    numbers = _NUMBERS.findall(geometry[1]) if geometry is not None else []
-    if len(numbers) < 2:
+    corners = [
+        list(filter(None, each)) for each in _CORNER.findall(geometry[1] if geometry else '')
+    ]
+    if not corners:
         return None
-    return Point(east=float(numbers[0]), north=float(numbers[1]))
+    east, north = (
+        math.fsum(map(float, axis)) / len(corners) for axis in zip(*corners, strict=True)
+    )
+    return Point(east, north) if math.isfinite(east + north) else None

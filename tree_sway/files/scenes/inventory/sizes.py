@@ -31,6 +31,8 @@ _MIDDLING = 45.0
 """Usual height over diameter of a tree of a city, up to a middling stem."""
 _MIDDLING_STEM = 0.25
 """Diameter of a middling stem [m]."""
+_HIGHEST_MIDDLE = 60.0
+"""Median height that no inventory exceeds [m]."""
 _INCH = 0.0254
 _FOOT = 0.3048
 _CM = 0.01
@@ -78,7 +80,7 @@ def _note_impossible(columns: InventoryColumns, index: int, diameter: Floats) ->
 def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) -> tuple[float, str]:
     """Choose the unit of diameters that have none, and say why if it is inches."""
     positive = values[values > 0.0]
-    middle = float(np.median(positive)) if len(positive) else 30.0
+    middle = _middle(values)
     # Metres have fractions; a stem of 3 in whole numbers is a young tree's in inches or cm.
     has_fractions = bool((positive != np.round(positive)).any())
     if has_fractions and float(np.quantile(positive, 0.9)) <= 3.0:
@@ -103,6 +105,12 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
         if _slenderness(height, values * _CM, quantile=0.1) > _SLENDER[1]:
             return _INCH, ', by height in feet over it'
     return _CM, ''
+
+
+def _middle(values: Floats) -> float:
+    """Median of the positive values; 0 without one."""
+    positive = values[values > 0.0]
+    return float(np.median(positive)) if len(positive) else 0.0
 
 
 def _slenderness(height: Floats, diameter: Floats, quantile: float = 0.5) -> float:
@@ -151,6 +159,10 @@ def heights_of(
         if ratio > most and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
+        elif not ratio and (is_in_states or _HIGHEST_MIDDLE < _middle(values) < _TALLEST / _FOOT):
+            factor = _FOOT
+            why = 'as the trees stand in the United States' if is_in_states else 'by their size'
+            columns.note(f'{name} is taken as feet, {why}; call it {name} [m] if it is')
     height = values * factor
     for row in np.flatnonzero(height > _TALLEST).tolist():
         detail = f'{name} is {values[row]:g}, a height of {height[row]:g} m'

@@ -27,6 +27,8 @@ from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 
 _COLUMNS = 'number type x y z radius parent'.split()
 _NAMES = re.compile(r'\s*[a-z]+[\s,;]+type\b.*\bradius\b', re.IGNORECASE)
+_TYPES = 256.0
+"""Types of nodes are below; what has a year there is no skeleton."""
 _BETWEEN = re.compile(r'[\s,;]+')
 
 
@@ -34,8 +36,9 @@ def _is_swc(head: str) -> bool:
     """Whether the beginning of a file is that of an SWC file."""
     _, lines = filled_lines(_without_names(head.splitlines()))
     cells = _cells(lines[0]) if lines else []
+    numbers = [each for each in map(finite, cells[:7]) if each is not None]
     is_root = len(cells) == 7 or cells[6:7] == ['-1']
-    return is_root and None not in map(finite, cells[:7])
+    return is_root and len(numbers) == 7 and 0.0 <= numbers[1] < _TYPES and numbers[6] % 1.0 == 0.0
 
 
 def _without_names(lines: Sequence[str]) -> list[str]:
