@@ -55,7 +55,6 @@ const stream = new TreeStream(address.href, {
       state.viewersToken = hello.viewers_token ?? "";
       view.showPanel();
       element("panel").hidden = hello.controls.length === 0;
-      view.fit();
       element("pull").hidden = hello.can_pull !== true;
       risk.take(hello.critical_winds);
       element("camera").hidden = hello.has_camera !== true;

@@ -47,11 +47,15 @@ export class View {
     this._skips = false;
     /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
     this._since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
-    scene.camera.room = () => this._room();
-    // A card grows when its text comes, or its panel is opened.
-    const sizes = new ResizeObserver(() => this.fit());
-    for (const id of ["head", "traces", "panel", "tools"]) sizes.observe(element(id));
-    window.addEventListener("resize", () => requestAnimationFrame(() => this.fit()));
+    const { camera, canvas } = scene;
+    const cell = /** @type {HTMLElement} */ (canvas.parentElement);
+    camera.room = () => {
+      const { left, top, right, bottom } = cell.getBoundingClientRect();
+      const { clientWidth: width, clientHeight: height } = canvas;
+      return [left / width, top / height, right / width, bottom / height];
+    };
+    // Fit the scene between the cards, unless someone has moved the camera.
+    new ResizeObserver(() => camera.isHome && camera.home()).observe(cell);
   }
 
   get treeName() {
@@ -161,30 +165,6 @@ export class View {
   /** Whether the trace is that of the highest tip, which the band is about. */
   get _showsTip() {
     return this.shown.value === "motion" && this.scene.picked < 0;
-  }
-
-  /** Part of the picture that no card covers, as `Camera.room`. */
-  _room() {
-    const canvas = this.scene.canvas;
-    const [head, lines, form, tools] = ["head", "traces", "panel", "tools"].map((id) => element(id).getBoundingClientRect());
-    const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
-    const isNarrow = head.right > 0.6 * width;
-    if (isNarrow) {
-      const lowest = [lines, form].filter((each) => each.height).map((each) => each.top);
-      return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
-    }
-    const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
-    const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
-    const right = isWall ? form.left : width;
-    const left = Math.max(head.right, lines.right);
-    // On a tablet there is more room between the two cards on the left than beside them.
-    if (right - left < 0.35 * width) return [0, head.bottom / height, right / width, (lines.height ? lines.top : height) / height];
-    return [left / width, top, right / width, tools.height ? tools.top / height : 1];
-  }
-
-  /** Fit the scene between the cards, unless someone has moved the camera. */
-  fit() {
-    if (this.scene.camera.isHome) this.scene.camera.home();
   }
 
   /** Draw the tree of now, with its traces and facts. @param {number} now [ms] */
