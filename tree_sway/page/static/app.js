@@ -24,7 +24,8 @@ history.replaceState(null, "", barAddress);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
 const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("write_again", error.message)));
-const canvas = /** @type {HTMLCanvasElement} */ (element("view"));
+/** @type {HTMLCanvasElement} */
+const canvas = element("view");
 // In full quality nothing is left out, even without a graphics unit.
 const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
   .catch((error) => giveUp(word("blind"), word("cure", error.message)));

@@ -54,7 +54,8 @@ function fits(look, like) {
 
 /** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
-  const size = /** @type {Record<string, number>} */ ({});
+  /** @type {Record<string, number>} */
+  const size = {};
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
     const { values, shape } = parts[name] ?? {};
     need(values?.constructor === TYPES[type] && shape.length === axes.length, name);
@@ -110,7 +111,7 @@ export function checkTrees(header, kinds, own) {
   need(/^[0-9a-f]{16}$/.test(header.identity), "identity");
   need(trees.length > 0, "trees");
   sizesOf(own, { tree_place: ["f32", trees.length, 5] });
-  let [poses, coordinates] = [0, 0];
+  let poses = 0, coordinates = 0;
   for (const [i, tree] of trees.entries()) {
     need(Number.isInteger(tree.kind) && tree.kind in kinds, `trees[${i}]`);
     need(typeof tree.name === "string", `trees[${i}]`);

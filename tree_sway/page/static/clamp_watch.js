@@ -10,10 +10,8 @@ const FEWEST = 3;
 
 /** Sums the time for which the steps of a tree were clamped. */
 export class ClampWatch {
-  constructor() {
-    this._seconds = 0;
-    this._last = 0;
-  }
+  _seconds = 0;
+  _last = 0;
 
   /** Note a clamped step; steps that are not clamped need no call. @param {number} step its number
    * @param {number} dt [s] @returns {boolean} whether the tree has been clamped for too long */

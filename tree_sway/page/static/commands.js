@@ -36,7 +36,8 @@ async function copyLink({ scene, day, shown, state: { controls, viewersToken } }
 export function listen(view, token) {
   const { scene, stream, hands } = view;
   const { canvas } = scene;
-  const help = /** @type {HTMLDialogElement} */ (element("keys"));
+  /** @type {HTMLDialogElement} */
+  const help = element("keys");
   /** Actions of the buttons, by their ids, and of the keys that their elements name. @type {Record<string, () => unknown>} */
   const actions = {
     home: () => scene.camera.home(),

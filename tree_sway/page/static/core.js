@@ -55,7 +55,7 @@ export class Block {
 /** Types of arrays by their number in the bytes of a model. */
 const TYPES = [Float64Array, Float32Array, BigInt64Array];
 /** Bytes of the head of a model, of an entry of its list, and for an error. */
-const [HEAD, ENTRY, ROOM] = [16, 72, 300];
+const HEAD = 16, ENTRY = 72, ROOM = 300;
 
 /** Call with room for an error, which becomes a `ProtocolError`. @param {object} owner of what is made
  * @param {string} free function @param {(at: number, room: number) => number} make @returns {number} address */

@@ -14,9 +14,9 @@ const MODULUS = 8e9;
 /** Interval at which a pull is renewed [ms]. */
 const RENEW_EVERY = 100;
 /** Growth of the stiffness of a spring that is too weak, and its largest value [N/m]. */
-const [HARDER, STIFFEST] = [1.4, 1e5];
+const HARDER = 1.4, STIFFEST = 1e5;
 /** Length of the record of a free decay, and the length from which on it can be saved [s]. */
-const [RECORDED, OFFERED] = [30, 3];
+const RECORDED = 30, OFFERED = 3;
 /** Time after which a release has surely reached the server [ms]. */
 const RELEASED = 250;
 /** Movement of the hand per key press, over the size of the picture, and its directions. */
@@ -51,6 +51,16 @@ export function forceText(force) {
 
 /** One pull at a branch: its spring, then the record of the free decay. */
 export class Pull {
+  _sentAt = -Infinity;
+  /** Time [s] and displacement [m] since the release. @type {number[][]} */
+  record = [];
+  _from = Infinity;
+  isHeld = true;
+  /** @type {Touch | null} */
+  _touch = null;
+  /** Newest frame of the record. @type {Frame | null} */
+  _last = null;
+
   /** @param {Scene} scene @param {TreeStream} stream @param {number} segment of the watched tree */
   constructor(scene, stream, segment) {
     this.scene = scene;
@@ -58,14 +68,6 @@ export class Pull {
     this.segment = segment;
     this.stiffness = stiffnessAt(scene, segment);
     this.to = scene.position(segment);
-    this._sentAt = -Infinity;
-    /** Time [s] and displacement [m] since the release. */
-    this.record = /** @type {number[][]} */ ([]);
-    this._from = Infinity;
-    this.isHeld = true;
-    this._touch = /** @type {Touch | null} */ (null);
-    /** Newest frame of the record. */
-    this._last = /** @type {Frame | null} */ (null);
   }
 
   /** Force of the spring [N]. */
@@ -128,13 +130,15 @@ export class Pull {
 }
 
 export class Drag {
+  isOn = false;
+  /** @type {Pull | null} */
+  pull = null;
+  _pointer = -1;
+
   /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
-    this.isOn = false;
-    this.pull = /** @type {Pull | null} */ (null);
-    this._pointer = -1;
     const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
     this._shown = { line, label, saving };
     saving.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));

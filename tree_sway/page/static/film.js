@@ -14,7 +14,8 @@ scene.camera.room = () => [0, 0, 1, 1];
 scene.resize();
 scene.camera.home();
 
-let picture = /** @type {Blob | null} */ (null);
+/** @type {Blob | null} */
+let picture = null;
 for (;;) {
   const answer = await fetch("/", { method: "POST", body: picture });
   const { time, wind, coordinates } = await answer.json();

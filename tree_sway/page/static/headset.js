@@ -10,30 +10,33 @@ import { turned } from "./quaternions.js";
 /** Largest angle between a ray and the branch that it picks [rad]. */
 const AIM = 0.06;
 /** Longest teleport [m], and first distance over the height of the tree. */
-const [FARTHEST, HEIGHTS_AWAY] = [40, 0.9];
+const FARTHEST = 40, HEIGHTS_AWAY = 0.9;
 
 /** The view of an eye with the interface of `Camera`. @param {any} view of WebXR @returns {View["camera"]} */
 function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, projectionMatrix: p }) {
   const matrix = new DOMMatrix([...p]).multiply(new DOMMatrix([...inverse.matrix])).toFloat32Array();
   const column = (/** @type {number} */ at, share = 1) => Array.from(m.slice(at, at + 3), (each) => share * each);
-  const [right, up] = [column(0, 1 / p[0]), column(4, 1 / p[5])];
+  const right = column(0, 1 / p[0]), up = column(4, 1 / p[5]);
   const axes = { right, up, back: column(8).map((each, c) => each - p[8] * right[c] - p[9] * up[c]) };
   return { matrix, eye: [x, y, z], axes: () => axes, update: () => matrix };
 }
 
 export class Headset {
+  /** @type {any} */
+  session = null;
+  frames = 0;
+  /** @type {View[]} */
+  views = [];
+  /** Place of its floor in the scene [m], and its first heading [rad]. */
+  origin = [0, 0, 0];
+  heading = 0;
+  /** Pull of each controller, and its distance [m]. @type {Map<any, {pull: Pull, far: number}>} */
+  pulls = new Map();
+
   /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
-    this.session = /** @type {any} */ (null);
-    this.frames = 0;
-    this.views = /** @type {View[]} */ ([]);
-    /** Place of its floor in the scene [m], and its first heading [rad]. */
-    this.origin = [0, 0, 0];
-    this.heading = 0;
-    /** Pull of each controller, and its distance [m]. */
-    this.pulls = /** @type {Map<any, {pull: Pull, far: number}>} */ (new Map());
   }
 
   /** Enter, or leave. @param {() => void} onEnd called when it has ended */
@@ -64,7 +67,7 @@ export class Headset {
    * @param {number} x [m] @param {number} y */
   _stand(x, y) {
     const half = Math.PI / 4 - this.heading / 2;
-    const [c, s] = [Math.SQRT1_2 * Math.cos(half), Math.SQRT1_2 * Math.sin(half)];
+    const c = Math.SQRT1_2 * Math.cos(half), s = Math.SQRT1_2 * Math.sin(half);
     this.origin = [x, y, this.scene.ground];
     const turn = [-c, s, s, c];
     const [right, up, back] = turned(turn, this.origin.map((each) => -each));

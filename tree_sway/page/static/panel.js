@@ -11,8 +11,8 @@ const STEPS = 400;
 /** Ratio of the ends of a range from which on its slider is logarithmic. */
 const WIDE = 1000;
 
-/** An element of the page. @param {string} id */
-export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+/** An element of the page. @template {HTMLElement} T its kind, which the caller knows @param {string} id @returns {T} */
+export const element = (id) => /** @type {any} */ (document.getElementById(id));
 
 /** Make an element with properties and children. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
@@ -42,7 +42,7 @@ function textOf({ name, unit }, value) {
 /** Range of a slider, and the values of its positions. @param {Control} control
  * @returns {{min: number, max: number, step: number, valueOf: (at: number) => number, positionOf: (value: number) => number}} */
 function scaleOf({ name, minimum, maximum }) {
-  const [low, high] = [minimum ?? 0, maximum ?? 1];
+  const low = minimum ?? 0, high = maximum ?? 1;
   const half = Math.PI;
   // The slider shows degrees that the wind comes from; the value is the angle that it blows to.
   if (name === "bearing_to") {
@@ -62,13 +62,15 @@ function scaleOf({ name, minimum, maximum }) {
 }
 
 export class Panel {
+  /** @type {Map<string, (value: any) => void>} */
+  _show = new Map();
+  /** Name of the control that is being moved; its value is not overwritten. @type {string} */
+  _inHand = "";
+
   /** @param {HTMLElement} form @param {(name: string, value: any) => void} send */
   constructor(form, send) {
     this.form = form;
     this.send = send;
-    this._show = /** @type {Map<string, (value: any) => void>} */ (new Map());
-    /** Name of the control that is being moved; its value is not overwritten. @type {string} */
-    this._inHand = "";
   }
 
   /** @param {Control[]} controls */

@@ -55,12 +55,13 @@ function unpack(data, what, inPlanes) {
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
   /** @type {Arrays[]} */
   const kinds = header.kinds.map(() => ({}));
-  const own = /** @type {Arrays} */ ({});
+  /** @type {Arrays} */
+  const own = {};
   for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
     need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
     const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
-    const [from, size] = [begin + offset, kind.BYTES_PER_ELEMENT];
+    const from = begin + offset, size = kind.BYTES_PER_ELEMENT;
     need(from >= begin && from + count * size <= data.byteLength, name);
     const planes = inPlanes && new Uint8Array(data, from, size * count);
     const whole = planes && planes.map((_, i) => planes[(i % size) * count + Math.floor(i / size)]);
@@ -76,7 +77,7 @@ export const decodeDescription = reader("description", (header, parts, own) => {
   const { name, frame_id, identity, flutter = null } = header;
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
   checkTrees(header, kinds, own);
-  let [nSegments, nCoordinates, nKeys] = [0, 0, 0];
+  let nSegments = 0, nCoordinates = 0, nKeys = 0;
   const trees = Array.from(header.trees, (/** @type {Tree} */ tree, number) => {
     const kind = kinds[tree.kind];
     const place = Array.from(own.tree_place.values.subarray(5 * number, 5 * number + 5));
@@ -130,6 +131,6 @@ export function decodeFrame(data, description) {
   coordinates.set(turns, count);
   for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
   const [x, y, z] = [20, 22, 24].map((at) => view.getInt16(at, true) * WIND_UNIT);
-  const [sequence, stamp] = [view.getUint32(8, true), Number(view.getBigInt64(12, true)) / 1e6];
+  const sequence = view.getUint32(8, true), stamp = Number(view.getBigInt64(12, true)) / 1e6;
   return { identity, sequence, stamp, flags, first, wind: [x, y, z], coordinates };
 }

@@ -20,12 +20,14 @@ export function placeIn(wind, [low, high]) {
 }
 
 export class Risk {
+  /** @type {Record<string, [number, number]>} bands by the names of trees [m/s] */
+  bands = {};
+  /** @type {HTMLInputElement} */
+  slider = element("storm");
+
   /** @param {Scene} scene */
   constructor(scene) {
     this.scene = scene;
-    /** @type {Record<string, [number, number]>} bands by the names of trees [m/s] */
-    this.bands = {};
-    this.slider = /** @type {HTMLInputElement} */ (element("storm"));
     this.slider.addEventListener("input", () => this.show());
   }
 

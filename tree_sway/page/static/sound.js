@@ -3,7 +3,7 @@
 /** Sound of the wind: air whose pitch rises with its speed, and leaves that rustle as they move. */
 
 /** Speeds at which air and leaves are loudest [m/s]. */
-const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
+const LOUD_AIR = 18, LOUD_LEAVES = 10;
 /** Time constant of the sound [s]. */
 const FOLLOWS = 0.15;
 

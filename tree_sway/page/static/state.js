@@ -10,18 +10,22 @@ const BEHIND = 1000;
 export const OF_TREE = ["tree", "height", "age", "individual", "month", "model"];
 
 export class PageState {
+  /** @type {"connecting" | "open" | "lost"} */
+  line = "connecting";
+  retryAt = 0;
+  lastFrameAt = 0;
+  /** @type {Record<string, any>} */
+  status = {};
+  /** @type {any[]} */
+  controls = [];
+  /** Token for links to this page, which allows looking but no changes. */
+  viewersToken = "";
+  /** Whether the tree of a link has been asked for and is still to come. */
+  isFollowing = false;
+
   /** @param {boolean} isOwn whether the page solves its tree without a server */
   constructor(isOwn) {
     this.isOwn = isOwn;
-    this.line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
-    this.retryAt = 0;
-    this.lastFrameAt = 0;
-    this.status = /** @type {Record<string, any>} */ ({});
-    this.controls = /** @type {any[]} */ ([]);
-    /** Token for links to this page, which allows looking but no changes. */
-    this.viewersToken = "";
-    /** Whether the tree of a link has been asked for and is still to come. */
-    this.isFollowing = false;
   }
 
   /** @param {string} name */

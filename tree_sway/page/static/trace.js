@@ -21,7 +21,8 @@ function unitOf(quantity, value) {
 
 /** Measured points, in runs without a gap. @template {{time: number, value: number}} T @param {T[]} points */
 function runsOf(points) {
-  const runs = /** @type {T[][]} */ ([]);
+  /** @type {T[][]} */
+  const runs = [];
   let last = -Infinity;
   for (const point of points) {
     const isMeasured = Number.isFinite(point.value);
@@ -33,16 +34,18 @@ function runsOf(points) {
 }
 
 export class Trace {
+  /** @type {{time: number, value: number, band?: number[]}[]} */
+  _points = [];
+  /** Age of the right end [s]. */
+  back = 0;
+
   /** @param {HTMLElement} element that it is shown in @param {string} quantity */
   constructor(element, quantity) {
     this.quantity = quantity;
     this._unit = unitOf(quantity, 0);
-    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
     this._line = element.querySelector(".line");
     this._shade = element.querySelector(".band");
     this._labels = element.querySelectorAll("li");
-    /** Age of the right end [s]. */
-    this.back = 0;
   }
 
   /** Begin anew. @param {string} quantity */

@@ -24,6 +24,25 @@ const grouped = (count) => count.toLocaleString("en").replaceAll(",", "\u202f");
 const modelName = (model) => (/^\d+(\/\d+)?$/.test(model) ? word("coordinates", model) : model);
 
 export class View {
+  /** @type {Hands} */
+  hands = { drag: null, sound: null, headset: null, film: null };
+  /** @type {HTMLSelectElement} */
+  shown = element("shown");
+  traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
+  /** @type {(() => void) | null} */
+  endClip = null;
+  /** Segment that was clicked; -1 if the branch was picked in another way. */
+  pointedAt = -1;
+  fps = 0;
+  /** Time of the drawing [s], which stops while the tree is paused. */
+  time = 0;
+  day = DAYS[0];
+  _lastDrawn = 0;
+  /** Whether the last frame was left to the camera. */
+  _skips = false;
+  /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
+  _since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
+
   /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream
    * @param {import("./state.js").PageState} state */
   constructor(scene, stream, state) {
@@ -31,22 +50,7 @@ export class View {
     this.stream = stream;
     this.state = state;
     this.risk = new Risk(scene);
-    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null, film: null });
     this.panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
-    this.shown = /** @type {HTMLSelectElement} */ (element("shown"));
-    this.traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
-    this.endClip = /** @type {(() => void) | null} */ (null);
-    /** Segment that was clicked; -1 if the branch was picked in another way. */
-    this.pointedAt = -1;
-    this.fps = 0;
-    /** Time of the drawing [s], which stops while the tree is paused. */
-    this.time = 0;
-    this.day = DAYS[0];
-    this._lastDrawn = 0;
-    /** Whether the last frame was left to the camera. */
-    this._skips = false;
-    /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
-    this._since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
     const { camera, canvas } = scene;
     const cell = /** @type {HTMLElement} */ (canvas.parentElement);
     camera.room = () => {
@@ -124,7 +128,8 @@ export class View {
     const answer = await fetch("camera.jpg", { headers: { "X-Requested-With": "page" } }).catch(() => undefined);
     if (answer?.status !== 200) return;
     const picture = await createImageBitmap(await answer.blob());
-    const canvas = /** @type {HTMLCanvasElement} */ (element("seen"));
+    /** @type {HTMLCanvasElement} */
+    const canvas = element("seen");
     [canvas.width, canvas.height] = [picture.width, picture.height];
     canvas.getContext("2d")?.drawImage(picture, 0, 0);
   }
@@ -182,7 +187,7 @@ export class View {
     scene.draw(coordinates, this.time, isStill);
     this._since.drawn += 1;
     if (coordinates) {
-      const [at, speed] = [scene.position(), Math.hypot(...playout.wind)];
+      const at = scene.position(), speed = Math.hypot(...playout.wind);
       hands.drag?.frame();
       hands.sound?.follow(speed, scene.leavesShown && scene.hasLeaves, at);
       const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[this.shown.value] ?? 0;

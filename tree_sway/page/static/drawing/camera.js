@@ -7,7 +7,7 @@ const HALF = Math.tan((16 * Math.PI) / 180);
 /** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
 /** Distance from the edge of a stand, over its height, and height of the eye there [m]. */
-const [NEARBY, EYE] = [2, 2.5];
+const NEARBY = 2, EYE = 2.5;
 /** Least height of the eye above the ground, but for a small plant [m]. */
 const LOWEST = 1.5;
 
@@ -127,7 +127,8 @@ export class Camera {
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
   listen(element) {
-    const pointers = /** @type {Map<number, PointerEvent>} */ (new Map());
+    /** @type {Map<number, PointerEvent>} */
+    const pointers = new Map();
     element.addEventListener("pointerdown", (event) => {
       element.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
@@ -138,7 +139,7 @@ export class Camera {
     element.addEventListener("pointermove", (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
-      const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
+      const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
       const share = 1 / element.clientHeight / pointers.size;
       const other = [...pointers.values()].find(({ pointerId }) => pointerId !== event.pointerId);
       if (other) {

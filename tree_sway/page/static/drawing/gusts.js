@@ -6,7 +6,7 @@
 /** Number of places along the wind. */
 export const PLACES = 48;
 /** Interval and length of the record of speeds [s]. */
-const [EVERY, KEPT] = [0.1, 30];
+const EVERY = 0.1, KEPT = 30;
 const SLOTS = KEPT / EVERY;
 
 export class Gusts {
