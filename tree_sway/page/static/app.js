@@ -87,7 +87,7 @@ const view = new View(scene, stream, state);
 /** Follow a preference of the browser. @param {string} what @param {(isSo: boolean) => void} take */
 function prefers(what, take) {
   const found = window.matchMedia(`(prefers-${what})`);
-  found.addEventListener("change", () => take(found.matches));
+  found.onchange = () => take(found.matches);
   take(found.matches);
 }
 

@@ -8,8 +8,8 @@ import { textOf } from "./files.js";
 export class ProtocolError extends Error {}
 
 const MOST_SEGMENTS = 500000;
-const MOST_POSES = 10000000;
-const MOST_COORDINATES = 65535;
+export const MOST_POSES = 10000000;
+export const MOST_COORDINATES = 65535;
 /** Largest number of tables times their squared coordinates, and of trees times coordinates of a table. */
 const MOST_SLOPES = 400000;
 const MOST_STATES = 50000000;
@@ -53,7 +53,7 @@ function fits(look, like) {
 }
 
 /** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
-export function sizesOf(parts, forms) {
+function sizesOf(parts, forms) {
   /** @type {Record<string, number>} */
   const size = {};
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
@@ -111,19 +111,14 @@ export function checkTrees(header, kinds, own) {
   need(/^[0-9a-f]{16}$/.test(header.identity), "identity");
   need(trees.length > 0, "trees");
   sizesOf(own, { tree_place: ["f32", trees.length, 5] });
-  let poses = 0, coordinates = 0;
   for (const [i, tree] of trees.entries()) {
     need(Number.isInteger(tree.kind) && tree.kind in kinds, `trees[${i}]`);
     need(typeof tree.name === "string", `trees[${i}]`);
     need(own.tree_place.values[5 * i + 4] > 0, `tree_place[${i}]`);
-    poses += kinds[tree.kind].nSegments;
-    coordinates += kinds[tree.kind].nCoordinates;
   }
   const segments = kinds.reduce((sum, kind) => sum + kind.nSegments, 0);
   need(Object.values(header.flutter ?? {}).every(isFinite), "flutter");
   need(segments <= MOST_SEGMENTS, "number of segments");
-  need(poses <= MOST_POSES, "number of segments of all trees");
-  need(coordinates <= MOST_COORDINATES, "number of coordinates");
 }
 
 /** Sizes of the axes of the arrays of a table; refuses numbers or arrays that are inconsistent, as

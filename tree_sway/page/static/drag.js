@@ -141,7 +141,7 @@ export class Drag {
     this.stream = stream;
     const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
     this._shown = { line, label, saving };
-    saving.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
+    saving.onclick = () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv");
     /** Handlers, which return whether the event was for them. @type {Record<string, (event: any) => boolean>} */
     const takers = {
       pointerdown: (event) => this._grab(event), pointermove: (event) => this._move(event),

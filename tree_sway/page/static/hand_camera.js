@@ -28,8 +28,8 @@ export class HandCamera {
   /** @param {import("./view.js").View} view */
   constructor(view) {
     this.view = view;
-    this.canvas.addEventListener("click", (event) => this.video && this._click(event));
-    element("camera-known").addEventListener("change", () => this.send());
+    this.canvas.onclick = (event) => this.video && this._click(event);
+    element("camera-known").onchange = () => this.send();
   }
 
   async toggle() {
@@ -94,7 +94,7 @@ export class HandCamera {
     const { videoWidth: width, videoHeight: height } = video;
     if (canvas.width !== width || canvas.height !== height) {
       // Begin, also as a phone was turned.
-      [canvas.width, canvas.height] = [width, height];
+      Object.assign(canvas, { width, height });
       this.clicks = [];
       view.pick(scene.picked); // a click on the drawn tree counts from here on
       this.take({ number: 0, said: "", places: [] });

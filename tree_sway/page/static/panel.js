@@ -43,13 +43,12 @@ function textOf({ name, unit }, value) {
  * @returns {{min: number, max: number, step: number, valueOf: (at: number) => number, positionOf: (value: number) => number}} */
 function scaleOf({ name, minimum, maximum }) {
   const low = minimum ?? 0, high = maximum ?? 1;
-  const half = Math.PI;
   // The slider shows degrees that the wind comes from; the value is the angle that it blows to.
   if (name === "bearing_to") {
     return {
       min: 0, max: 360, step: 1,
-      valueOf: (at) => ((at + 180) % 360) * (half / 180),
-      positionOf: (value) => Math.round(((value + half) * (180 / half)) % 360 + 360) % 360,
+      valueOf: (at) => ((at + 180) % 360) * (Math.PI / 180),
+      positionOf: (value) => Math.round((value * 180) / Math.PI + 900) % 360,
     };
   }
   const isWide = low > 0 && high / low > WIDE;
@@ -129,15 +128,15 @@ export class Panel {
       input.setAttribute("aria-valuetext", textOf(control, value));
     };
     let timer = 0;
-    input.addEventListener("input", () => {
+    input.oninput = () => {
       this._inHand = name;
       show(valueOf());
       clearTimeout(timer);
       // The value of now: until it is sent, one from the server may have moved the slider back.
       const value = valueOf();
       timer = setTimeout(() => this.send(name, value), SEND_EVERY);
-    });
-    input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
+    };
+    input.onchange = () => setTimeout(() => (this._inHand = ""), 600);
     this._show.set(name, (value) => {
       input.value = String(positionOf(value));
       show(value);
@@ -150,7 +149,7 @@ export class Panel {
     const options = control.choices.map((value) => made("option", { value }, value.replaceAll("_", " ")));
     const input = options.length ? made("select", named(control), ...options)
       : made("input", { ...named(control), type: "text", maxLength: 40 });
-    input.addEventListener("change", () => this.send(control.name, input.value));
+    input.onchange = () => this.send(control.name, input.value);
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);
   }
@@ -159,7 +158,7 @@ export class Panel {
   _button(control) {
     const button = made("button", { ...named(control), type: "button" }, nameOf(control));
     const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
-    button.addEventListener("click", () => this.send(control.name, next()));
+    button.onclick = () => this.send(control.name, next());
     const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));
     if (!control.is_action) this._show.set(control.name, show);
     return button;

@@ -8,7 +8,7 @@ import { PAUSED, RESTARTED, WIND_LOST } from "./protocol.js";
 
 /** Initial and longest playout delay [ms]. The delay is the spacing of frames and their largest lateness, which
  * decays with the time constant below. */
-export const DELAY = 150;
+const DELAY = 150;
 /** Time constant of the largest lateness [ms]: the age of the connection, at least and at most this. */
 const YOUNGEST = 250, CALMS = 12000;
 /** Fastest change of the delay, down and up, per time that passes [-]. */
@@ -26,7 +26,7 @@ const KEPT = 62000, MOST_NUMBERS = 8e6;
 
 /** Offset of two clocks from one-way times. Arrival less stamp is offset plus travel time; its least value in the
  * last half minute is the offset plus the quickest travel. */
-export class ClockOffset {
+class ClockOffset {
   _least = /** @type {{at: number, value: number}[]} */ ([]);
 
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
@@ -198,7 +198,7 @@ function predicted(a, b, c) {
 
 /** Catmull-Rom curve from b to c; its slopes there are those from a to c and from b to d. @param {Frame} a @param {Frame} b
  * @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
-export function catmullRom(a, b, c, d, u, out) {
+function catmullRom(a, b, c, d, u, out) {
   const span = c.stamp - b.stamp, aToC = c.stamp - a.stamp, bToD = d.stamp - b.stamp;
   const u2 = u * u, u3 = u * u * u;
   const atB = 2 * u3 - 3 * u2 + 1, atC = 3 * u2 - 2 * u3; // Hermite polynomials

@@ -13,24 +13,14 @@ export function multiply(a, i, b, j, out, o = 0) {
   out[o + 3] = aw * bw - ax * bx - ay * by - az * bz;
 }
 
-/** Add a vector, turned by a quaternion and scaled. @param {Numbers} q @param {number} i
- * @param {Numbers} v @param {number} j @param {number} scale @param {Numbers} out */
-export function addTurned(q, i, v, j, scale, out) {
+/** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
+export function turned(q, v, i = 0) {
   const qx = q[i], qy = q[i + 1], qz = q[i + 2], qw = q[i + 3];
-  const x = scale * v[j], y = scale * v[j + 1], z = scale * v[j + 2];
+  const x = v[0], y = v[1], z = v[2];
   const tx = 2 * (qy * z - qz * y);
   const ty = 2 * (qz * x - qx * z);
   const tz = 2 * (qx * y - qy * x);
-  out[0] += x + qw * tx + qy * tz - qz * ty;
-  out[1] += y + qw * ty + qz * tx - qx * tz;
-  out[2] += z + qw * tz + qx * ty - qy * tx;
-}
-
-/** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
-export function turned(q, v, i = 0) {
-  const out = [0, 0, 0];
-  addTurned(q, i, v, 0, 1, out);
-  return out;
+  return [x + qw * tx + qy * tz - qz * ty, y + qw * ty + qz * tx - qx * tz, z + qw * tz + qx * ty - qy * tx];
 }
 
 /** How far two points are from each other. @param {Numbers} a @param {Numbers} b */

@@ -51,16 +51,18 @@ export class PageState {
    * @param {Record<string, string>} settings of the link; those of the tree are taken out
    * @returns {string[]} names of what cannot be asked for, with their values */
   follow(stream, settings) {
-    const missed = OF_TREE.filter((name) => {
-      const control = this.control(name);
-      if (!(name in settings) || String(control?.value) === settings[name]) return false;
-      const value = control && typeof control.value === "number" ? Number(settings[name]) : settings[name];
-      const isKnown = control && (control.choices?.length ? control.choices.includes(String(value)) : Number.isFinite(value));
-      if (isKnown) stream.set(name, value);
-      this.isFollowing ||= Boolean(isKnown);
-      return !isKnown;
-    }).map((name) => `${word(name)} ${settings[name]}`);
-    for (const name of OF_TREE) delete settings[name];
+    const missed = [];
+    for (const name of OF_TREE) {
+      const wanted = settings[name];
+      delete settings[name];
+      const { value: now, choices = [] } = this.control(name) ?? {};
+      if (wanted === undefined || wanted === String(now)) continue;
+      const value = typeof now === "number" ? Number(wanted) : wanted;
+      if (choices.length ? choices.includes(wanted) : Number.isFinite(value)) {
+        stream.set(name, value);
+        this.isFollowing = true;
+      } else missed.push(`${word(name)} ${wanted}`);
+    }
     return missed;
   }
 }

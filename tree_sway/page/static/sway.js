@@ -101,7 +101,6 @@ export class Table {
     core.page_steps(this.model.at, dt, whole.at, half.at);
     const found = { whole: whole.values.slice(), half: half.values.slice(), width };
     this._steps.set(dt, found);
-    for (const each of [whole, half]) each.free();
     return found;
   }
 }
@@ -202,7 +201,6 @@ export class Stand {
     this._stride = stride.values[0];
     this._width = width.values[0];
     this._states = new Block(Float64Array, this._stride * trees.length, first);
-    for (const each of [stride, width]) each.free();
   }
 
   /** Make the stand of the core, at rest. @param {Tables} tables */
@@ -218,7 +216,6 @@ export class Stand {
     const found = made(this, "sway_stand_close", (error, room) =>
       core.sway_stand_open(models.at, kinds.length, given.at, trees.length, 1, error, room));
     core.sway_set_step(found, this.dt);
-    for (const each of [models, given]) each.free();
     return found;
   }
 

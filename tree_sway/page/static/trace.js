@@ -6,12 +6,12 @@ import { textOf } from "./files.js";
 
 /** Time shown at once, and time kept to look back at [s]. */
 const SECONDS = 20;
-export const LOOK_BACK = 60;
+const LOOK_BACK = 60;
 /** Points further apart than this are not joined by a line [s]. */
 const GAP = 1;
 /** Quantities: least span of the axis, so that rest does not look like a storm, and units by size.
  * @type {Record<string, {least: number, units: Unit[]}>} */
-export const QUANTITIES = JSON.parse(await textOf("units.json"));
+const QUANTITIES = JSON.parse(await textOf("units.json"));
 
 /** Unit of a value. @param {string} quantity @param {number} value */
 function unitOf(quantity, value) {
@@ -101,7 +101,7 @@ export class Trace {
     });
     this._shade?.setAttribute("d", bands.join(""));
     const numbers = [top, top / 2, 0].map((each) => String(Number(each.toPrecision(2))));
-    const times = [20, 15, 10, 5, 0].map((ago) => Math.round(ago + this.back)).map((ago, i) => `${ago ? "−" : ""}${ago}${i < 4 ? "" : " s"}`);
+    const times = [20, 15, 10, 5, 0].map((ago, i) => `${Math.round(-ago - this.back)}${i < 4 ? "" : " s"}`.replace("-", "−"));
     [unit, ...numbers, ...times].forEach((text, i) => (this._labels[i].textContent = text));
   }
 }

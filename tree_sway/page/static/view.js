@@ -16,9 +16,9 @@ const FACTS_EVERY = 400;
 const FEW = 25;
 const DAYS = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 
-/** A whole number in groups of three digits, apart by a thin space: a comma or point is a decimal one elsewhere.
+/** A whole number in groups of three digits, apart by a thin space as in French: a comma or point is a decimal one elsewhere.
  * @param {number} count */
-const grouped = (count) => count.toLocaleString("en").replaceAll(",", "\u202f");
+const grouped = (count) => count.toLocaleString("fr");
 
 /** Name of a model for people. @param {string} model */
 const modelName = (model) => (/^\d+(\/\d+)?$/.test(model) ? word("coordinates", model) : model);

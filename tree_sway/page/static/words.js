@@ -4,7 +4,7 @@
 
 import { textOf } from "./files.js";
 
-export const LANGUAGES = ["en", "de", "fr", "ja"];
+const LANGUAGES = ["en", "de", "fr", "ja"];
 
 /** Texts by key, in each language. @type {Record<string, string[]>} */
 const WORDS = JSON.parse(await textOf("words.json"));

@@ -29,8 +29,7 @@ export class Camera {
   /** Take the view of a link. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
     this.isHome = false;
-    [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
-    this.target = [x, y, z];
+    Object.assign(this, { azimuth, elevation, distance, target: [x, y, z] });
   }
 
   /** Show a scene, a stand of trees from its edge. @param {number[][]} box its lowest and its highest corner */
@@ -129,14 +128,12 @@ export class Camera {
   listen(element) {
     /** @type {Map<number, PointerEvent>} */
     const pointers = new Map();
-    element.addEventListener("pointerdown", (event) => {
+    element.onpointerdown = (event) => {
       element.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
-    });
-    for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) {
-      element.addEventListener(type, ({ pointerId }) => pointers.delete(pointerId));
-    }
-    element.addEventListener("pointermove", (event) => {
+    };
+    element.onpointerup = element.onpointercancel = ({ pointerId }) => pointers.delete(pointerId);
+    element.onpointermove = (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
       const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
@@ -150,8 +147,8 @@ export class Camera {
       if (other || event.shiftKey || event.buttons & 6) this.pan(share * dx, share * dy);
       else this.orbit(dx, dy);
       pointers.set(event.pointerId, event);
-    });
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    };
+    element.oncontextmenu = (event) => event.preventDefault();
     element.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
@@ -164,10 +161,10 @@ export class Camera {
       ArrowLeft: move(1, 0), ArrowRight: move(-1, 0), ArrowUp: move(0, 1), ArrowDown: move(0, -1),
       "+": nearer, "=": nearer, "-": () => this.zoom(1.14), 0: home, Home: home,
     };
-    element.addEventListener("keydown", (event) => {
+    element.onkeydown = (event) => {
       if (!(event.key in keys)) return;
       keys[event.key](event.shiftKey);
       event.preventDefault();
-    });
+    };
   }
 }

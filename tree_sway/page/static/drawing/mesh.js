@@ -122,32 +122,24 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       const [beside, behind, swollen] = [0.37, 0.59, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
       const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.5 * swollen);
       for (let k = 0; k < corners; k++) {
+        const angle = (2 * Math.PI * k) / sides - twist;
+        // At the foot of a stem rings bulge into roots.
+        const bulge = 1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle));
         const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
-          : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist).map((each, c) => each + ringRadius * (c ? beside : behind)), thickness];
+          : [ringRadius * (bulge * Math.cos(angle) + behind), ringRadius * (bulge * Math.sin(angle) + beside), thickness];
         values.push(placer.slots[segment], isTip ? length[segment] : up * baseRadius, ...corner);
         values.push((tilesAround * k) / sides, (above * tilesAround) / (2 * Math.PI), open);
       }
-      if (s > from || up) joinRings(indices, values.length / PER_VERTEX - corners, corners);
+      if (s === from && !up) continue;
+      // Two triangles between each pair of corners of this ring and of the one before.
+      const ring = values.length / PER_VERTEX - corners;
+      for (let above = ring; above < ring + corners - 1; above++) {
+        const below = above - corners;
+        indices.push(below, below + 1, above, below + 1, above + 1, above);
+      }
     }
   }
 }
 
 /** Corners of a ring about a branch. @param {number} points radius of the branch on the picture */
 const sidesOf = (points) => (points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
-
-/** Place of a corner across the branch; at the foot of a stem rings bulge into roots.
- * @param {number} radius [m] @param {number} flare 1 at the foot, 0 above it @param {number} angle */
-function tubeCorner(radius, flare, angle) {
-  const bulged = radius * (1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle)));
-  return [bulged * Math.cos(angle), bulged * Math.sin(angle)];
-}
-
-/** Two triangles between each pair of corners of a ring and of the one before.
- * @param {number[]} indices @param {number} ring its first vertex @param {number} corners of each ring */
-function joinRings(indices, ring, corners) {
-  for (let k = 0; k < corners - 1; k++) {
-    const below = ring - corners + k;
-    const above = ring + k;
-    indices.push(below, below + 1, above, below + 1, above + 1, above);
-  }
-}

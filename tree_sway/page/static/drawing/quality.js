@@ -36,7 +36,8 @@ export class Quality {
     this._frames++;
     if (now - this._from < 700 || this._frames < 3) return;
     const fps = (1000 * this._frames) / (now - this._from);
-    [this._from, this._frames] = [now, 0];
+    this._from = now;
+    this._frames = 0;
     if (this._before && fps < KEPT) {
       this.fineness = this._before;
       this._patience = Math.min(LONGEST, 2 * this._patience);
