@@ -104,20 +104,22 @@ export class Connection {
   _take(data) {
     const arrival = Date.now();
     this._heard = performance.now();
-    let deliver;
+    /** @type {ReturnType<Connection["_read"]>} */
+    let read;
     try {
-      deliver = this._read(data, arrival);
+      read = this._read(data, arrival);
     } catch (error) {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
       this._lose();
-      deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
+      read = ["onMessage", { unreadable: why.slice(0, 400) }];
     }
-    deliver();
+    const [name, ...values] = read;
+    /** @type {any} */ (this.listeners)[name]?.(...values);
   }
 
   /** Read a text, a description, its tables or a frame. @param {string | ArrayBuffer} data
-   * @param {number} arrival [ms] @returns {() => void} call that gives it to the listener */
+   * @param {number} arrival [ms] @returns {[name: keyof Listeners | "", ...any]} its listener, and what that is given */
   _read(data, arrival) {
     const isText = typeof data === "string";
     const size = isText ? data.length : data.byteLength;
@@ -126,23 +128,20 @@ export class Connection {
     if (isText) {
       const message = checkMessage(JSON.parse(data));
       if ("pong" in message) this.roundTrip = performance.now() - message.pong;
-      return () => this.listeners.onMessage(message);
+      return ["onMessage", message];
     }
-    if (isTables(data)) {
-      const tables = decodeTables(data);
-      return () => this.listeners.onTables?.(tables);
-    }
+    if (isTables(data)) return ["onTables", decodeTables(data)];
     if (!isFrame(data)) {
       const description = (this.description = decodeDescription(data));
       const fitting = Math.floor(ON_THE_WAY / (FRAME_SIZE + 2 * description.nCoordinates));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
-      return () => this.listeners.onDescription(description);
+      return ["onDescription", description];
     }
     this._awaited -= 1;
     this._ask();
     const frame = decodeFrame(data, this.description);
     if (frame) this._wait = SHORTEST_WAIT;
-    return () => frame && this.listeners.onFrame(frame, arrival, size);
+    return [frame ? "onFrame" : "", frame, arrival, size];
   }
 }

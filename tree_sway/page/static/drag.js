@@ -138,15 +138,36 @@ export class Drag {
   /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
-    this.stream = stream;
     const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
     this._shown = { line, label, saving };
     saving.onclick = () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv");
     /** Handlers, which return whether the event was for them. @type {Record<string, (event: any) => boolean>} */
     const takers = {
-      pointerdown: (event) => this._grab(event), pointermove: (event) => this._move(event),
+      pointerdown: (event) => {
+        const segment = this.isOn && this._pointer < 0 ? this._under(event) : -1;
+        if (segment < 0) return false;
+        this.pull = new Pull(scene, stream, segment);
+        this._pointer = event.pointerId;
+        scene.canvas.setPointerCapture(event.pointerId);
+        return true;
+      },
+      pointermove: (event) => {
+        if (!this.pull || event.pointerId !== this._pointer) return false;
+        this.pull.to = scene.camera.under(scene.placeOf(event), this.pull.to);
+        return true;
+      },
       pointerup: (event) => this._release(event), pointercancel: (event) => this._release(event),
-      keydown: (event) => this._key(event),
+      // Arrows pull the tip that is followed, Enter releases.
+      keydown: (event) => {
+        const { key } = event;
+        if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
+        event.preventDefault();
+        if (key === "Enter") return this._release({ pointerId: this._pointer });
+        if (!this.pull?.isHeld) this.pull = new Pull(scene, stream, scene.followed);
+        const [u, v] = scene.camera.project(this.pull.to);
+        this.pull.to = scene.camera.under([u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1]], this.pull.to);
+        return true;
+      },
     };
     for (const [type, take] of Object.entries(takers)) {
       scene.canvas.addEventListener(type, (event) => take(event) && event.stopImmediatePropagation(), true);
@@ -155,29 +176,6 @@ export class Drag {
 
   toggle() {
     this.isOn = !this.isOn;
-  }
-
-  /** Pull by keys: arrows pull the tip that is followed, Enter releases. @param {KeyboardEvent} event */
-  _key(event) {
-    const { key } = event;
-    if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
-    event.preventDefault();
-    if (key === "Enter") return this._release({ pointerId: this._pointer });
-    const { camera, followed } = this.scene;
-    if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
-    const [u, v] = camera.project(this.pull.to);
-    this.pull.to = camera.under([u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1]], this.pull.to);
-    return true;
-  }
-
-  /** @param {PointerEvent} event */
-  _grab(event) {
-    const segment = this.isOn && this._pointer < 0 ? this._under(event) : -1;
-    if (segment < 0) return false;
-    this.pull = new Pull(this.scene, this.stream, segment);
-    this._pointer = event.pointerId;
-    this.scene.canvas.setPointerCapture(event.pointerId);
-    return true;
   }
 
   /** Segment under the pointer, or -1; its tree is the watched one from then on. @param {PointerEvent} event */
@@ -192,13 +190,6 @@ export class Drag {
     }
     detail.watched = before;
     return -1;
-  }
-
-  /** @param {PointerEvent} event */
-  _move(event) {
-    if (!this.pull || event.pointerId !== this._pointer) return false;
-    this.pull.to = this.scene.camera.under(this.scene.placeOf(event), this.pull.to);
-    return true;
   }
 
   /** @param {{pointerId: number}} event */

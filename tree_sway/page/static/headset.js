@@ -5,8 +5,6 @@
 import { Pull } from "./drag.js";
 import { turned } from "./quaternions.js";
 
-/** @typedef {{from: number[], along: number[]}} Ray of a controller, in the scene */
-
 /** Largest angle between a ray and the branch that it picks [rad]. */
 const AIM = 0.06;
 /** Longest teleport [m], and first distance over the height of the tree. */
@@ -51,8 +49,18 @@ export class Headset {
     const away = Math.max(1.2, HEIGHTS_AWAY * this.scene.height);
     this.heading = azimuth + Math.PI;
     this._stand(target[0] + away * Math.cos(azimuth), target[1] + away * Math.sin(azimuth));
-    session.addEventListener("select", (/** @type {any} */ event) => this._teleport(this._ray(event)));
-    session.addEventListener("squeezestart", (/** @type {any} */ event) => this._grab(event.inputSource, this._ray(event)));
+    session.addEventListener("select", (/** @type {any} */ event) => {
+      const { from = [], along = [0, 0, 0] } = this._ray(event) ?? {};
+      if (along[2] > -0.02) return;
+      const far = Math.min(FARTHEST, (this.scene.ground - from[2]) / along[2]);
+      this._stand(from[0] + far * along[0], from[1] + far * along[1]);
+    });
+    session.addEventListener("squeezestart", (/** @type {any} */ event) => {
+      const ray = this._ray(event);
+      if (!ray || !this.scene.description) return;
+      const { segment, far } = this.scene.nearest(ray.from, ray.along, AIM);
+      if (segment >= 0) this.pulls.set(event.inputSource, { pull: new Pull(this.scene, this.stream, segment), far });
+    });
     session.addEventListener("squeezeend", (/** @type {any} */ { inputSource }) => this._release(inputSource));
     session.addEventListener("end", () => {
       this.session = null;
@@ -75,26 +83,12 @@ export class Headset {
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }
 
-  /** Ray of a controller; null if it is not tracked. @param {{frame: any, inputSource: any}} event */
+  /** Ray of a controller in the scene; null if it is not tracked. @param {{frame: any, inputSource: any}} event */
   _ray({ frame, inputSource }) {
     const pose = frame.getPose(inputSource.targetRaySpace, this.space);
     if (!pose) return null;
     const { position: { x, y, z }, matrix: m } = pose.transform;
     return { from: [x, y, z], along: [-m[8], -m[9], -m[10]] };
-  }
-
-  /** @param {Ray | null} ray */
-  _teleport(ray) {
-    if (!ray || ray.along[2] > -0.02) return;
-    const far = Math.min(FARTHEST, (this.scene.ground - ray.from[2]) / ray.along[2]);
-    this._stand(ray.from[0] + far * ray.along[0], ray.from[1] + far * ray.along[1]);
-  }
-
-  /** @param {any} source @param {Ray | null} ray */
-  _grab(source, ray) {
-    if (!ray || !this.scene.description) return;
-    const { segment, far } = this.scene.nearest(ray.from, ray.along, AIM);
-    if (segment >= 0) this.pulls.set(source, { pull: new Pull(this.scene, this.stream, segment), far });
   }
 
   /** @param {any} source */

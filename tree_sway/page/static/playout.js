@@ -70,7 +70,8 @@ export class Playout {
   isPaused = false;
   /** Whether no sample of the wind is in use. */
   isWindLost = true;
-  _back = 0;
+  /** How far to look back from `_from` [ms]; 0 follows the stream. */
+  back = 0;
   /** Stamp of the newest frame when looking back began [ms]. */
   _from = 0;
 
@@ -82,14 +83,10 @@ export class Playout {
     this._before = this._shown;
   }
 
-  /** How far to look back from that frame [ms]; 0 follows the stream. */
-  get back() {
-    return this._back;
-  }
-
-  set back(back) {
-    if (!this._back) this._from = this.newest;
-    this._back = back;
+  /** Look back from the newest frame. @param {number} back how far [ms]; 0 follows the stream */
+  lookBack(back) {
+    if (!this.back) this._from = this.newest;
+    this.back = back;
   }
 
   /** Forget all frames, as another tree comes. */
@@ -150,8 +147,8 @@ export class Playout {
   sample(now) {
     let frames = this._frames;
     if (!frames.length) return this._shown;
-    const isBack = this._back > 0;
-    const time = isBack ? this._from - this._back : now - this.clock.value - this.delay;
+    const isBack = this.back > 0;
+    const time = isBack ? this._from - this.back : now - this.clock.value - this.delay;
     const first = isBack ? 0 : this._first;
     const [x, y, z] = frames.slice(Math.max(first, frames.length - 3));
     const isPredicted = this._ahead > 0 && !isBack && z && time > y.stamp && z.stamp - y.stamp < PREDICTED;

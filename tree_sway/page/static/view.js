@@ -236,7 +236,7 @@ export class View {
 
   /** Show the past. @param {number} back [s] */
   goBack(back) {
-    this.stream.playout.back = 1000 * back;
+    this.stream.playout.lookBack(1000 * back);
     for (const trace of Object.values(this.traces)) trace.back = back;
     element("time").setAttribute("aria-valuetext", this.state.now(this.stream)[1]);
     this.showState();

@@ -93,7 +93,8 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
   const baseRadius = radius[2 * from];
   const isStem = parents[branch] < 0;
   const thin = arrays.branch_base_segment.includes(end - 1) ? 1 : 0.4;
-  const sides = sidesOf(baseRadius / point);
+  const points = baseRadius / point; // of its radius on the picture
+  const sides = points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON;
   const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
   const thickness = Math.min(1, baseRadius / (BARKED * height));
   const tile = Math.min(BARK_TILE, 0.06 * height);
@@ -140,6 +141,3 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
     }
   }
 }
-
-/** Corners of a ring about a branch. @param {number} points radius of the branch on the picture */
-const sidesOf = (points) => (points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
