@@ -1,16 +1,16 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Quaternions x y z w inside arrays, each from an index on; results are written into arrays. */
+/** Quaternions x y z w inside arrays, each from an index on. */
 
 /** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
- * @param {number} j @param {Numbers} out @param {number} [o] */
-export function multiply(a, i, b, j, out, o = 0) {
+ * @param {number} j @param {Numbers} out */
+export function multiply(a, i, b, j, out) {
   const ax = a[i], ay = a[i + 1], az = a[i + 2], aw = a[i + 3];
   const bx = b[j], by = b[j + 1], bz = b[j + 2], bw = b[j + 3];
-  out[o] = aw * bx + ax * bw + ay * bz - az * by;
-  out[o + 1] = aw * by - ax * bz + ay * bw + az * bx;
-  out[o + 2] = aw * bz + ax * by - ay * bx + az * bw;
-  out[o + 3] = aw * bw - ax * bx - ay * by - az * bz;
+  out[0] = aw * bx + ax * bw + ay * bz - az * by;
+  out[1] = aw * by - ax * bz + ay * bw + az * bx;
+  out[2] = aw * bz + ax * by - ay * bx + az * bw;
+  out[3] = aw * bw - ax * bx - ay * by - az * bz;
 }
 
 /** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
