@@ -44,13 +44,15 @@ const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREAT
 function fits(look, like) {
   if (typeof like === "number") return isFinite(look) && look > 0 && look < 100;
   if (Array.isArray(like)) {
-    const isAlike = Array.isArray(look) && look.length >= like.length && look.length < 9;
-    return isAlike && look.every((each) => isFinite(each) && Math.abs(each) < 10);
+    return Array.isArray(look) && look.length >= like.length && look.length < 9 && look.every((each) => isFinite(each) && Math.abs(each) < 10);
   }
   if (!isObject(like)) return typeof look === typeof like;
   return isObject(look) && Object.entries(like).every(([name, each]) =>
     (name === "autumn" && look.autumn === null) || fits(look[name], each));
 }
+
+/** Arrays without their shapes. @param {Arrays} parts @returns {Record<string, any>} */
+export const valuesOf = (parts) => Object.fromEntries(Object.entries(parts).map(([name, { values }]) => [name, values]));
 
 /** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
 function sizesOf(parts, forms) {
@@ -71,8 +73,8 @@ function sizesOf(parts, forms) {
 /** A kind with its arrays and its sizes; one whose arrays do not fit each other is refused.
  * @param {Kind} kind as its header has it @param {Arrays} parts its arrays @returns {Kind} */
 export function checkedKind(kind, parts) {
-  const named = Object.entries(parts).map(([name, { values }]) => [name, values]);
-  const arrays = /** @type {Kind["arrays"]} */ (Object.fromEntries(named));
+  /** @type {Kind["arrays"]} */
+  const arrays = valuesOf(parts);
   const forms = Object.entries(FORMS.description).filter(([name]) => arrays.leaf_segment || !name.startsWith("leaf"));
   const size = sizesOf(parts, Object.fromEntries(forms));
   const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;

@@ -16,8 +16,7 @@ export class ClampWatch {
   /** Note a clamped step; steps that are not clamped need no call. @param {number} step its number
    * @param {number} dt [s] @returns {boolean} whether the tree has been clamped for too long */
   isStuck(step, dt) {
-    const nFree = step - this._last - 1;
-    this._seconds = Math.max(this._seconds - nFree * dt, 0) + dt;
+    this._seconds = Math.max(this._seconds - (step - this._last - 1) * dt, 0) + dt;
     this._last = step;
     if (this._seconds < LONGEST_CLAMPED) return false;
     this._seconds = 0;

@@ -123,8 +123,7 @@ export class Connection {
   _read(data, arrival) {
     const isText = typeof data === "string";
     const size = isText ? data.length : data.byteLength;
-    const isTooLarge = size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION);
-    if (isTooLarge) throw new ProtocolError(`a message of ${size} bytes`);
+    if (size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION)) throw new ProtocolError(`a message of ${size} bytes`);
     if (isText) {
       const message = checkMessage(JSON.parse(data));
       if ("pong" in message) this.roundTrip = performance.now() - message.pong;

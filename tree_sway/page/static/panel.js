@@ -157,10 +157,9 @@ export class Panel {
   /** @param {Control} control */
   _button(control) {
     const button = made("button", { ...named(control), type: "button" }, nameOf(control));
-    const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
-    button.onclick = () => this.send(control.name, next());
-    const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));
-    if (!control.is_action) this._show.set(control.name, show);
+    let isOn = false;
+    button.onclick = () => this.send(control.name, control.is_action ? null : !isOn);
+    if (!control.is_action) this._show.set(control.name, (value) => button.setAttribute("aria-pressed", String(isOn = Boolean(value))));
     return button;
   }
 }

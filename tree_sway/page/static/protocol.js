@@ -90,8 +90,7 @@ export const decodeDescription = reader("description", (header, parts, own) => {
 
 /** Whether a message begins as a description or tables. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
 function begins(data, what) {
-  const size = data.byteLength;
-  return size >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
+  return data.byteLength >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
 }
 
 /** Whether a message has tables. @param {ArrayBuffer} data */

@@ -39,14 +39,12 @@ export class Risk {
 
   /** Paint the trees, and count them. */
   show() {
-    const trees = this.scene.description?.trees ?? [];
     const storm = Number(this.slider.value);
-    const places = trees.map(({ name }) => this.bands[name] && placeIn(storm, this.bands[name]));
+    const places = (this.scene.description?.trees ?? []).map(({ name }) => this.bands[name] && placeIn(storm, this.bands[name]));
     const isShown = places.some(Boolean);
     element("risk").hidden = !isShown;
     element("facts").hidden = isShown; // there is room for one of them
-    const painted = (/** @type {keyof typeof COLORS} */ place) => [...COLORS[place] ?? UNKNOWN, SHARE];
-    this.scene.paint(isShown ? places.map(painted) : []);
+    this.scene.paint(isShown ? places.map((place) => [...place ? COLORS[place] : UNKNOWN, SHARE]) : []);
     if (!isShown) return;
     const speed = `${storm} m/s, ${Math.round(KM_H * storm)} km/h`;
     element("storm-now").textContent = speed;

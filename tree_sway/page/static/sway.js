@@ -4,7 +4,7 @@
  * `Stand.outside` counts it. doc/sway_model.md has the law, doc/tree_as_a_file.md the use;
  * tree_sway/core/scene/received_scene.py does the same. */
 
-import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
+import { checkTable, checkTablesHeader, FORMS, need, ProtocolError, valuesOf } from "./checks.js";
 import { ClampWatch, fewer } from "./clamp_watch.js";
 import { Block, core, made, Model } from "./core.js";
 import { reader } from "./protocol.js";
@@ -34,8 +34,10 @@ const ROWS = 6;
 export const decodeTables = reader("tables", (header, kinds, own) => {
   const { description, anemometer, convection_ratio: ratio } = header;
   checkTablesHeader(header, kinds.map((arrays) => arrays.stiffness?.values.length ?? 0), own);
-  const tables = kinds.map((arrays, number) => new Table(header.kinds[number], arrays));
-  return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: own.tree_speed.values };
+  return {
+    description, anemometer, ratio: ratio ?? Infinity, speeds: own.tree_speed.values,
+    kinds: kinds.map((arrays, number) => new Table(header.kinds[number], arrays)),
+  };
 });
 
 /** Wind forces on the coordinates of a kind of tree, in uniform wind. */
@@ -51,8 +53,7 @@ export class Table {
     this.n = size.n;
     this.nKeys = size.keys;
     this.mostPressure = /** @type {number} */ (numbers.most_pressure);
-    /** @type {Record<string, any>} */
-    this.arrays = Object.fromEntries(Object.entries(parts).map(([name, { values }]) => [name, values]));
+    this.arrays = valuesOf(parts);
     /** @type {Record<string, {values: any, shape: number[]}>} */
     const arrays = {};
     for (const name of ["drag_law", "most_pressure", "most_energy"]) {
@@ -188,12 +189,11 @@ export class Stand {
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
     this.gusts = this._newGusts();
-    this.trees = trees.map(({ kind, place, firstCoordinate }) => {
-      const table = tables.kinds[kind];
+    this.trees = trees.map(({ kind, place, firstCoordinate }) => ({
+      table: tables.kinds[kind], firstCoordinate,
       // A tree of k times the size swings k times slower: its table is stepped by 1 / k of the time.
-      const ownDt = dt / Math.exp(FINEST_SCALE * Math.round(Math.log(place[4]) / FINEST_SCALE));
-      return { table, ownDt, firstCoordinate };
-    });
+      ownDt: dt / Math.exp(FINEST_SCALE * Math.round(Math.log(place[4]) / FINEST_SCALE)),
+    }));
     this._core = this._opened(tables);
     const [stride, width] = [0, 0].map(() => new Block(Uint32Array, 1));
     const first = core.sway_state(this._core, stride.at, width.at);
@@ -241,9 +241,9 @@ export class Stand {
       if (!touch.step(() => this.rows(number), table, coordinates, table.steps(ownDt), this.dt)) this._touches.delete(number);
     }
     if (!this.outside) return;
-    const all = this._states.values, clamped = ROWS * this._width + 4;
     this.trees.forEach((_, number) => {
-      if (all[number * this._stride + clamped] && !this._touches.has(number)) this._watchClamped(number);
+      const isClamped = this._states.values[number * this._stride + ROWS * this._width + 4];
+      if (isClamped && !this._touches.has(number)) this._watchClamped(number);
     });
   }
 
