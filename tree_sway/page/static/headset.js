@@ -77,8 +77,7 @@ export class Headset {
     const half = Math.PI / 4 - this.heading / 2;
     const c = Math.SQRT1_2 * Math.cos(half), s = Math.SQRT1_2 * Math.sin(half);
     this.origin = [x, y, this.scene.ground];
-    const turn = [-c, s, s, c];
-    const [right, up, back] = turned(turn, this.origin.map((each) => -each));
+    const [right, up, back] = turned([-c, s, s, c], this.origin.map((each) => -each));
     const scene = new XRRigidTransform({ x: right, y: up, z: back }, { x: -c, y: s, z: s, w: c });
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }

@@ -84,8 +84,7 @@ export const decodeDescription = reader("description", (header, parts, own) => {
   need(nCoordinates <= MOST_COORDINATES, "number of coordinates");
   const scale = new Float32Array(nCoordinates);
   for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
-  const shortIdentity = parseInt(identity.slice(0, 8), 16);
-  return { name, frame_id, identity, shortIdentity, kinds, trees, flutter, nSegments, nCoordinates, scale };
+  return { name, frame_id, identity, shortIdentity: parseInt(identity.slice(0, 8), 16), kinds, trees, flutter, nSegments, nCoordinates, scale };
 });
 
 /** Whether a message begins as a description or tables. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */

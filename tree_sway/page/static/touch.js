@@ -131,8 +131,7 @@ export class Touch {
         const branchLever = moves[branch].map((move) => move[axis]);
         return keys.map((key) => dot(compliance, branchLever, key * width) - dot(basis, represented, key * n));
       });
-      const lever = Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n));
-      return { lever, keyLever, residual };
+      return { lever: Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n)), keyLever, residual };
     });
   }
 

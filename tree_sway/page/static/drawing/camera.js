@@ -73,8 +73,7 @@ export class Camera {
   /** @param {number} factor below 1 comes nearer */
   zoom(factor) {
     this.isHome = false;
-    const least = 0.05 * this._size;
-    this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
+    this.distance = Math.min(Math.max(this.distance * factor, 0.05 * this._size), 20 * this._size);
   }
 
   /** Axes of the picture at distance 1 from the eye: half its width, half its height, and the direction to the eye. */

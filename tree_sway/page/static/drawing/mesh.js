@@ -40,9 +40,11 @@ export function shapeOf(kind) {
   const highest = nodes.findIndex((node) => node[2] === high[2]);
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   const places = Array.from(carrier ?? [], (_, i) => leafPlace(kind, rest, i));
-  const shade = crownShade(places, Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size), low, high);
-  const placer = new KindPlacer(kind, branchOrder(kind, highest));
-  return { kind, placer, rest, low, high, highest, shade };
+  const areas = Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size);
+  return {
+    kind, rest, low, high, highest, shade: crownShade(places, areas, low, high),
+    placer: new KindPlacer(kind, branchOrder(kind, highest)),
+  };
 }
 
 /** Branches, those that cover most of a picture first, and none before its parent; the chain that carries the
