@@ -44,8 +44,7 @@ export class OwnLine {
     this._address = address;
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** Newest frame of a live wind. */
-    /** @type {Frame | null} */
+    /** Newest frame of a live wind. @type {Frame | null} */
     this._live = null;
     const unreadable = `no live wind from ${address}: the simulated one blows until it comes. `
       + "See whether tree-sway show runs there, with --origin null if this page is a file.";
