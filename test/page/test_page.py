@@ -11,6 +11,9 @@ import io
 import json
 from pathlib import Path
 import re
+import shutil
+import subprocess
+import tarfile
 from typing import Any
 
 import numpy as np
@@ -845,6 +848,86 @@ def test_it_fits_a_phone(visit: Visit, size: tuple[int, int], is_open: bool) -> 
         assert all(not (b[0] < x1 < b[2] and b[1] < y1 < b[3]) for b in boxes), (x1, y1, boxes)
 
     visit(script, width=width, height=height, scale=1.0)
+
+
+_SIZES = [(320, 256), (320, 568), (559, 481), (640, 360), (701, 561), (800, 600), (3840, 2160)]
+"""Sizes of windows in CSS pixels, from 400 % zoom to 4K."""
+
+
+def test_no_card_covers_another(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        for width, height in _SIZES:
+            await browser.call(
+                'Emulation.setDeviceMetricsOverride',
+                width=width, height=height, deviceScaleFactor=0.2, mobile=False,
+            )  # fmt: skip
+            for is_open in (False, True):
+                await browser.run(
+                    f"document.getElementById('panel').open = {str(is_open).lower()}"
+                )
+                boxes = await browser.run(_BOXES)
+                for i, (left, top, right, bottom) in enumerate(boxes):
+                    assert 0 <= left < right <= width, (width, height, boxes)
+                    assert 0 <= top < bottom <= height, (width, height, boxes)
+                    for other in boxes[:i]:
+                        is_apart = (
+                            left >= other[2] or other[0] >= right
+                            or top >= other[3] or other[1] >= bottom
+                        )  # fmt: skip
+                        assert is_apart, (width, height, is_open, boxes)
+
+    visit(script)
+
+
+@pytest.fixture(scope='module')
+def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Source of the checker of accessible pages, from npm's store if it is there."""
+    npm, folder = shutil.which('npm'), tmp_path_factory.mktemp('axe')
+    if npm is None:
+        pytest.skip('npm is not installed here')
+    command = [npm, 'pack', '--silent', 'axe-core@4']
+    done = subprocess.run(command, cwd=folder, capture_output=True, check=False, timeout=180)
+    if done.returncode:
+        pytest.skip('npm cannot bring axe here')
+    (packed,) = folder.glob('*.tgz')
+    with tarfile.open(packed) as archive:
+        source = archive.extractfile('package/axe.min.js')
+        assert source is not None
+        return source.read().decode()
+
+
+_STATES = {
+    'as it opens': '0',
+    'sheet': "document.getElementById('panel').open = true",
+    'camera': """for (const id of ['camera', 'own-camera', 'camera-known']) {
+      Object.assign(document.getElementById(id), { hidden: false, open: true });
+    }""",
+    'sensors and a warning': """treeSway.connection.listeners.onMessage({ status: {
+      motion: { said: [['sensors', '3 of 4']], band: [-1, 1] }, warnings: ['a warning'],
+    } })""",
+    'refused': """treeSway.connection.listeners.onMessage(
+      { refused: { name: 'x', reason: 'a reason' } })""",
+    'storm': """treeSway.risk.take(
+      { [treeSway.connection.description.trees[0].name]: [20, 30] })""",
+    'help': "document.getElementById('help').click()",
+    'lost': "document.getElementById('close').click(); treeSway.connection._lose()",
+}
+"""What brings the page into a state, one after the other."""
+
+
+@pytest.mark.parametrize('dark', [False, True])
+def test_no_rule_of_axe_fails(visit: Visit, axe: str, dark: bool) -> None:
+    async def script(browser: Browser) -> None:
+        await browser.run(f'{axe}; 0')
+        for state, action in _STATES.items():
+            await browser.run(f'{action}; 0')
+            broken = await browser.run(
+                'axe.run(document).then(({ violations }) => violations.map('
+                '({ id, nodes }) => [id, ...nodes.map(({ html }) => html.slice(0, 200))]))'
+            )
+            assert broken == [], state
+
+    visit(script, dark=dark)
 
 
 @pytest.mark.parametrize('dark', [False, True])

@@ -24,7 +24,8 @@ history.replaceState(null, "", barAddress);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
 const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("write_again", error.message)));
-const canvas = /** @type {HTMLCanvasElement} */ (element("view"));
+/** @type {HTMLCanvasElement} */
+const canvas = element("view");
 // In full quality nothing is left out, even without a graphics unit.
 const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
   .catch((error) => giveUp(word("blind"), word("cure", error.message)));
@@ -55,7 +56,6 @@ const stream = new TreeStream(address.href, {
       state.viewersToken = hello.viewers_token ?? "";
       view.showPanel();
       element("panel").hidden = hello.controls.length === 0;
-      view.fit();
       element("pull").hidden = hello.can_pull !== true;
       risk.take(hello.critical_winds);
       element("camera").hidden = hello.has_camera !== true;
@@ -87,7 +87,7 @@ const view = new View(scene, stream, state);
 /** Follow a preference of the browser. @param {string} what @param {(isSo: boolean) => void} take */
 function prefers(what, take) {
   const found = window.matchMedia(`(prefers-${what})`);
-  found.addEventListener("change", () => take(found.matches));
+  found.onchange = () => take(found.matches);
   take(found.matches);
 }
 

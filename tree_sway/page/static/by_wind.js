@@ -12,15 +12,17 @@ const NEWEST = 0.05;
 /** Steps a stand by the wind of each frame, and corrects it by the states that come now and then. Over a lost frame the
  * wind is interpolated. tree_sway/stream/by_wind.py does the same. */
 export class ByWind {
+  /** @type {Frame | null} */
+  _last = null;
+  _heard = 0;
+  /** Number of corrections by states, and the largest over full scale. */
+  corrections = 0;
+  largest = 0;
+
   /** @param {import("./sway.js").Stand} stand */
   constructor(stand) {
     this.stand = stand;
-    this._last = /** @type {Frame | null} */ (null);
     this._spacing = stand.dt;
-    this._heard = 0;
-    /** Number of corrections by states, and the largest over full scale. */
-    this.corrections = 0;
-    this.largest = 0;
   }
 
   /** Step to a frame. @param {Frame} frame @returns {Frame | null} with all coordinates; null before the first state */

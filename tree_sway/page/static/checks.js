@@ -8,8 +8,8 @@ import { textOf } from "./files.js";
 export class ProtocolError extends Error {}
 
 const MOST_SEGMENTS = 500000;
-const MOST_POSES = 10000000;
-const MOST_COORDINATES = 65535;
+export const MOST_POSES = 10000000;
+export const MOST_COORDINATES = 65535;
 /** Largest number of tables times their squared coordinates, and of trees times coordinates of a table. */
 const MOST_SLOPES = 400000;
 const MOST_STATES = 50000000;
@@ -44,17 +44,20 @@ const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREAT
 function fits(look, like) {
   if (typeof like === "number") return isFinite(look) && look > 0 && look < 100;
   if (Array.isArray(like)) {
-    const isAlike = Array.isArray(look) && look.length >= like.length && look.length < 9;
-    return isAlike && look.every((each) => isFinite(each) && Math.abs(each) < 10);
+    return Array.isArray(look) && look.length >= like.length && look.length < 9 && look.every((each) => isFinite(each) && Math.abs(each) < 10);
   }
   if (!isObject(like)) return typeof look === typeof like;
   return isObject(look) && Object.entries(like).every(([name, each]) =>
     (name === "autumn" && look.autumn === null) || fits(look[name], each));
 }
 
+/** Arrays without their shapes. @param {Arrays} parts @returns {Record<string, any>} */
+export const valuesOf = (parts) => Object.fromEntries(Object.entries(parts).map(([name, { values }]) => [name, values]));
+
 /** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
-export function sizesOf(parts, forms) {
-  const size = /** @type {Record<string, number>} */ ({});
+function sizesOf(parts, forms) {
+  /** @type {Record<string, number>} */
+  const size = {};
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
     const { values, shape } = parts[name] ?? {};
     need(values?.constructor === TYPES[type] && shape.length === axes.length, name);
@@ -70,8 +73,8 @@ export function sizesOf(parts, forms) {
 /** A kind with its arrays and its sizes; one whose arrays do not fit each other is refused.
  * @param {Kind} kind as its header has it @param {Arrays} parts its arrays @returns {Kind} */
 export function checkedKind(kind, parts) {
-  const named = Object.entries(parts).map(([name, { values }]) => [name, values]);
-  const arrays = /** @type {Kind["arrays"]} */ (Object.fromEntries(named));
+  /** @type {Kind["arrays"]} */
+  const arrays = valuesOf(parts);
   const forms = Object.entries(FORMS.description).filter(([name]) => arrays.leaf_segment || !name.startsWith("leaf"));
   const size = sizesOf(parts, Object.fromEntries(forms));
   const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;
@@ -110,19 +113,14 @@ export function checkTrees(header, kinds, own) {
   need(/^[0-9a-f]{16}$/.test(header.identity), "identity");
   need(trees.length > 0, "trees");
   sizesOf(own, { tree_place: ["f32", trees.length, 5] });
-  let [poses, coordinates] = [0, 0];
   for (const [i, tree] of trees.entries()) {
     need(Number.isInteger(tree.kind) && tree.kind in kinds, `trees[${i}]`);
     need(typeof tree.name === "string", `trees[${i}]`);
     need(own.tree_place.values[5 * i + 4] > 0, `tree_place[${i}]`);
-    poses += kinds[tree.kind].nSegments;
-    coordinates += kinds[tree.kind].nCoordinates;
   }
   const segments = kinds.reduce((sum, kind) => sum + kind.nSegments, 0);
   need(Object.values(header.flutter ?? {}).every(isFinite), "flutter");
   need(segments <= MOST_SEGMENTS, "number of segments");
-  need(poses <= MOST_POSES, "number of segments of all trees");
-  need(coordinates <= MOST_COORDINATES, "number of coordinates");
 }
 
 /** Sizes of the axes of the arrays of a table; refuses numbers or arrays that are inconsistent, as

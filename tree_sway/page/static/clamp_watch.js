@@ -10,16 +10,13 @@ const FEWEST = 3;
 
 /** Sums the time for which the steps of a tree were clamped. */
 export class ClampWatch {
-  constructor() {
-    this._seconds = 0;
-    this._last = 0;
-  }
+  _seconds = 0;
+  _last = 0;
 
   /** Note a clamped step; steps that are not clamped need no call. @param {number} step its number
    * @param {number} dt [s] @returns {boolean} whether the tree has been clamped for too long */
   isStuck(step, dt) {
-    const nFree = step - this._last - 1;
-    this._seconds = Math.max(this._seconds - nFree * dt, 0) + dt;
+    this._seconds = Math.max(this._seconds - (step - this._last - 1) * dt, 0) + dt;
     this._last = step;
     if (this._seconds < LONGEST_CLAMPED) return false;
     this._seconds = 0;

@@ -17,14 +17,16 @@ const HERE = /^(localhost|127[.]|\[::1\])/;
 const FEW = 1000;
 
 export class TreeStream {
+  /** @type {Placer | null} */
+  placer = null;
+  /** Solver of a scene whose wind alone is sent; null where states are. @type {ByWind | null} */
+  byWind = null;
+
   /** @param {string} page address of the page, with its token if it has one
    * @param {StreamListeners} [listeners] @param {StreamOptions} [options] */
   constructor(page, listeners = {}, options = {}) {
     const { kept = null, byWind = false, delay = kept ? OWN_DELAY : undefined } = options;
     this.playout = new Playout(delay);
-    this.placer = /** @type {Placer | null} */ (null);
-    /** Solver of a scene whose wind alone is sent; null where states are. */
-    this.byWind = /** @type {ByWind | null} */ (null);
     const { onDescription, onFrame, onMessage } = listeners;
     /** @type {Listeners} */
     const taking = {

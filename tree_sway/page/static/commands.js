@@ -2,54 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 /** What people do to the page: buttons, keys, clicks on the picture, files that are dropped. */
 
-import { recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
+import { copyLink, recordClip, savePicture, saveTree } from "./keepsake.js";
 import { toast } from "./notices.js";
 import { OwnLine } from "./own_line.js";
 import { element } from "./panel.js";
-import { OF_TREE } from "./state.js";
-import { language, word } from "./words.js";
 
 /** Largest movement of a pointer in a click [px]. */
 const STILL = 4;
-
-/** Save the tree as a file, and say that it is being written. @param {"glb" | "html"} suffix @param {string} name
- * @param {string | null} token of the stream */
-async function saveFile(suffix, name, token) {
-  toast(word("writing"), false, true);
-  await saveTree(suffix, name, token);
-  element("toast").hidden = true;
-}
-
-/** Put a link to what is seen into the address bar and the clipboard. @param {import("./view.js").View} view */
-async function copyLink({ scene, day, shown, state: { controls, viewersToken } }) {
-  const { leavesShown: leaves, isAutumn: autumn, picked: branch } = scene;
-  const tree = controls.filter(({ name }) => OF_TREE.includes(name)).map(({ name, value }) => [name, value]);
-  const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }), ...Object.fromEntries(tree) };
-  history.replaceState(null, "", viewLink(scene, all));
-  const link = new URL(location.href);
-  if (viewersToken) link.searchParams.set("token", viewersToken);
-  await navigator.clipboard?.writeText(link.href).catch(() => undefined);
-  toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`, false);
-}
 
 /** Listen to buttons, keys and pointers. @param {import("./view.js").View} view @param {string | null} token of the stream */
 export function listen(view, token) {
   const { scene, stream, hands } = view;
   const { canvas } = scene;
-  const help = /** @type {HTMLDialogElement} */ (element("keys"));
+  /** @type {HTMLDialogElement} */
+  const help = element("keys");
   /** Actions of the buttons, by their ids, and of the keys that their elements name. @type {Record<string, () => unknown>} */
   const actions = {
     home: () => scene.camera.home(),
     leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
     theme: () => view.setDay(),
     season: () => scene.dress({ isAutumn: !scene.isAutumn }),
-    picture: () => savePicture(scene, view.treeName, () => scene.draw(null, view.time, true)),
+    picture: () => savePicture(view),
     clip: () => {
       view.endClip?.();
       view.endClip = view.endClip ? null : recordClip(canvas, view.treeName);
     },
-    glb: () => saveFile("glb", view.treeName, token),
-    html: () => saveFile("html", view.treeName, token),
+    glb: () => saveTree("glb", view.treeName, token),
+    html: () => saveTree("html", view.treeName, token),
     link: () => copyLink(view),
     full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
     help: () => help.showModal(),
@@ -80,10 +59,10 @@ export function listen(view, token) {
       }
       view.showButtons();
     };
-    element(id).addEventListener("click", act);
+    element(id).onclick = act;
     keys[element(id).dataset.key ?? id] = act;
   }
-  document.addEventListener("keydown", (event) => {
+  document.onkeydown = (event) => {
     const target = /** @type {HTMLElement} */ (event.target);
     if (target.closest("input[type='text'], select, dialog") || event.ctrlKey || event.metaKey) return;
     const own = target.matches("button, summary") ? /^( |Enter)$/ : target.matches("input") ? /^(Arrow|Home|End|Page)/ : /^$/;
@@ -91,7 +70,7 @@ export function listen(view, token) {
     // The camera listens to the picture, also while a button that was clicked has the focus.
     if (target !== canvas) canvas.dispatchEvent(new KeyboardEvent("keydown", event));
     else keys[event.key.toLowerCase()]?.();
-  });
+  };
   navigator.xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
   let pressed = [0, 0];
   canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
@@ -101,18 +80,18 @@ export function listen(view, token) {
     const { branch, segment } = scene.under(event);
     view.pick(branch, segment);
   });
-  view.shown.addEventListener("change", () => view.pick(scene.picked));
-  element("time").addEventListener("input", ({ target }) => view.goBack(-Number(/** @type {any} */ (target).value)));
-  element("language").addEventListener("change", ({ target }) => view.speak(/** @type {any} */ (target).value));
+  view.shown.onchange = () => view.pick(scene.picked);
+  element("time").oninput = ({ target }) => view.goBack(-Number(/** @type {any} */ (target).value));
+  element("language").onchange = ({ target }) => view.speak(/** @type {any} */ (target).value);
   // A button of the bar that the keyboard reaches comes into the bar whole.
   element("tools").addEventListener("focusin", ({ target }) => /** @type {Element} */ (target).scrollIntoView({ inline: "center", block: "nearest" }));
 
-  document.addEventListener("dragover", (event) => event.preventDefault());
-  document.addEventListener("drop", (event) => {
+  document.ondragover = (event) => event.preventDefault();
+  document.ondrop = (event) => {
     event.preventDefault();
     const file = event.dataTransfer?.files[0];
     const { connection } = stream;
     if (file && connection instanceof OwnLine) connection.take(file).catch((error) => toast(error.message));
-  });
+  };
   scene.camera.listen(canvas);
 }

@@ -9,13 +9,13 @@ import {
 import { decodeTables } from "./sway.js";
 
 /** Most frames that may be under way, and the least of it if they are large. */
-const [MOST_CREDIT, LEAST_CREDIT] = [24, 8];
+const MOST_CREDIT = 24, LEAST_CREDIT = 8;
 /** Most bytes that may be under way, so that a slow connection does not fill with old frames. */
 const ON_THE_WAY = 200000;
 /** Number of frames for which credit is given at once. */
 const GRANT_EVERY = 4;
 /** Wait before a reconnection, doubled with each failure [ms]. */
-const [SHORTEST_WAIT, LONGEST_WAIT] = [500, 10000];
+const SHORTEST_WAIT = 500, LONGEST_WAIT = 10000;
 const PING_EVERY = 2000;
 /** Silence after which a connection counts as lost [ms]. */
 const SILENCE = 6000;
@@ -23,21 +23,24 @@ const LARGEST_TEXT = 2 ** 20;
 
 /** A connection to a server, kept up from `open` to `close`. */
 export class Connection {
+  roundTrip = NaN;
+  /** @type {Description | null} */
+  description = null;
+  /** @type {WebSocket | null} */
+  _socket = null;
+  /** Number of messages that could not be read; each is followed by a reconnection. */
+  unreadable = 0;
+  _wait = SHORTEST_WAIT;
+  /** Frames that were requested and have not come. */
+  _awaited = 0;
+  _credit = MOST_CREDIT;
+  _heard = 0;
+
   /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] of frames [1/s] */
   constructor(url, listeners, rate = 30) {
     this.url = url;
     this.listeners = listeners;
     this.rate = rate;
-    this.roundTrip = NaN;
-    this.description = /** @type {Description | null} */ (null);
-    this._socket = /** @type {WebSocket | null} */ (null);
-    /** Number of messages that could not be read; each is followed by a reconnection. */
-    this.unreadable = 0;
-    this._wait = SHORTEST_WAIT;
-    /** Frames that were requested and have not come. */
-    this._awaited = 0;
-    this._credit = MOST_CREDIT;
-    this._heard = 0;
     this._retry = this._watching = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
   }
 
@@ -101,45 +104,43 @@ export class Connection {
   _take(data) {
     const arrival = Date.now();
     this._heard = performance.now();
-    let deliver;
+    /** @type {ReturnType<Connection["_read"]>} */
+    let read;
     try {
-      deliver = this._read(data, arrival);
+      read = this._read(data, arrival);
     } catch (error) {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
       this._lose();
-      deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
+      read = ["onMessage", { unreadable: why.slice(0, 400) }];
     }
-    deliver();
+    const [name, ...values] = read;
+    /** @type {any} */ (this.listeners)[name]?.(...values);
   }
 
   /** Read a text, a description, its tables or a frame. @param {string | ArrayBuffer} data
-   * @param {number} arrival [ms] @returns {() => void} call that gives it to the listener */
+   * @param {number} arrival [ms] @returns {[name: keyof Listeners | "", ...any]} its listener, and what that is given */
   _read(data, arrival) {
     const isText = typeof data === "string";
     const size = isText ? data.length : data.byteLength;
-    const isTooLarge = size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION);
-    if (isTooLarge) throw new ProtocolError(`a message of ${size} bytes`);
+    if (size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION)) throw new ProtocolError(`a message of ${size} bytes`);
     if (isText) {
       const message = checkMessage(JSON.parse(data));
       if ("pong" in message) this.roundTrip = performance.now() - message.pong;
-      return () => this.listeners.onMessage(message);
+      return ["onMessage", message];
     }
-    if (isTables(data)) {
-      const tables = decodeTables(data);
-      return () => this.listeners.onTables?.(tables);
-    }
+    if (isTables(data)) return ["onTables", decodeTables(data)];
     if (!isFrame(data)) {
       const description = (this.description = decodeDescription(data));
       const fitting = Math.floor(ON_THE_WAY / (FRAME_SIZE + 2 * description.nCoordinates));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
-      return () => this.listeners.onDescription(description);
+      return ["onDescription", description];
     }
     this._awaited -= 1;
     this._ask();
     const frame = decodeFrame(data, this.description);
     if (frame) this._wait = SHORTEST_WAIT;
-    return () => frame && this.listeners.onFrame(frame, arrival, size);
+    return [frame ? "onFrame" : "", frame, arrival, size];
   }
 }

@@ -45,7 +45,7 @@ export class Block {
     return this._values;
   }
 
-  /** Free them now. */
+  /** Free them now, where they are many. */
   free() {
     unused.unregister(this);
     core.free(this.at);
@@ -55,7 +55,7 @@ export class Block {
 /** Types of arrays by their number in the bytes of a model. */
 const TYPES = [Float64Array, Float32Array, BigInt64Array];
 /** Bytes of the head of a model, of an entry of its list, and for an error. */
-const [HEAD, ENTRY, ROOM] = [16, 72, 300];
+const HEAD = 16, ENTRY = 72, ROOM = 300;
 
 /** Call with room for an error, which becomes a `ProtocolError`. @param {object} owner of what is made
  * @param {string} free function @param {(at: number, room: number) => number} make @returns {number} address */
@@ -63,7 +63,6 @@ export function made(owner, free, make) {
   const error = new Block(Uint8Array, ROOM);
   const found = make(error.at, ROOM);
   const text = new TextDecoder().decode(error.values.slice(0, error.values.indexOf(0)));
-  error.free();
   if (!found) throw new ProtocolError(text);
   return owned(owner, found, free);
 }
@@ -74,7 +73,11 @@ export class Model {
   constructor(arrays) {
     const entries = Object.entries(arrays);
     let size = HEAD + ENTRY * entries.length;
-    const offsets = entries.map(([, { values }]) => (size += 8 * Math.ceil(values.byteLength / 8)) - 8 * Math.ceil(values.byteLength / 8));
+    const offsets = entries.map(([, { values }]) => {
+      const from = size;
+      size += 8 * Math.ceil(values.byteLength / 8);
+      return from;
+    });
     need(size < 2 ** 32 - 2 ** 16, "size of the model");
     const block = new Block(Uint8Array, size);
     const bytes = block.values;

@@ -14,9 +14,9 @@ const MODULUS = 8e9;
 /** Interval at which a pull is renewed [ms]. */
 const RENEW_EVERY = 100;
 /** Growth of the stiffness of a spring that is too weak, and its largest value [N/m]. */
-const [HARDER, STIFFEST] = [1.4, 1e5];
+const HARDER = 1.4, STIFFEST = 1e5;
 /** Length of the record of a free decay, and the length from which on it can be saved [s]. */
-const [RECORDED, OFFERED] = [30, 3];
+const RECORDED = 30, OFFERED = 3;
 /** Time after which a release has surely reached the server [ms]. */
 const RELEASED = 250;
 /** Movement of the hand per key press, over the size of the picture, and its directions. */
@@ -51,6 +51,16 @@ export function forceText(force) {
 
 /** One pull at a branch: its spring, then the record of the free decay. */
 export class Pull {
+  _sentAt = -Infinity;
+  /** Time [s] and displacement [m] since the release. @type {number[][]} */
+  record = [];
+  _from = Infinity;
+  isHeld = true;
+  /** @type {Touch | null} */
+  _touch = null;
+  /** Newest frame of the record. @type {Frame | null} */
+  _last = null;
+
   /** @param {Scene} scene @param {TreeStream} stream @param {number} segment of the watched tree */
   constructor(scene, stream, segment) {
     this.scene = scene;
@@ -58,14 +68,6 @@ export class Pull {
     this.segment = segment;
     this.stiffness = stiffnessAt(scene, segment);
     this.to = scene.position(segment);
-    this._sentAt = -Infinity;
-    /** Time [s] and displacement [m] since the release. */
-    this.record = /** @type {number[][]} */ ([]);
-    this._from = Infinity;
-    this.isHeld = true;
-    this._touch = /** @type {Touch | null} */ (null);
-    /** Newest frame of the record. */
-    this._last = /** @type {Frame | null} */ (null);
   }
 
   /** Force of the spring [N]. */
@@ -128,21 +130,44 @@ export class Pull {
 }
 
 export class Drag {
+  isOn = false;
+  /** @type {Pull | null} */
+  pull = null;
+  _pointer = -1;
+
   /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
-    this.stream = stream;
-    this.isOn = false;
-    this.pull = /** @type {Pull | null} */ (null);
-    this._pointer = -1;
     const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
     this._shown = { line, label, saving };
-    saving.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
+    saving.onclick = () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv");
     /** Handlers, which return whether the event was for them. @type {Record<string, (event: any) => boolean>} */
     const takers = {
-      pointerdown: (event) => this._grab(event), pointermove: (event) => this._move(event),
+      pointerdown: (event) => {
+        const segment = this.isOn && this._pointer < 0 ? this._under(event) : -1;
+        if (segment < 0) return false;
+        this.pull = new Pull(scene, stream, segment);
+        this._pointer = event.pointerId;
+        scene.canvas.setPointerCapture(event.pointerId);
+        return true;
+      },
+      pointermove: (event) => {
+        if (!this.pull || event.pointerId !== this._pointer) return false;
+        this.pull.to = scene.camera.under(scene.placeOf(event), this.pull.to);
+        return true;
+      },
       pointerup: (event) => this._release(event), pointercancel: (event) => this._release(event),
-      keydown: (event) => this._key(event),
+      // Arrows pull the tip that is followed, Enter releases.
+      keydown: (event) => {
+        const { key } = event;
+        if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
+        event.preventDefault();
+        if (key === "Enter") return this._release({ pointerId: this._pointer });
+        if (!this.pull?.isHeld) this.pull = new Pull(scene, stream, scene.followed);
+        const [u, v] = scene.camera.project(this.pull.to);
+        this.pull.to = scene.camera.under([u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1]], this.pull.to);
+        return true;
+      },
     };
     for (const [type, take] of Object.entries(takers)) {
       scene.canvas.addEventListener(type, (event) => take(event) && event.stopImmediatePropagation(), true);
@@ -151,29 +176,6 @@ export class Drag {
 
   toggle() {
     this.isOn = !this.isOn;
-  }
-
-  /** Pull by keys: arrows pull the tip that is followed, Enter releases. @param {KeyboardEvent} event */
-  _key(event) {
-    const { key } = event;
-    if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
-    event.preventDefault();
-    if (key === "Enter") return this._release({ pointerId: this._pointer });
-    const { camera, followed } = this.scene;
-    if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
-    const [u, v] = camera.project(this.pull.to);
-    this.pull.to = camera.under([u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1]], this.pull.to);
-    return true;
-  }
-
-  /** @param {PointerEvent} event */
-  _grab(event) {
-    const segment = this.isOn && this._pointer < 0 ? this._under(event) : -1;
-    if (segment < 0) return false;
-    this.pull = new Pull(this.scene, this.stream, segment);
-    this._pointer = event.pointerId;
-    this.scene.canvas.setPointerCapture(event.pointerId);
-    return true;
   }
 
   /** Segment under the pointer, or -1; its tree is the watched one from then on. @param {PointerEvent} event */
@@ -188,13 +190,6 @@ export class Drag {
     }
     detail.watched = before;
     return -1;
-  }
-
-  /** @param {PointerEvent} event */
-  _move(event) {
-    if (!this.pull || event.pointerId !== this._pointer) return false;
-    this.pull.to = this.scene.camera.under(this.scene.placeOf(event), this.pull.to);
-    return true;
   }
 
   /** @param {{pointerId: number}} event */

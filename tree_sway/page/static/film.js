@@ -14,10 +14,10 @@ scene.camera.room = () => [0, 0, 1, 1];
 scene.resize();
 scene.camera.home();
 
-let picture = /** @type {Blob | null} */ (null);
+/** @type {Blob | null} */
+let picture = null;
 for (;;) {
-  const answer = await fetch("/", { method: "POST", body: picture });
-  const { time, wind, coordinates } = await answer.json();
+  const { time, wind, coordinates } = await (await fetch("/", { method: "POST", body: picture })).json();
   scene.wind = wind;
   scene.draw(new Float32Array(coordinates), time, false);
   picture = await new Promise((done) => scene.canvas.toBlob(done));

@@ -10,22 +10,26 @@ import { word } from "./words.js";
 
 const WANTED = { facingMode: "environment", width: 640, height: 480, frameRate: 30 };
 /** Share of the points below which most are lost, and time after which points are found anew then [ms]. */
-const [FEWEST, LONG] = [0.4, 10000];
+const FEWEST = 0.4, LONG = 10000;
 
 export class HandCamera {
+  /** @type {HTMLVideoElement | null} */
+  video = null;
+  /** @type {HTMLCanvasElement} */
+  canvas = element("seen");
+  /** Clicked points: x and y [px], and their place on the tree. @type {[number, number, string][]} */
+  clicks = [];
+  /** Newest answer of the server. */
+  _found = { number: 0, places: /** @type {number[][]} */ ([]) };
+  /** @type {OpticalFlow | null} */
+  _flow = null;
+  _goodAt = Infinity;
+
   /** @param {import("./view.js").View} view */
   constructor(view) {
     this.view = view;
-    this.video = /** @type {HTMLVideoElement | null} */ (null);
-    this.canvas = /** @type {HTMLCanvasElement} */ (element("seen"));
-    /** Clicked points: x and y [px], and their place on the tree. */
-    this.clicks = /** @type {[number, number, string][]} */ ([]);
-    /** Newest answer of the server. */
-    this._found = { number: 0, places: /** @type {number[][]} */ ([]) };
-    this._flow = /** @type {OpticalFlow | null} */ (null);
-    this._goodAt = Infinity;
-    this.canvas.addEventListener("click", (event) => this.video && this._click(event));
-    element("camera-known").addEventListener("change", () => this.send());
+    this.canvas.onclick = (event) => this.video && this._click(event);
+    element("camera-known").onchange = () => this.send();
   }
 
   async toggle() {
@@ -90,7 +94,7 @@ export class HandCamera {
     const { videoWidth: width, videoHeight: height } = video;
     if (canvas.width !== width || canvas.height !== height) {
       // Begin, also as a phone was turned.
-      [canvas.width, canvas.height] = [width, height];
+      Object.assign(canvas, { width, height });
       this.clicks = [];
       view.pick(scene.picked); // a click on the drawn tree counts from here on
       this.take({ number: 0, said: "", places: [] });

@@ -5,35 +5,36 @@
 import { Pull } from "./drag.js";
 import { turned } from "./quaternions.js";
 
-/** @typedef {{from: number[], along: number[]}} Ray of a controller, in the scene */
-
 /** Largest angle between a ray and the branch that it picks [rad]. */
 const AIM = 0.06;
 /** Longest teleport [m], and first distance over the height of the tree. */
-const [FARTHEST, HEIGHTS_AWAY] = [40, 0.9];
+const FARTHEST = 40, HEIGHTS_AWAY = 0.9;
 
 /** The view of an eye with the interface of `Camera`. @param {any} view of WebXR @returns {View["camera"]} */
 function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, projectionMatrix: p }) {
   const matrix = new DOMMatrix([...p]).multiply(new DOMMatrix([...inverse.matrix])).toFloat32Array();
   const column = (/** @type {number} */ at, share = 1) => Array.from(m.slice(at, at + 3), (each) => share * each);
-  const [right, up] = [column(0, 1 / p[0]), column(4, 1 / p[5])];
+  const right = column(0, 1 / p[0]), up = column(4, 1 / p[5]);
   const axes = { right, up, back: column(8).map((each, c) => each - p[8] * right[c] - p[9] * up[c]) };
   return { matrix, eye: [x, y, z], axes: () => axes, update: () => matrix };
 }
 
 export class Headset {
+  /** @type {any} */
+  session = null;
+  frames = 0;
+  /** @type {View[]} */
+  views = [];
+  /** Place of its floor in the scene [m], and its first heading [rad]. */
+  origin = [0, 0, 0];
+  heading = 0;
+  /** Pull of each controller, and its distance [m]. @type {Map<any, {pull: Pull, far: number}>} */
+  pulls = new Map();
+
   /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
-    this.session = /** @type {any} */ (null);
-    this.frames = 0;
-    this.views = /** @type {View[]} */ ([]);
-    /** Place of its floor in the scene [m], and its first heading [rad]. */
-    this.origin = [0, 0, 0];
-    this.heading = 0;
-    /** Pull of each controller, and its distance [m]. */
-    this.pulls = /** @type {Map<any, {pull: Pull, far: number}>} */ (new Map());
   }
 
   /** Enter, or leave. @param {() => void} onEnd called when it has ended */
@@ -48,8 +49,18 @@ export class Headset {
     const away = Math.max(1.2, HEIGHTS_AWAY * this.scene.height);
     this.heading = azimuth + Math.PI;
     this._stand(target[0] + away * Math.cos(azimuth), target[1] + away * Math.sin(azimuth));
-    session.addEventListener("select", (/** @type {any} */ event) => this._teleport(this._ray(event)));
-    session.addEventListener("squeezestart", (/** @type {any} */ event) => this._grab(event.inputSource, this._ray(event)));
+    session.addEventListener("select", (/** @type {any} */ event) => {
+      const { from = [], along = [0, 0, 0] } = this._ray(event) ?? {};
+      if (along[2] > -0.02) return;
+      const far = Math.min(FARTHEST, (this.scene.ground - from[2]) / along[2]);
+      this._stand(from[0] + far * along[0], from[1] + far * along[1]);
+    });
+    session.addEventListener("squeezestart", (/** @type {any} */ event) => {
+      const ray = this._ray(event);
+      if (!ray || !this.scene.description) return;
+      const { segment, far } = this.scene.nearest(ray.from, ray.along, AIM);
+      if (segment >= 0) this.pulls.set(event.inputSource, { pull: new Pull(this.scene, this.stream, segment), far });
+    });
     session.addEventListener("squeezeend", (/** @type {any} */ { inputSource }) => this._release(inputSource));
     session.addEventListener("end", () => {
       this.session = null;
@@ -64,34 +75,19 @@ export class Headset {
    * @param {number} x [m] @param {number} y */
   _stand(x, y) {
     const half = Math.PI / 4 - this.heading / 2;
-    const [c, s] = [Math.SQRT1_2 * Math.cos(half), Math.SQRT1_2 * Math.sin(half)];
+    const c = Math.SQRT1_2 * Math.cos(half), s = Math.SQRT1_2 * Math.sin(half);
     this.origin = [x, y, this.scene.ground];
-    const turn = [-c, s, s, c];
-    const [right, up, back] = turned(turn, this.origin.map((each) => -each));
+    const [right, up, back] = turned([-c, s, s, c], this.origin.map((each) => -each));
     const scene = new XRRigidTransform({ x: right, y: up, z: back }, { x: -c, y: s, z: s, w: c });
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }
 
-  /** Ray of a controller; null if it is not tracked. @param {{frame: any, inputSource: any}} event */
+  /** Ray of a controller in the scene; null if it is not tracked. @param {{frame: any, inputSource: any}} event */
   _ray({ frame, inputSource }) {
     const pose = frame.getPose(inputSource.targetRaySpace, this.space);
     if (!pose) return null;
     const { position: { x, y, z }, matrix: m } = pose.transform;
     return { from: [x, y, z], along: [-m[8], -m[9], -m[10]] };
-  }
-
-  /** @param {Ray | null} ray */
-  _teleport(ray) {
-    if (!ray || ray.along[2] > -0.02) return;
-    const far = Math.min(FARTHEST, (this.scene.ground - ray.from[2]) / ray.along[2]);
-    this._stand(ray.from[0] + far * ray.along[0], ray.from[1] + far * ray.along[1]);
-  }
-
-  /** @param {any} source @param {Ray | null} ray */
-  _grab(source, ray) {
-    if (!ray || !this.scene.description) return;
-    const { segment, far } = this.scene.nearest(ray.from, ray.along, AIM);
-    if (segment >= 0) this.pulls.set(source, { pull: new Pull(this.scene, this.stream, segment), far });
   }
 
   /** @param {any} source */

@@ -13,7 +13,7 @@ const INNER = Int32Array.from({ length: (WIDE - 2) ** 2 }, (_, k) =>
 /** Number of sizes of a picture, each half of the one before. */
 const LEVELS = 3;
 /** Most steps towards a place, and length of a last one [px]. */
-const [ROUNDS, LAST] = [10, 0.02];
+const ROUNDS = 10, LAST = 0.02;
 /** How far from its begin a point may come back [px]. */
 const RETURNED = 0.7;
 /** Least mean square of the slopes of a corner, along any way. */
@@ -22,9 +22,9 @@ const MOST_POINTS = 40;
 
 const [still, moved, across, down] = Array.from({ length: 4 }, () => new Float32Array(WIDE * WIDE));
 /** Sums over a window: squares of slopes along x, products with those along y, squares along y. */
-let [xx, xy, yy] = [0, 0, 0];
+let xx = 0, xy = 0, yy = 0;
 /** Place that is sought, and where its way back ends. */
-const [place, back] = [new Float64Array(2), new Float64Array(2)];
+const place = new Float64Array(2), back = new Float64Array(2);
 
 /** @typedef {{wide: number, high: number, grey: Float32Array}} Level a picture in one size */
 

@@ -23,27 +23,29 @@ export async function keptScene() {
 
 /** Has the interface of `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
+  roundTrip = NaN;
+  /** Name of the recorded wind. */
+  _record = "";
+  _turbulence = new Turbulence();
+  _isPaused = false;
+  _hasRestarted = false;
+  _sequence = 0;
+  _time = 0;
+  _reported = 0;
+  _work = 0;
+  /** @type {ReturnType<typeof setInterval> | undefined} */
+  _timer = undefined;
+
   /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
     this.stand = stand;
     this.listeners = listeners;
-    this.roundTrip = NaN;
     this._address = address;
-    /** Name of the recorded wind. */
-    this._record = "";
-    this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** Newest frame of a live wind. */
-    this._live = /** @type {Frame | null} */ (null);
-    this._isPaused = false;
-    this._hasRestarted = false;
-    this._sequence = 0;
-    this._time = 0;
-    this._reported = 0;
-    this._work = 0;
-    this._timer = /** @type {ReturnType<typeof setInterval> | undefined} */ (undefined);
+    /** Newest frame of a live wind. @type {Frame | null} */
+    this._live = null;
     const unreadable = `no live wind from ${address}: the simulated one blows until it comes. `
       + "See whether tree-sway show runs there, with --origin null if this page is a file.";
     /** @type {Listeners} */

@@ -11,8 +11,8 @@ const STEPS = 400;
 /** Ratio of the ends of a range from which on its slider is logarithmic. */
 const WIDE = 1000;
 
-/** An element of the page. @param {string} id */
-export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+/** An element of the page. @template {HTMLElement} T its kind, which the caller knows @param {string} id @returns {T} */
+export const element = (id) => /** @type {any} */ (document.getElementById(id));
 
 /** Make an element with properties and children. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
@@ -42,14 +42,13 @@ function textOf({ name, unit }, value) {
 /** Range of a slider, and the values of its positions. @param {Control} control
  * @returns {{min: number, max: number, step: number, valueOf: (at: number) => number, positionOf: (value: number) => number}} */
 function scaleOf({ name, minimum, maximum }) {
-  const [low, high] = [minimum ?? 0, maximum ?? 1];
-  const half = Math.PI;
+  const low = minimum ?? 0, high = maximum ?? 1;
   // The slider shows degrees that the wind comes from; the value is the angle that it blows to.
   if (name === "bearing_to") {
     return {
       min: 0, max: 360, step: 1,
-      valueOf: (at) => ((at + 180) % 360) * (half / 180),
-      positionOf: (value) => Math.round(((value + half) * (180 / half)) % 360 + 360) % 360,
+      valueOf: (at) => ((at + 180) % 360) * (Math.PI / 180),
+      positionOf: (value) => Math.round((value * 180) / Math.PI + 900) % 360,
     };
   }
   const isWide = low > 0 && high / low > WIDE;
@@ -62,13 +61,15 @@ function scaleOf({ name, minimum, maximum }) {
 }
 
 export class Panel {
+  /** @type {Map<string, (value: any) => void>} */
+  _show = new Map();
+  /** Name of the control that is being moved; its value is not overwritten. @type {string} */
+  _inHand = "";
+
   /** @param {HTMLElement} form @param {(name: string, value: any) => void} send */
   constructor(form, send) {
     this.form = form;
     this.send = send;
-    this._show = /** @type {Map<string, (value: any) => void>} */ (new Map());
-    /** Name of the control that is being moved; its value is not overwritten. @type {string} */
-    this._inHand = "";
   }
 
   /** @param {Control[]} controls */
@@ -127,15 +128,15 @@ export class Panel {
       input.setAttribute("aria-valuetext", textOf(control, value));
     };
     let timer = 0;
-    input.addEventListener("input", () => {
+    input.oninput = () => {
       this._inHand = name;
       show(valueOf());
       clearTimeout(timer);
       // The value of now: until it is sent, one from the server may have moved the slider back.
       const value = valueOf();
       timer = setTimeout(() => this.send(name, value), SEND_EVERY);
-    });
-    input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
+    };
+    input.onchange = () => setTimeout(() => (this._inHand = ""), 600);
     this._show.set(name, (value) => {
       input.value = String(positionOf(value));
       show(value);
@@ -148,7 +149,7 @@ export class Panel {
     const options = control.choices.map((value) => made("option", { value }, value.replaceAll("_", " ")));
     const input = options.length ? made("select", named(control), ...options)
       : made("input", { ...named(control), type: "text", maxLength: 40 });
-    input.addEventListener("change", () => this.send(control.name, input.value));
+    input.onchange = () => this.send(control.name, input.value);
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);
   }
@@ -156,10 +157,9 @@ export class Panel {
   /** @param {Control} control */
   _button(control) {
     const button = made("button", { ...named(control), type: "button" }, nameOf(control));
-    const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
-    button.addEventListener("click", () => this.send(control.name, next()));
-    const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));
-    if (!control.is_action) this._show.set(control.name, show);
+    let isOn = false;
+    button.onclick = () => this.send(control.name, control.is_action ? null : !isOn);
+    if (!control.is_action) this._show.set(control.name, (value) => button.setAttribute("aria-pressed", String(isOn = Boolean(value))));
     return button;
   }
 }

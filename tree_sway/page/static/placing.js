@@ -16,19 +16,21 @@ const MOST_MEMORY = 512 * 2 ** 20;
 
 /** Place in the scene of a point of a kind. @param {number[]} place @param {ArrayLike<number>} point */
 export function placed([x, y, z, yaw, scale], point) {
-  const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
+  const c = scale * Math.cos(yaw), s = scale * Math.sin(yaw);
   return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
 }
 
 /** Rotations of pulled branches beyond the coordinates [rad], by the number of the key rotation; they follow the
  * coordinates of a state. @param {ArrayLike<number>} values @param {number} count of coordinates */
 export function beyond(values, count) {
-  const turns = /** @type {Map<number, number>} */ (new Map());
+  /** @type {Map<number, number>} */
+  const turns = new Map();
   for (let i = count; i < values.length; i += 2) turns.set(values[i], values[i + 1]);
   return turns;
 }
 
-const NONE = /** @type {Map<number, number>} */ (new Map());
+/** @type {Map<number, number>} */
+const NONE = new Map();
 /** Coordinates of the tree that is placed. */
 const own = new Block(Float32Array, 65536);
 
@@ -56,6 +58,9 @@ export class Placer {
 
 /** Places trees of one kind, or the first of their branches. */
 export class KindPlacer {
+  /** @type {Map<number, Part>} */
+  _parts = new Map();
+
   /** @param {Kind} kind @param {Int32Array | null} [order] of its branches, parents before their children */
   constructor(kind, order = null) {
     const { arrays: { branch_first: first }, nBranches } = kind;
@@ -69,7 +74,6 @@ export class KindPlacer {
       for (let s = first[branch]; s < first[branch + 1]; s++) this.slots[s] = this.reached[i] + s - first[branch];
       this.reached[i + 1] = this.reached[i] + first[branch + 1] - first[branch];
     });
-    this._parts = /** @type {Map<number, Part>} */ (new Map());
   }
 
   /** Place a tree. @param {Float32Array | Float64Array} coordinates of all trees @param {number} from its first
@@ -88,6 +92,9 @@ export class KindPlacer {
 
 /** The first branches of an order, as a model of the core. */
 class Part {
+  /** @type {Block<Float64Array> | null} */
+  _turned = null;
+
   /** @param {Kind} kind @param {Int32Array} branches @param {Int32Array} reached number of segments of the first of them */
   constructor(kind, branches, reached) {
     /** Key rotations of the kind that the model has, in its own order. */
@@ -95,7 +102,6 @@ class Part {
     this._model = new Model(arraysOf(kind, branches, reached, this._keys));
     this.at = owned(this, core.page_placer_open(this._model.at), "page_placer_close");
     this.poses = new Block(Float32Array, STRIDE * reached[branches.length]);
-    this._turned = /** @type {Block<Float64Array> | null} */ (null);
   }
 
   /** Write what some key rotations are turned by. @param {Map<number, number>} turns @param {number} first key of the tree */
@@ -118,7 +124,7 @@ const rows = (branches, first, count) =>
 function arraysOf({ arrays, nCoordinates: m, nBranches }, branches, reached, keyRows) {
   const { branch_first: first, branch_keys: keys, branch_parent: parents, turn, branch_frame: frame } = arrays;
   const segmentRows = rows(branches, first, (branch) => first[branch + 1] - first[branch]);
-  const [b, n] = [branches.length, segmentRows.length];
+  const b = branches.length, n = segmentRows.length;
   const room = branches.reduce((most, branch) => Math.max(most, keys[branch]), 2);
   need(48 * room * n <= MOST_MEMORY, "size of a kind when laid out");
   const numbers = new Int32Array(nBranches).fill(-1);
@@ -136,9 +142,9 @@ function arraysOf({ arrays, nCoordinates: m, nBranches }, branches, reached, key
     }
     return found;
   };
-  const [twist, turns] = [zeros(b, room, 6), zeros(n, room, 3)];
+  const twist = zeros(b, room, 6), turns = zeros(n, room, 3);
   branches.forEach((branch, i) => {
-    const [parent, base, bend] = [parents[branch], arrays.branch_base_turn[branch], arrays.branch_turn[branch]];
+    const parent = parents[branch], base = arrays.branch_base_turn[branch], bend = arrays.branch_turn[branch];
     for (let k = 0; base >= 0 && k < keys[parent]; k++) {
       twist.values.set(turn.subarray(3 * (base + k), 3 * (base + k + 1)), 6 * (room * i + k) + 3);
     }

@@ -8,11 +8,11 @@ import { PAUSED, RESTARTED, WIND_LOST } from "./protocol.js";
 
 /** Initial and longest playout delay [ms]. The delay is the spacing of frames and their largest lateness, which
  * decays with the time constant below. */
-export const DELAY = 150;
+const DELAY = 150;
 /** Time constant of the largest lateness [ms]: the age of the connection, at least and at most this. */
-const [YOUNGEST, CALMS] = [250, 12000];
+const YOUNGEST = 250, CALMS = 12000;
 /** Fastest change of the delay, down and up, per time that passes [-]. */
-const [DOWN, UP] = [0.05, 0.2];
+const DOWN = 0.05, UP = 0.2;
 /** Frames closer together than this are continued by a predicted one [ms]. */
 const PREDICTED = 30;
 /** Time in which the quickest frame gives the offset of the clocks [ms]. */
@@ -22,11 +22,11 @@ const LONGEST_GAP = 500;
 /** Time over which the picture is blended after such a gap [ms]. */
 const BLEND = 400;
 /** How long frames are kept [ms], and how many of their numbers at most. */
-const [KEPT, MOST_NUMBERS] = [62000, 8e6];
+const KEPT = 62000, MOST_NUMBERS = 8e6;
 
 /** Offset of two clocks from one-way times. Arrival less stamp is offset plus travel time; its least value in the
  * last half minute is the offset plus the quickest travel. */
-export class ClockOffset {
+class ClockOffset {
   _least = /** @type {{at: number, value: number}[]} */ ([]);
 
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
@@ -46,47 +46,47 @@ export class ClockOffset {
 
 /** Buffer of the newest frames, and the state to draw at a time. */
 export class Playout {
+  /** Mean spacing of frames, their largest lateness, the age of the connection [ms]. */
+  _spacing = 0;
+  _jitter = DELAY / 2;
+  _age = YOUNGEST;
+  /** How far a predicted frame is ahead [ms]; 0 without. */
+  _ahead = 0;
+  clock = new ClockOffset();
+  /** @type {Frame[]} */
+  _frames = [];
+  /** Index of the first frame since the last gap; those before it are for looking back. */
+  _first = 0;
+  received = 0;
+  /** Number of frames that came too late to be shown. */
+  late = 0;
+  /** Travel time of the newest frame beyond the quickest [ms]. */
+  lateness = 0;
+  /** @type {Float32Array | null} */
+  _shown = null;
+  _cutAt = 0;
+  /** @type {[number, number, number]} */
+  wind = [0, 0, 0];
+  isPaused = false;
+  /** Whether no sample of the wind is in use. */
+  isWindLost = true;
+  /** How far to look back from `_from` [ms]; 0 follows the stream. */
+  back = 0;
+  /** Stamp of the newest frame when looking back began [ms]. */
+  _from = 0;
+
   /** @param {number} [delay] fixed [ms]; adapted to the connection if left out */
   constructor(delay) {
     this.delay = delay ?? DELAY;
     this._adapts = delay === undefined;
-    /** Mean spacing of frames, their largest lateness, the age of the connection [ms]. */
-    this._spacing = 0;
-    this._jitter = DELAY / 2;
-    this._age = YOUNGEST;
-    /** How far a predicted frame is ahead [ms]; 0 without. */
-    this._ahead = 0;
-    this.clock = new ClockOffset();
-    this._frames = /** @type {Frame[]} */ ([]);
-    /** Index of the first frame since the last gap; those before it are for looking back. */
-    this._first = 0;
-    this.received = 0;
-    /** Number of frames that came too late to be shown. */
-    this.late = 0;
-    /** Travel time of the newest frame beyond the quickest [ms]. */
-    this.lateness = 0;
-    this._shown = /** @type {Float32Array | null} */ (null);
     /** State shown before the last gap, and the time when frames came again [ms]. */
     this._before = this._shown;
-    this._cutAt = 0;
-    /** @type {[number, number, number]} */
-    this.wind = [0, 0, 0];
-    this.isPaused = false;
-    /** Whether no sample of the wind is in use. */
-    this.isWindLost = true;
-    this._back = 0;
-    /** Stamp of the newest frame when looking back began [ms]. */
-    this._from = 0;
   }
 
-  /** How far to look back from that frame [ms]; 0 follows the stream. */
-  get back() {
-    return this._back;
-  }
-
-  set back(back) {
-    if (!this._back) this._from = this.newest;
-    this._back = back;
+  /** Look back from the newest frame. @param {number} back how far [ms]; 0 follows the stream */
+  lookBack(back) {
+    if (!this.back) this._from = this.newest;
+    this.back = back;
   }
 
   /** Forget all frames, as another tree comes. */
@@ -147,8 +147,8 @@ export class Playout {
   sample(now) {
     let frames = this._frames;
     if (!frames.length) return this._shown;
-    const isBack = this._back > 0;
-    const time = isBack ? this._from - this._back : now - this.clock.value - this.delay;
+    const isBack = this.back > 0;
+    const time = isBack ? this._from - this.back : now - this.clock.value - this.delay;
     const first = isBack ? 0 : this._first;
     const [x, y, z] = frames.slice(Math.max(first, frames.length - 3));
     const isPredicted = this._ahead > 0 && !isBack && z && time > y.stamp && z.stamp - y.stamp < PREDICTED;
@@ -156,7 +156,7 @@ export class Playout {
     let next = frames.length - 1;
     while (next > first + 1 && frames[next - 1].stamp > time) next--;
     const before = Math.max(next - 1, first);
-    const [a, b] = [frames[before], frames[next]];
+    const a = frames[before], b = frames[next];
     // Nothing lies between the two sides of a restart or a gap.
     const isJump = Boolean(b.flags & RESTARTED) || b.stamp - a.stamp > LONGEST_GAP;
     const share = isJump ? Number(time >= b.stamp) : (time - a.stamp) / (b.stamp - a.stamp);
@@ -184,7 +184,7 @@ export class Playout {
  * @returns {Frame} */
 function predicted(a, b, c) {
   if (new Set([a, b, c].map(({ coordinates }) => coordinates.length)).size > 1) return c;
-  const [span, before] = [c.stamp - b.stamp, b.stamp - a.stamp];
+  const span = c.stamp - b.stamp, before = b.stamp - a.stamp;
   const coordinates = c.coordinates.map((each, i) => {
     const step = each - b.coordinates[i];
     const lastStep = ((b.coordinates[i] - a.coordinates[i]) * span) / before;
@@ -195,10 +195,10 @@ function predicted(a, b, c) {
 
 /** Catmull-Rom curve from b to c; its slopes there are those from a to c and from b to d. @param {Frame} a @param {Frame} b
  * @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
-export function catmullRom(a, b, c, d, u, out) {
-  const [span, aToC, bToD] = [c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp];
-  const [u2, u3] = [u * u, u * u * u];
-  const [atB, atC] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3]; // Hermite polynomials
+function catmullRom(a, b, c, d, u, out) {
+  const span = c.stamp - b.stamp, aToC = c.stamp - a.stamp, bToD = d.stamp - b.stamp;
+  const u2 = u * u, u3 = u * u * u;
+  const atB = 2 * u3 - 3 * u2 + 1, atC = 3 * u2 - 2 * u3; // Hermite polynomials
   const slopeAtB = aToC > 0 ? ((u3 - 2 * u2 + u) * span) / aToC : 0;
   const slopeAtC = bToD > 0 ? ((u3 - u2) * span) / bToD : 0;
   // A frame may be longer by the rotations of pulled branches, which are not interpolated.

@@ -3,19 +3,18 @@
 /** The binary protocol of the stream (doc/streaming.md): a description sent once, then frames that do not depend on each
  * other. Reads the messages of tree_sway/stream/protocol.py. */
 
-import { checkedKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
+import { checkedKind, checkTrees, MOST_COORDINATES, MOST_POSES, need, ProtocolError, TYPES } from "./checks.js";
 
 export { ProtocolError };
 
 /** Versions of descriptions and of frames. */
-export const VERSION = 2;
-export const FRAME_VERSION = 1;
-export const FULL_SCALE = 32767;
+const VERSION = 2;
+const FRAME_VERSION = 1;
+const FULL_SCALE = 32767;
 /** Resolution of the wind, sent as int16 [m/s]. */
-export const WIND_UNIT = 0.005;
+const WIND_UNIT = 0.005;
 /** Flags of a frame. */
 export const PAUSED = 1;
-export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
 export const PART = 8;
 /** No sample of the wind has come yet, or the last is too old and its force decays. */
@@ -36,7 +35,29 @@ const LARGEST_HEADER = 8 * 2 ** 20;
  */
 export const reader = (what, read) => (/** @type {ArrayBuffer} */ data, inPlanes = false) => {
   try {
-    const { header, kinds, own } = unpack(data, what, inPlanes);
+    const view = new DataView(data);
+    if (!begins(data, what)) throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
+    const version = view.getUint32(4, true);
+    if (version !== VERSION) throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
+    const begin = 12 + view.getUint32(8, true);
+    need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
+    /** @type {Arrays[]} */
+    const kinds = header.kinds.map(() => ({}));
+    /** @type {Arrays} */
+    const own = {};
+    for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
+      const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
+      need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
+      const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
+      const from = begin + offset, size = kind.BYTES_PER_ELEMENT;
+      need(from >= begin && from + count * size <= data.byteLength, name);
+      const planes = inPlanes && new Uint8Array(data, from, size * count);
+      const whole = planes && planes.map((_, i) => planes[(i % size) * count + Math.floor(i / size)]);
+      const [number, field] = name.split("/");
+      const values = whole ? new kind(whole.buffer) : new kind(data, from, count);
+      (field ? kinds[Number(number)] : own)[field ?? name] = { values, shape };
+    }
     return read(header, kinds, own);
   } catch (error) {
     if (error instanceof ProtocolError) throw error;
@@ -44,39 +65,12 @@ export const reader = (what, read) => (/** @type {ArrayBuffer} */ data, inPlanes
   }
 };
 
-/** @param {ArrayBuffer} data @param {keyof typeof MAGIC} what @param {boolean} inPlanes */
-function unpack(data, what, inPlanes) {
-  const view = new DataView(data);
-  if (!begins(data, what)) throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
-  const version = view.getUint32(4, true);
-  if (version !== VERSION) throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
-  const begin = 12 + view.getUint32(8, true);
-  need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
-  /** @type {Arrays[]} */
-  const kinds = header.kinds.map(() => ({}));
-  const own = /** @type {Arrays} */ ({});
-  for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
-    const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
-    need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
-    const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
-    const [from, size] = [begin + offset, kind.BYTES_PER_ELEMENT];
-    need(from >= begin && from + count * size <= data.byteLength, name);
-    const planes = inPlanes && new Uint8Array(data, from, size * count);
-    const whole = planes && planes.map((_, i) => planes[(i % size) * count + Math.floor(i / size)]);
-    const [number, field] = name.split("/");
-    const values = whole ? new kind(whole.buffer) : new kind(data, from, count);
-    (field ? kinds[Number(number)] : own)[field ?? name] = { values, shape };
-  }
-  return { header, kinds, own };
-}
-
 /** Read a description; refuses indices beyond the arrays that they point into. */
 export const decodeDescription = reader("description", (header, parts, own) => {
   const { name, frame_id, identity, flutter = null } = header;
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
   checkTrees(header, kinds, own);
-  let [nSegments, nCoordinates, nKeys] = [0, 0, 0];
+  let nSegments = 0, nCoordinates = 0, nKeys = 0;
   const trees = Array.from(header.trees, (/** @type {Tree} */ tree, number) => {
     const kind = kinds[tree.kind];
     const place = Array.from(own.tree_place.values.subarray(5 * number, 5 * number + 5));
@@ -86,16 +80,16 @@ export const decodeDescription = reader("description", (header, parts, own) => {
     nCoordinates += kind.nCoordinates;
     return { ...tree, ...first, place, height: kind.height * place[4] };
   });
+  need(nSegments <= MOST_POSES, "number of segments of all trees");
+  need(nCoordinates <= MOST_COORDINATES, "number of coordinates");
   const scale = new Float32Array(nCoordinates);
   for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
-  const shortIdentity = parseInt(identity.slice(0, 8), 16);
-  return { name, frame_id, identity, shortIdentity, kinds, trees, flutter, nSegments, nCoordinates, scale };
+  return { name, frame_id, identity, shortIdentity: parseInt(identity.slice(0, 8), 16), kinds, trees, flutter, nSegments, nCoordinates, scale };
 });
 
 /** Whether a message begins as a description or tables. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
 function begins(data, what) {
-  const size = data.byteLength;
-  return size >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
+  return data.byteLength >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
 }
 
 /** Whether a message has tables. @param {ArrayBuffer} data */
@@ -130,6 +124,6 @@ export function decodeFrame(data, description) {
   coordinates.set(turns, count);
   for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
   const [x, y, z] = [20, 22, 24].map((at) => view.getInt16(at, true) * WIND_UNIT);
-  const [sequence, stamp] = [view.getUint32(8, true), Number(view.getBigInt64(12, true)) / 1e6];
+  const sequence = view.getUint32(8, true), stamp = Number(view.getBigInt64(12, true)) / 1e6;
   return { identity, sequence, stamp, flags, first, wind: [x, y, z], coordinates };
 }

@@ -1,36 +1,26 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Quaternions x y z w inside arrays, each from an index on; results are written into arrays. */
+/** Quaternions x y z w inside arrays, each from an index on. */
 
 /** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
- * @param {number} j @param {Numbers} out @param {number} [o] */
-export function multiply(a, i, b, j, out, o = 0) {
+ * @param {number} j @param {Numbers} out */
+export function multiply(a, i, b, j, out) {
   const ax = a[i], ay = a[i + 1], az = a[i + 2], aw = a[i + 3];
   const bx = b[j], by = b[j + 1], bz = b[j + 2], bw = b[j + 3];
-  out[o] = aw * bx + ax * bw + ay * bz - az * by;
-  out[o + 1] = aw * by - ax * bz + ay * bw + az * bx;
-  out[o + 2] = aw * bz + ax * by - ay * bx + az * bw;
-  out[o + 3] = aw * bw - ax * bx - ay * by - az * bz;
-}
-
-/** Add a vector, turned by a quaternion and scaled. @param {Numbers} q @param {number} i
- * @param {Numbers} v @param {number} j @param {number} scale @param {Numbers} out */
-export function addTurned(q, i, v, j, scale, out) {
-  const qx = q[i], qy = q[i + 1], qz = q[i + 2], qw = q[i + 3];
-  const x = scale * v[j], y = scale * v[j + 1], z = scale * v[j + 2];
-  const tx = 2 * (qy * z - qz * y);
-  const ty = 2 * (qz * x - qx * z);
-  const tz = 2 * (qx * y - qy * x);
-  out[0] += x + qw * tx + qy * tz - qz * ty;
-  out[1] += y + qw * ty + qz * tx - qx * tz;
-  out[2] += z + qw * tz + qx * ty - qy * tx;
+  out[0] = aw * bx + ax * bw + ay * bz - az * by;
+  out[1] = aw * by - ax * bz + ay * bw + az * bx;
+  out[2] = aw * bz + ax * by - ay * bx + az * bw;
+  out[3] = aw * bw - ax * bx - ay * by - az * bz;
 }
 
 /** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
 export function turned(q, v, i = 0) {
-  const out = [0, 0, 0];
-  addTurned(q, i, v, 0, 1, out);
-  return out;
+  const qx = q[i], qy = q[i + 1], qz = q[i + 2], qw = q[i + 3];
+  const x = v[0], y = v[1], z = v[2];
+  const tx = 2 * (qy * z - qz * y);
+  const ty = 2 * (qz * x - qx * z);
+  const tz = 2 * (qx * y - qy * x);
+  return [x + qw * tx + qy * tz - qz * ty, y + qw * ty + qz * tx - qx * tz, z + qw * tz + qx * ty - qy * tx];
 }
 
 /** How far two points are from each other. @param {Numbers} a @param {Numbers} b */

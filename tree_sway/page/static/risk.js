@@ -14,24 +14,21 @@ const KM_H = 3.6;
 
 /** Whether a wind is below, within or above an interval. @param {number} wind [m/s]
  * @param {[number, number]} band low and high end [m/s] @returns {keyof typeof COLORS} */
-export function placeIn(wind, [low, high]) {
+function placeIn(wind, [low, high]) {
   if (wind < low) return "below";
   return wind > high ? "above" : "within";
 }
 
 export class Risk {
+  /** @type {Record<string, [number, number]>} bands by the names of trees [m/s] */
+  bands = {};
+  /** @type {HTMLInputElement} */
+  slider = element("storm");
+
   /** @param {Scene} scene */
   constructor(scene) {
     this.scene = scene;
-    /** @type {Record<string, [number, number]>} bands by the names of trees [m/s] */
-    this.bands = {};
-    this.slider = /** @type {HTMLInputElement} */ (element("storm"));
-    this.slider.addEventListener("input", () => this.show());
-  }
-
-  /** Speed of the storm [m/s]. */
-  get storm() {
-    return Number(this.slider.value);
+    this.slider.oninput = () => this.show();
   }
 
   /** Take the bands of trees, or none. @param {Record<string, [number, number]> | null | undefined} bands */
@@ -42,15 +39,14 @@ export class Risk {
 
   /** Paint the trees, and count them. */
   show() {
-    const trees = this.scene.description?.trees ?? [];
-    const places = trees.map(({ name }) => this.bands[name] && placeIn(this.storm, this.bands[name]));
+    const storm = Number(this.slider.value);
+    const places = (this.scene.description?.trees ?? []).map(({ name }) => this.bands[name] && placeIn(storm, this.bands[name]));
     const isShown = places.some(Boolean);
     element("risk").hidden = !isShown;
     element("facts").hidden = isShown; // there is room for one of them
-    const painted = (/** @type {keyof typeof COLORS} */ place) => [...COLORS[place] ?? UNKNOWN, SHARE];
-    this.scene.paint(isShown ? places.map(painted) : []);
+    this.scene.paint(isShown ? places.map((place) => [...place ? COLORS[place] : UNKNOWN, SHARE]) : []);
     if (!isShown) return;
-    const speed = `${this.storm} m/s, ${Math.round(KM_H * this.storm)} km/h`;
+    const speed = `${storm} m/s, ${Math.round(KM_H * storm)} km/h`;
     element("storm-now").textContent = speed;
     this.slider.setAttribute("aria-valuetext", speed);
     const kinds = Object.entries({ ...COLORS, unknown: UNKNOWN });

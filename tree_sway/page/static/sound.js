@@ -3,7 +3,7 @@
 /** Sound of the wind: air whose pitch rises with its speed, and leaves that rustle as they move. */
 
 /** Speeds at which air and leaves are loudest [m/s]. */
-const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
+const LOUD_AIR = 18, LOUD_LEAVES = 10;
 /** Time constant of the sound [s]. */
 const FOLLOWS = 0.15;
 
@@ -42,7 +42,8 @@ export class Sound {
   follow(wind, hasLeaves, tip) {
     const { currentTime: now } = this.context;
     const motion = Math.hypot(...tip.map((each, c) => each - this._tip[c])) / Math.max(0.001, now - this._at);
-    [this._tip, this._at] = [tip, now];
+    this._tip = tip;
+    this._at = now;
     const air = Math.min(1, wind / LOUD_AIR);
     const leaves = hasLeaves ? Math.min(1, (wind + 2 * motion) / LOUD_LEAVES) : 0;
     this._air.gain.gain.setTargetAtTime(0.5 * air ** 2, now, FOLLOWS);

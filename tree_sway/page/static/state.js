@@ -10,18 +10,22 @@ const BEHIND = 1000;
 export const OF_TREE = ["tree", "height", "age", "individual", "month", "model"];
 
 export class PageState {
+  /** @type {"connecting" | "open" | "lost"} */
+  line = "connecting";
+  retryAt = 0;
+  lastFrameAt = 0;
+  /** @type {Record<string, any>} */
+  status = {};
+  /** @type {any[]} */
+  controls = [];
+  /** Token for links to this page, which allows looking but no changes. */
+  viewersToken = "";
+  /** Whether the tree of a link has been asked for and is still to come. */
+  isFollowing = false;
+
   /** @param {boolean} isOwn whether the page solves its tree without a server */
   constructor(isOwn) {
     this.isOwn = isOwn;
-    this.line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
-    this.retryAt = 0;
-    this.lastFrameAt = 0;
-    this.status = /** @type {Record<string, any>} */ ({});
-    this.controls = /** @type {any[]} */ ([]);
-    /** Token for links to this page, which allows looking but no changes. */
-    this.viewersToken = "";
-    /** Whether the tree of a link has been asked for and is still to come. */
-    this.isFollowing = false;
   }
 
   /** @param {string} name */
@@ -47,16 +51,18 @@ export class PageState {
    * @param {Record<string, string>} settings of the link; those of the tree are taken out
    * @returns {string[]} names of what cannot be asked for, with their values */
   follow(stream, settings) {
-    const missed = OF_TREE.filter((name) => {
-      const control = this.control(name);
-      if (!(name in settings) || String(control?.value) === settings[name]) return false;
-      const value = control && typeof control.value === "number" ? Number(settings[name]) : settings[name];
-      const isKnown = control && (control.choices?.length ? control.choices.includes(String(value)) : Number.isFinite(value));
-      if (isKnown) stream.set(name, value);
-      this.isFollowing ||= Boolean(isKnown);
-      return !isKnown;
-    }).map((name) => `${word(name)} ${settings[name]}`);
-    for (const name of OF_TREE) delete settings[name];
+    const missed = [];
+    for (const name of OF_TREE) {
+      const wanted = settings[name];
+      delete settings[name];
+      const { value: now, choices = [] } = this.control(name) ?? {};
+      if (wanted === undefined || wanted === String(now)) continue;
+      const value = typeof now === "number" ? Number(wanted) : wanted;
+      if (choices.length ? choices.includes(wanted) : Number.isFinite(value)) {
+        stream.set(name, value);
+        this.isFollowing = true;
+      } else missed.push(`${word(name)} ${wanted}`);
+    }
     return missed;
   }
 }

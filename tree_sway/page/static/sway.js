@@ -4,7 +4,7 @@
  * `Stand.outside` counts it. doc/sway_model.md has the law, doc/tree_as_a_file.md the use;
  * tree_sway/core/scene/received_scene.py does the same. */
 
-import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
+import { checkTable, checkTablesHeader, FORMS, need, ProtocolError, valuesOf } from "./checks.js";
 import { ClampWatch, fewer } from "./clamp_watch.js";
 import { Block, core, made, Model } from "./core.js";
 import { reader } from "./protocol.js";
@@ -18,7 +18,7 @@ const FINEST_SCALE = 0.01;
 /** Least mean wind that carries gusts [m/s]. */
 const SLOWEST_GUST = 0.5;
 /** Time over which the mean wind is taken, and the longest delay of a gust [s]. */
-const [AVERAGING, MEMORY] = [60, 60];
+const AVERAGING = 60, MEMORY = 60;
 /** Steps of the wind that are kept; shorter ones are joined. */
 const KEPT = 8192;
 /** Spacing of the winds that a server sends of its last minute [s]. */
@@ -34,12 +34,17 @@ const ROWS = 6;
 export const decodeTables = reader("tables", (header, kinds, own) => {
   const { description, anemometer, convection_ratio: ratio } = header;
   checkTablesHeader(header, kinds.map((arrays) => arrays.stiffness?.values.length ?? 0), own);
-  const tables = kinds.map((arrays, number) => new Table(header.kinds[number], arrays));
-  return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: own.tree_speed.values };
+  return {
+    description, anemometer, ratio: ratio ?? Infinity, speeds: own.tree_speed.values,
+    kinds: kinds.map((arrays, number) => new Table(header.kinds[number], arrays)),
+  };
 });
 
 /** Wind forces on the coordinates of a kind of tree, in uniform wind. */
 export class Table {
+  /** @type {Map<number, {whole: Float64Array, half: Float64Array, width: number}>} */
+  _steps = new Map();
+
   /** @param {Record<string, any>} numbers @param {Arrays} parts */
   constructor(numbers, parts) {
     const size = checkTable(numbers, parts);
@@ -48,9 +53,9 @@ export class Table {
     this.n = size.n;
     this.nKeys = size.keys;
     this.mostPressure = /** @type {number} */ (numbers.most_pressure);
-    /** @type {Record<string, any>} */
-    this.arrays = Object.fromEntries(Object.entries(parts).map(([name, { values }]) => [name, values]));
-    const arrays = /** @type {Record<string, {values: any, shape: number[]}>} */ ({});
+    this.arrays = valuesOf(parts);
+    /** @type {Record<string, {values: any, shape: number[]}>} */
+    const arrays = {};
     for (const name of ["drag_law", "most_pressure", "most_energy"]) {
       const values = Float64Array.from([numbers[name]].flat());
       arrays[name] = { values, shape: [values.length] };
@@ -66,7 +71,6 @@ export class Table {
     const { state } = this.arrays;
     /** What each streamed coordinate has of those that are solved. */
     this.streamed = Float64Array.from(state, (_, at) => state[(at % this.m) * this.n + Math.floor(at / this.m)]);
-    this._steps = /** @type {Map<number, {whole: Float64Array, half: Float64Array, width: number}>} */ (new Map());
   }
 
   /** Multiply out the factors in which slopes are sent. @param {NumberArray} rows @param {NumberArray} shapes
@@ -98,7 +102,6 @@ export class Table {
     core.page_steps(this.model.at, dt, whole.at, half.at);
     const found = { whole: whole.values.slice(), half: half.values.slice(), width };
     this._steps.set(dt, found);
-    for (const each of [whole, half]) each.free();
     return found;
   }
 }
@@ -106,6 +109,11 @@ export class Table {
 /** The wind at each place: gusts travel with the mean wind (Taylor 1938), so each place has the measured wind of
  * some time ago. */
 class Gusts {
+  _history = new Block(Float64Array, 2 + 4 * KEPT);
+  _wind = new Block(Float64Array, 3);
+  /** Mean wind [m/s], and the time over which it is taken [s]. */
+  _mean = [0, 0, 0];
+
   /** @param {number[][]} places @param {Tables} tables @param {number} dt [s] */
   constructor(places, { anemometer, ratio }, dt) {
     const [ox, oy] = anemometer ?? [0, 0];
@@ -118,12 +126,8 @@ class Gusts {
     const count = places.length;
     /** Mean wind of the last step at each place [m/s]. */
     this.felt = new Block(Float64Array, 3 * count);
-    this._history = new Block(Float64Array, 2 + 4 * KEPT);
     this._wanted = new Block(Float64Array, count);
     this._delay = new Block(Float64Array, count);
-    this._wind = new Block(Float64Array, 3);
-    /** Mean wind [m/s], and the time over which it is taken [s]. */
-    this._mean = [0, 0, 0];
   }
 
   /** Take the wind of a step. @param {number} x mean over the step [m/s] @param {number} y @param {number} z */
@@ -159,6 +163,17 @@ class Gusts {
 
 /** All trees of a description, stepped in one wind. */
 export class Stand {
+  /** Number of trees beyond their table in the last step. */
+  outside = 0;
+  /** How often a tree whose steps stayed clamped was reset with fewer coordinates. */
+  reduced = 0;
+  _steps = 0;
+  /** @type {Map<number, ClampWatch>} */
+  _watches = new Map();
+  /** Pushes on each tree, by its number. @type {Map<number, Touch>} */
+  _touches = new Map();
+  _counts = new Block(BigInt64Array, 2);
+
   /** @param {Tables} tables @param {Description} description @param {number} [dt] time step [s] */
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
@@ -174,21 +189,11 @@ export class Stand {
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
     this.gusts = this._newGusts();
-    /** Number of trees beyond their table in the last step. */
-    this.outside = 0;
-    /** How often a tree whose steps stayed clamped was reset with fewer coordinates. */
-    this.reduced = 0;
-    this._steps = 0;
-    this._watches = /** @type {Map<number, ClampWatch>} */ (new Map());
-    /** Pushes on each tree, by its number. */
-    this._touches = /** @type {Map<number, Touch>} */ (new Map());
-    this.trees = trees.map(({ kind, place, firstCoordinate }) => {
-      const table = tables.kinds[kind];
+    this.trees = trees.map(({ kind, place, firstCoordinate }) => ({
+      table: tables.kinds[kind], firstCoordinate,
       // A tree of k times the size swings k times slower: its table is stepped by 1 / k of the time.
-      const ownDt = dt / Math.exp(FINEST_SCALE * Math.round(Math.log(place[4]) / FINEST_SCALE));
-      return { table, ownDt, firstCoordinate };
-    });
-    this._counts = new Block(BigInt64Array, 2);
+      ownDt: dt / Math.exp(FINEST_SCALE * Math.round(Math.log(place[4]) / FINEST_SCALE)),
+    }));
     this._core = this._opened(tables);
     const [stride, width] = [0, 0].map(() => new Block(Uint32Array, 1));
     const first = core.sway_state(this._core, stride.at, width.at);
@@ -196,13 +201,12 @@ export class Stand {
     this._stride = stride.values[0];
     this._width = width.values[0];
     this._states = new Block(Float64Array, this._stride * trees.length, first);
-    for (const each of [stride, width]) each.free();
   }
 
   /** Make the stand of the core, at rest. @param {Tables} tables */
   _opened({ kinds, speeds }) {
     const { trees } = this.description;
-    const [models, given] = [new Block(Uint8Array, 4 * kinds.length), new Block(Uint8Array, TREE * trees.length)];
+    const models = new Block(Uint8Array, 4 * kinds.length), given = new Block(Uint8Array, TREE * trees.length);
     const [handles, view] = [models, given].map(({ at, values }) => new DataView(values.buffer, at));
     kinds.forEach(({ model }, k) => handles.setUint32(4 * k, model.at, true));
     trees.forEach(({ kind, place }, i) => {
@@ -212,13 +216,12 @@ export class Stand {
     const found = made(this, "sway_stand_close", (error, room) =>
       core.sway_stand_open(models.at, kinds.length, given.at, trees.length, 1, error, room));
     core.sway_set_step(found, this.dt);
-    for (const each of [models, given]) each.free();
     return found;
   }
 
   /** Rows of the state of a tree, and the numbers behind them, until more memory is taken. @param {number} tree */
   rows(tree) {
-    const [all, first, width] = [this._states.values, tree * this._stride, this._width];
+    const all = this._states.values, first = tree * this._stride, width = this._width;
     const [eta, rate, force, , diagonal] = Array.from({ length: ROWS }, (_, row) =>
       all.subarray(first + row * width, first + (row + 1) * width));
     return { eta, rate, force, diagonal, more: all.subarray(first + ROWS * width, first + this._stride) };
@@ -238,9 +241,9 @@ export class Stand {
       if (!touch.step(() => this.rows(number), table, coordinates, table.steps(ownDt), this.dt)) this._touches.delete(number);
     }
     if (!this.outside) return;
-    const [all, clamped] = [this._states.values, ROWS * this._width + 4];
     this.trees.forEach((_, number) => {
-      if (all[number * this._stride + clamped] && !this._touches.has(number)) this._watchClamped(number);
+      const isClamped = this._states.values[number * this._stride + ROWS * this._width + 4];
+      if (isClamped && !this._touches.has(number)) this._watchClamped(number);
     });
   }
 
@@ -279,7 +282,7 @@ export class Stand {
    * @param {number} from index of the first */
   _write(tree, out, from) {
     const { m, n, streamed } = this.trees[tree].table;
-    const [all, first] = [this._states.values, tree * this._stride];
+    const all = this._states.values, first = tree * this._stride;
     for (let k = 0; k < n; k++) {
       let sum = 0;
       for (let i = 0; i < m; i++) sum += all[first + i] * streamed[k * m + i];

@@ -11,7 +11,7 @@ const RENEWED = 0.1;
 /** Rotation for differences [rad]. */
 const TURN = 0.01;
 /** Time constant of the bend beyond the coordinates [s], and its rotation that is no longer seen [rad]. */
-const [SETTLES, GONE] = [0.05, 1e-3];
+const SETTLES = 0.05, GONE = 1e-3;
 const MOST_PUSHES = 64;
 
 /** Branches from the root to the one of a segment. @param {Kind} kind @param {number} segment */
@@ -34,14 +34,17 @@ const dot = (u, v, from = 0) => v.reduce((sum, each, i) => sum + u[from + i] * e
 
 /** Pushes on one tree. */
 export class Touch {
+  /** @type {Map<number, Pushed>} */
+  _pushes = new Map();
+  /** @type {Map<number, KindPlacer>} */
+  _placers = new Map();
+  /** Key rotations beyond the coordinates [rad], by their numbers. @type {Map<number, number>} */
+  _turns = new Map();
+
   /** @param {Description} description @param {number} tree its number */
   constructor(description, tree) {
     this.tree = description.trees[tree];
     this.kind = description.kinds[this.tree.kind];
-    this._pushes = /** @type {Map<number, Pushed>} */ (new Map());
-    this._placers = /** @type {Map<number, KindPlacer>} */ (new Map());
-    /** Key rotations beyond the coordinates [rad], by their numbers. */
-    this._turns = /** @type {Map<number, number>} */ (new Map());
   }
 
   /** Begin a push, or change the one on the same segment. @param {Push} push @param {number} seconds */
@@ -82,7 +85,8 @@ export class Touch {
       .map((own, i) => 1 / (1 - own * half[5 * width + i]) / scale ** 3);
     const displacements = accelerations.map((each, i) => byForce[i] * each);
     for (const [key, turn] of turns) turns.set(key, (1 - settled) * turn);
-    const added = /** @type {number[][]} */ ([]);
+    /** @type {number[][]} */
+    const added = [];
     for (const [segment, each] of this._pushes) {
       const at = this.place(segment, coordinates);
       if (each.renewedIn <= 0) this._renew(segment, each, table, coordinates);
@@ -127,8 +131,7 @@ export class Touch {
         const branchLever = moves[branch].map((move) => move[axis]);
         return keys.map((key) => dot(compliance, branchLever, key * width) - dot(basis, represented, key * n));
       });
-      const lever = Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n));
-      return { lever, keyLever, residual };
+      return { lever: Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n)), keyLever, residual };
     });
   }
 

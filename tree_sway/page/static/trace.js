@@ -6,12 +6,12 @@ import { textOf } from "./files.js";
 
 /** Time shown at once, and time kept to look back at [s]. */
 const SECONDS = 20;
-export const LOOK_BACK = 60;
+const LOOK_BACK = 60;
 /** Points further apart than this are not joined by a line [s]. */
 const GAP = 1;
 /** Quantities: least span of the axis, so that rest does not look like a storm, and units by size.
  * @type {Record<string, {least: number, units: Unit[]}>} */
-export const QUANTITIES = JSON.parse(await textOf("units.json"));
+const QUANTITIES = JSON.parse(await textOf("units.json"));
 
 /** Unit of a value. @param {string} quantity @param {number} value */
 function unitOf(quantity, value) {
@@ -21,7 +21,8 @@ function unitOf(quantity, value) {
 
 /** Measured points, in runs without a gap. @template {{time: number, value: number}} T @param {T[]} points */
 function runsOf(points) {
-  const runs = /** @type {T[][]} */ ([]);
+  /** @type {T[][]} */
+  const runs = [];
   let last = -Infinity;
   for (const point of points) {
     const isMeasured = Number.isFinite(point.value);
@@ -33,16 +34,18 @@ function runsOf(points) {
 }
 
 export class Trace {
+  /** @type {{time: number, value: number, band?: number[]}[]} */
+  _points = [];
+  /** Age of the right end [s]. */
+  back = 0;
+
   /** @param {HTMLElement} element that it is shown in @param {string} quantity */
   constructor(element, quantity) {
     this.quantity = quantity;
     this._unit = unitOf(quantity, 0);
-    this._points = /** @type {{time: number, value: number, band?: number[]}[]} */ ([]);
     this._line = element.querySelector(".line");
     this._shade = element.querySelector(".band");
     this._labels = element.querySelectorAll("li");
-    /** Age of the right end [s]. */
-    this.back = 0;
   }
 
   /** Begin anew. @param {string} quantity */
@@ -98,7 +101,7 @@ export class Trace {
     });
     this._shade?.setAttribute("d", bands.join(""));
     const numbers = [top, top / 2, 0].map((each) => String(Number(each.toPrecision(2))));
-    const times = [20, 15, 10, 5, 0].map((ago) => Math.round(ago + this.back)).map((ago, i) => `${ago ? "−" : ""}${ago}${i < 4 ? "" : " s"}`);
+    const times = [20, 15, 10, 5, 0].map((ago, i) => `${Math.round(-ago - this.back)}${i < 4 ? "" : " s"}`.replace("-", "−"));
     [unit, ...numbers, ...times].forEach((text, i) => (this._labels[i].textContent = text));
   }
 }

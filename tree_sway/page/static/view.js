@@ -16,14 +16,33 @@ const FACTS_EVERY = 400;
 const FEW = 25;
 const DAYS = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
 
-/** A whole number in groups of three digits, apart by a thin space: a comma or point is a decimal one elsewhere.
+/** A whole number in groups of three digits, apart by a thin space as in French: a comma or point is a decimal one elsewhere.
  * @param {number} count */
-const grouped = (count) => count.toLocaleString("en").replaceAll(",", "\u202f");
+const grouped = (count) => count.toLocaleString("fr");
 
 /** Name of a model for people. @param {string} model */
 const modelName = (model) => (/^\d+(\/\d+)?$/.test(model) ? word("coordinates", model) : model);
 
 export class View {
+  /** @type {Hands} */
+  hands = { drag: null, sound: null, headset: null, film: null };
+  /** @type {HTMLSelectElement} */
+  shown = element("shown");
+  traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
+  /** @type {(() => void) | null} */
+  endClip = null;
+  /** Segment that was clicked; -1 if the branch was picked in another way. */
+  pointedAt = -1;
+  fps = 0;
+  /** Time of the drawing [s], which stops while the tree is paused. */
+  time = 0;
+  day = DAYS[0];
+  _lastDrawn = 0;
+  /** Whether the last frame was left to the camera. */
+  _skips = false;
+  /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
+  _since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
+
   /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream
    * @param {import("./state.js").PageState} state */
   constructor(scene, stream, state) {
@@ -31,27 +50,16 @@ export class View {
     this.stream = stream;
     this.state = state;
     this.risk = new Risk(scene);
-    this.hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null, film: null });
     this.panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
-    this.shown = /** @type {HTMLSelectElement} */ (element("shown"));
-    this.traces = { wind: new Trace(element("wind-trace"), "wind"), tip: new Trace(element("tip-trace"), "motion") };
-    this.endClip = /** @type {(() => void) | null} */ (null);
-    /** Segment that was clicked; -1 if the branch was picked in another way. */
-    this.pointedAt = -1;
-    this.fps = 0;
-    /** Time of the drawing [s], which stops while the tree is paused. */
-    this.time = 0;
-    this.day = DAYS[0];
-    this._lastDrawn = 0;
-    /** Whether the last frame was left to the camera. */
-    this._skips = false;
-    /** Bytes and frames received, and pictures drawn, since numbers were last written, and the time of that. */
-    this._since = { bytes: 0, frames: 0, drawn: 0, at: performance.now() };
-    scene.camera.room = () => this._room();
-    // A card grows when its text comes, or its panel is opened.
-    const sizes = new ResizeObserver(() => this.fit());
-    for (const id of ["head", "traces", "panel", "tools"]) sizes.observe(element(id));
-    window.addEventListener("resize", () => requestAnimationFrame(() => this.fit()));
+    const { camera, canvas } = scene;
+    const cell = /** @type {HTMLElement} */ (canvas.parentElement);
+    camera.room = () => {
+      const { left, top, right, bottom } = cell.getBoundingClientRect();
+      const { clientWidth: width, clientHeight: height } = canvas;
+      return [left / width, top / height, right / width, bottom / height];
+    };
+    // Fit the scene between the cards, unless someone has moved the camera.
+    new ResizeObserver(() => camera.isHome && camera.home()).observe(cell);
   }
 
   get treeName() {
@@ -120,7 +128,8 @@ export class View {
     const answer = await fetch("camera.jpg", { headers: { "X-Requested-With": "page" } }).catch(() => undefined);
     if (answer?.status !== 200) return;
     const picture = await createImageBitmap(await answer.blob());
-    const canvas = /** @type {HTMLCanvasElement} */ (element("seen"));
+    /** @type {HTMLCanvasElement} */
+    const canvas = element("seen");
     [canvas.width, canvas.height] = [picture.width, picture.height];
     canvas.getContext("2d")?.drawImage(picture, 0, 0);
   }
@@ -163,30 +172,6 @@ export class View {
     return this.shown.value === "motion" && this.scene.picked < 0;
   }
 
-  /** Part of the picture that no card covers, as `Camera.room`. */
-  _room() {
-    const canvas = this.scene.canvas;
-    const [head, lines, form, tools] = ["head", "traces", "panel", "tools"].map((id) => element(id).getBoundingClientRect());
-    const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
-    const isNarrow = head.right > 0.6 * width;
-    if (isNarrow) {
-      const lowest = [lines, form].filter((each) => each.height).map((each) => each.top);
-      return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
-    }
-    const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
-    const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
-    const right = isWall ? form.left : width;
-    const left = Math.max(head.right, lines.right);
-    // On a tablet there is more room between the two cards on the left than beside them.
-    if (right - left < 0.35 * width) return [0, head.bottom / height, right / width, (lines.height ? lines.top : height) / height];
-    return [left / width, top, right / width, tools.height ? tools.top / height : 1];
-  }
-
-  /** Fit the scene between the cards, unless someone has moved the camera. */
-  fit() {
-    if (this.scene.camera.isHome) this.scene.camera.home();
-  }
-
   /** Draw the tree of now, with its traces and facts. @param {number} now [ms] */
   draw(now) {
     const { scene, stream, state, traces, hands } = this;
@@ -202,7 +187,7 @@ export class View {
     scene.draw(coordinates, this.time, isStill);
     this._since.drawn += 1;
     if (coordinates) {
-      const [at, speed] = [scene.position(), Math.hypot(...playout.wind)];
+      const at = scene.position(), speed = Math.hypot(...playout.wind);
       hands.drag?.frame();
       hands.sound?.follow(speed, scene.leavesShown && scene.hasLeaves, at);
       const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[this.shown.value] ?? 0;
@@ -251,7 +236,7 @@ export class View {
 
   /** Show the past. @param {number} back [s] */
   goBack(back) {
-    this.stream.playout.back = 1000 * back;
+    this.stream.playout.lookBack(1000 * back);
     for (const trace of Object.values(this.traces)) trace.back = back;
     element("time").setAttribute("aria-valuetext", this.state.now(this.stream)[1]);
     this.showState();

@@ -42,7 +42,7 @@ export class Turbulence {
       });
       return SPREAD[c] * intensity * mean * sum;
     });
-    const [s, c] = [Math.sin(bearing), Math.cos(bearing)];
+    const s = Math.sin(bearing), c = Math.cos(bearing);
     return [s * (mean + along) - c * across, c * (mean + along) + s * across, up];
   }
 }
@@ -67,7 +67,7 @@ export class Recorded {
     const now = times[0] + this.time;
     if (times[this._row] > now) this._row = 0;
     while (times[this._row + 1] < now) this._row++;
-    const [a, b] = [this._row, this._row + 1];
+    const a = this._row, b = this._row + 1;
     const u = (now - times[a]) / (times[b] - times[a]);
     return winds[a].map((each, c) => each + u * (winds[b][c] - each));
   }
@@ -93,8 +93,10 @@ export function readWind(text, file) {
   }
   const isVector = u >= 0 && v >= 0;
   const unit = Object.entries(UNITS).find(([name]) => rows[head][isVector ? u : speed].includes(name))?.[1] ?? 1;
-  const times = /** @type {number[]} */ ([]);
-  const winds = /** @type {number[][]} */ ([]);
+  /** @type {number[]} */
+  const times = [];
+  /** @type {number[][]} */
+  const winds = [];
   for (const row of rows.slice(head + 1)) {
     const [seconds, x, y, z, s, from] = columns.map((at) => (row[at] ? Number(row[at]) : NaN));
     const when = Number.isFinite(seconds) ? seconds : Date.parse(row[time]) / 1000;

@@ -4,7 +4,7 @@
 
 import { textOf } from "./files.js";
 
-export const LANGUAGES = ["en", "de", "fr", "ja"];
+const LANGUAGES = ["en", "de", "fr", "ja"];
 
 /** Texts by key, in each language. @type {Record<string, string[]>} */
 const WORDS = JSON.parse(await textOf("words.json"));
@@ -27,8 +27,7 @@ export const language = () => LANGUAGES[chosen];
 /** A text in the chosen language; the key if there is none. @param {string} key
  * @param {...(string | number)} values in place of {0}, {1} */
 export function word(key, ...values) {
-  const text = WORDS[key]?.[chosen] ?? key;
-  return text.replace(/\{(\d)\}/g, (_, i) => String(values[i]));
+  return (WORDS[key]?.[chosen] ?? key).replace(/\{(\d)\}/g, (_, i) => String(values[i]));
 }
 
 /** The text of a key, or another one if there is none. @param {string} key @param {string} other */

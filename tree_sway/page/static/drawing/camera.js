@@ -7,7 +7,7 @@ const HALF = Math.tan((16 * Math.PI) / 180);
 /** Height from which on the camera looks up at a tree [m]. */
 const TALL = 3;
 /** Distance from the edge of a stand, over its height, and height of the eye there [m]. */
-const [NEARBY, EYE] = [2, 2.5];
+const NEARBY = 2, EYE = 2.5;
 /** Least height of the eye above the ground, but for a small plant [m]. */
 const LOWEST = 1.5;
 
@@ -29,8 +29,7 @@ export class Camera {
   /** Take the view of a link. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
     this.isHome = false;
-    [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
-    this.target = [x, y, z];
+    Object.assign(this, { azimuth, elevation, distance, target: [x, y, z] });
   }
 
   /** Show a scene, a stand of trees from its edge. @param {number[][]} box its lowest and its highest corner */
@@ -74,8 +73,7 @@ export class Camera {
   /** @param {number} factor below 1 comes nearer */
   zoom(factor) {
     this.isHome = false;
-    const least = 0.05 * this._size;
-    this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
+    this.distance = Math.min(Math.max(this.distance * factor, 0.05 * this._size), 20 * this._size);
   }
 
   /** Axes of the picture at distance 1 from the eye: half its width, half its height, and the direction to the eye. */
@@ -127,18 +125,17 @@ export class Camera {
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
   listen(element) {
-    const pointers = /** @type {Map<number, PointerEvent>} */ (new Map());
-    element.addEventListener("pointerdown", (event) => {
+    /** @type {Map<number, PointerEvent>} */
+    const pointers = new Map();
+    element.onpointerdown = (event) => {
       element.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
-    });
-    for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) {
-      element.addEventListener(type, ({ pointerId }) => pointers.delete(pointerId));
-    }
-    element.addEventListener("pointermove", (event) => {
+    };
+    element.onpointerup = element.onpointercancel = ({ pointerId }) => pointers.delete(pointerId);
+    element.onpointermove = (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
-      const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
+      const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
       const share = 1 / element.clientHeight / pointers.size;
       const other = [...pointers.values()].find(({ pointerId }) => pointerId !== event.pointerId);
       if (other) {
@@ -149,8 +146,8 @@ export class Camera {
       if (other || event.shiftKey || event.buttons & 6) this.pan(share * dx, share * dy);
       else this.orbit(dx, dy);
       pointers.set(event.pointerId, event);
-    });
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    };
+    element.oncontextmenu = (event) => event.preventDefault();
     element.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
@@ -163,10 +160,10 @@ export class Camera {
       ArrowLeft: move(1, 0), ArrowRight: move(-1, 0), ArrowUp: move(0, 1), ArrowDown: move(0, -1),
       "+": nearer, "=": nearer, "-": () => this.zoom(1.14), 0: home, Home: home,
     };
-    element.addEventListener("keydown", (event) => {
+    element.onkeydown = (event) => {
       if (!(event.key in keys)) return;
       keys[event.key](event.shiftKey);
       event.preventDefault();
-    });
+    };
   }
 }

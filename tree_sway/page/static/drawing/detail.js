@@ -45,6 +45,9 @@ export function levelsOf({ reached, order, slots }, highest, most) {
 }
 
 export class Detail {
+  /** Number of segments that are placed. */
+  segments = 0;
+
   /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of the
    * bounding sphere of each kind [m] @param {number} watched tree that is always placed
    * @param {number} [card] cost of a card over that of a segment */
@@ -60,8 +63,6 @@ export class Detail {
     this.level = new Int8Array(trees.length).fill(-1);
     /** Row of its first segment. */
     this.start = new Uint32Array(trees.length);
-    /** Number of segments that are placed. */
-    this.segments = 0;
   }
 
   /** Choose the levels; if the budget is too small, all trees are treated as smaller.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Grass around the trees, which bends in the gusts that pass over it; a blade is a triangle. */
 
-import { discard, drawable, drawPart, use } from "./gl.js";
+import { drawable, drawPart, use } from "./gl.js";
 import { Gusts } from "./gusts.js";
 import { seeded } from "./looks.js";
 
@@ -40,9 +40,5 @@ export class Grass {
     // Around a small tree blades are large in the picture, and fewer of them cover it.
     const share = Math.min(1, ((TALL * height) / tall) ** 2);
     drawPart(this.gl, this._part, share);
-  }
-
-  free() {
-    discard(this.gl, this._part);
   }
 }

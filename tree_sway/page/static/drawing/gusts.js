@@ -6,7 +6,7 @@
 /** Number of places along the wind. */
 export const PLACES = 48;
 /** Interval and length of the record of speeds [s]. */
-const [EVERY, KEPT] = [0.1, 30];
+const EVERY = 0.1, KEPT = 30;
 const SLOTS = KEPT / EVERY;
 
 export class Gusts {
@@ -46,10 +46,9 @@ export class Gusts {
   /** Find the speeds along the wind now. @param {number} time [s] @param {number} mean [m/s]
    * @param {number} reach how far up and down the wind [m] */
   spread(time, mean, reach) {
-    const slowest = Math.max(mean, 0.5);
     for (let i = 0; i < PLACES; i++) {
       const far = reach * ((2 * i) / (PLACES - 1) - 1);
-      this.speeds[i] = this.at(time - far / slowest, mean);
+      this.speeds[i] = this.at(time - far / Math.max(mean, 0.5), mean);
     }
   }
 }

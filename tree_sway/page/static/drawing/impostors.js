@@ -13,6 +13,9 @@ const SEEN = 0.35 * 255;
 const SLOPES = [-0.9, -0.6, -0.3, 0, 0.3, 0.6, 0.9];
 
 export class Impostor {
+  count = 0;
+  _corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
+
   /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
    * number of trees @param {boolean} isPlain whether to read the nearest point only, which costs less
    * @param {number} tile width of a picture [px] */
@@ -27,13 +30,10 @@ export class Impostor {
     /** Highest node at rest, and its displacement per unit of each coordinate. */
     this.tip = Array.from(rest.subarray(STRIDE * highest, STRIDE * highest + 3));
     this._moves = movesOf(shape, this.tip);
-    this.count = 0;
-    this._corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
     this._atlas = canvasTexture(gl, ROUND * tile, ELEVATIONS.length * tile, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     this._values = new Float32Array(4 * PER_VERTEX * most);
-    const square = [0, 1, 2, 1, 3, 2];
-    const indices = Array.from({ length: 6 * most }, (_, i) => 4 * Math.floor(i / 6) + square[i % 6]);
+    const indices = Array.from({ length: most }, (_, i) => [0, 1, 2, 1, 3, 2].map((corner) => 4 * i + corner)).flat();
     // Not as instances, each of which costs as much as a picture without a graphics unit.
     this._part = drawable(gl, used, { values: this._values, indices });
   }
@@ -48,7 +48,7 @@ export class Impostor {
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     ELEVATIONS.forEach((elevation, row) => {
-      const [ce, se] = [Math.cos(elevation), Math.sin(elevation)];
+      const ce = Math.cos(elevation), se = Math.sin(elevation);
       const high = 0.5 * tall * ce + wide * se;
       const deep = wide + tall;
       for (let side = 0; side < ROUND; side++) {
@@ -112,12 +112,12 @@ export function cornersAbout(points, tile) {
   const widest = new Float32Array(tile);
   for (let i = 3; i < points.length; i += 4) {
     if (points[i] < SEEN) continue;
-    const [x, y] = [(i >> 2) % tile, Math.floor((i >> 2) / (ROUND * tile)) % tile];
+    const x = (i >> 2) % tile, y = Math.floor((i >> 2) / (ROUND * tile)) % tile;
     widest[y] = Math.max(widest[y], Math.abs((2 * x + 1) / tile - 1) + 1 / tile);
   }
   const rows = Array.from(widest, (wide, y) => ({ wide, y: (2 * y + 1) / tile - 1 })).filter(({ wide }) => wide);
   if (!rows.length) return [[-1, -1], [1, -1], [-1, 1], [1, 1]];
-  const [low, high] = [rows[0].y - 1 / tile, rows[rows.length - 1].y + 1 / tile];
+  const low = rows[0].y - 1 / tile, high = rows[rows.length - 1].y + 1 / tile;
   const fits = SLOPES.map((slope) => {
     const middle = Math.max(...rows.map(({ wide, y }) => wide - slope * y));
     return { slope, middle, area: middle + 0.5 * slope * (low + high) };

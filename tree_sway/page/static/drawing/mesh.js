@@ -40,9 +40,11 @@ export function shapeOf(kind) {
   const highest = nodes.findIndex((node) => node[2] === high[2]);
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   const places = Array.from(carrier ?? [], (_, i) => leafPlace(kind, rest, i));
-  const shade = crownShade(places, Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size), low, high);
-  const placer = new KindPlacer(kind, branchOrder(kind, highest));
-  return { kind, placer, rest, low, high, highest, shade };
+  const areas = Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size);
+  return {
+    kind, rest, low, high, highest, shade: crownShade(places, areas, low, high),
+    placer: new KindPlacer(kind, branchOrder(kind, highest)),
+  };
 }
 
 /** Branches, those that cover most of a picture first, and none before its parent; the chain that carries the
@@ -93,7 +95,8 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
   const baseRadius = radius[2 * from];
   const isStem = parents[branch] < 0;
   const thin = arrays.branch_base_segment.includes(end - 1) ? 1 : 0.4;
-  const sides = sidesOf(baseRadius / point);
+  const points = baseRadius / point; // of its radius on the picture
+  const sides = points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON;
   const corners = sides === RIBBON ? 2 : sides + 1; // a tube is closed by a second first corner
   const thickness = Math.min(1, baseRadius / (BARKED * height));
   const tile = Math.min(BARK_TILE, 0.06 * height);
@@ -122,32 +125,21 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       const [beside, behind, swollen] = [0.37, 0.59, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
       const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.5 * swollen);
       for (let k = 0; k < corners; k++) {
+        const angle = (2 * Math.PI * k) / sides - twist;
+        // At the foot of a stem rings bulge into roots.
+        const bulge = 1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle));
         const corner = sides === RIBBON ? [k ? -ringRadius : ringRadius, 0, thickness - 2]
-          : [...tubeCorner(ringRadius, flare, (2 * Math.PI * k) / sides - twist).map((each, c) => each + ringRadius * (c ? beside : behind)), thickness];
+          : [ringRadius * (bulge * Math.cos(angle) + behind), ringRadius * (bulge * Math.sin(angle) + beside), thickness];
         values.push(placer.slots[segment], isTip ? length[segment] : up * baseRadius, ...corner);
         values.push((tilesAround * k) / sides, (above * tilesAround) / (2 * Math.PI), open);
       }
-      if (s > from || up) joinRings(indices, values.length / PER_VERTEX - corners, corners);
+      if (s === from && !up) continue;
+      // Two triangles between each pair of corners of this ring and of the one before.
+      const ring = values.length / PER_VERTEX - corners;
+      for (let above = ring; above < ring + corners - 1; above++) {
+        const below = above - corners;
+        indices.push(below, below + 1, above, below + 1, above + 1, above);
+      }
     }
-  }
-}
-
-/** Corners of a ring about a branch. @param {number} points radius of the branch on the picture */
-const sidesOf = (points) => (points > 12 ? 20 : points > 4.8 ? 12 : points > 2 ? 6 : RIBBON);
-
-/** Place of a corner across the branch; at the foot of a stem rings bulge into roots.
- * @param {number} radius [m] @param {number} flare 1 at the foot, 0 above it @param {number} angle */
-function tubeCorner(radius, flare, angle) {
-  const bulged = radius * (1 + 0.3 * flare * Math.cos(ROOTS * angle + Math.sin(angle)));
-  return [bulged * Math.cos(angle), bulged * Math.sin(angle)];
-}
-
-/** Two triangles between each pair of corners of a ring and of the one before.
- * @param {number[]} indices @param {number} ring its first vertex @param {number} corners of each ring */
-function joinRings(indices, ring, corners) {
-  for (let k = 0; k < corners - 1; k++) {
-    const below = ring - corners + k;
-    const above = ring + k;
-    indices.push(below, below + 1, above, below + 1, above + 1, above);
   }
 }

@@ -21,7 +21,7 @@ export function propMesh(name) {
           const [c, s] = [Math.cos, Math.sin].map((of) => of((2 * Math.PI * k) / sides));
           const facing = [c * (z1 - z0), s * (z1 - z0), r0 - r1];
           values.push(r * c, middle + wide * r * s, z, ...facing, ...colours[color]);
-          const [a, b] = [first + k - sides, first + ((k + 1) % sides) - sides];
+          const a = first + k - sides, b = first + ((k + 1) % sides) - sides;
           if (i > 0) indices.push(a, b, a + sides, b, b + sides, a + sides);
         }
       });

@@ -5,9 +5,9 @@
 
 /** Frames per second: above the first more pixels are tried, and kept if the second remains; below the third fewer are
  * drawn, below the last grass and leaves are left out. */
-const [WANTED, KEPT, FEW, LEAST] = [58.5, 57, 50, 24];
+const WANTED = 58.5, KEPT = 57, FEW = 50, LEAST = 24;
 /** Wait before more pixels are tried, doubled with each failure up to LONGEST [ms]. */
-const [PATIENCE, LONGEST] = [8000, 120000];
+const PATIENCE = 8000, LONGEST = 120000;
 /** Fewest pixels per pixel of the page, each way. */
 export const COARSEST = 0.5;
 /** Smallest share of the leaves. */
@@ -36,7 +36,8 @@ export class Quality {
     this._frames++;
     if (now - this._from < 700 || this._frames < 3) return;
     const fps = (1000 * this._frames) / (now - this._from);
-    [this._from, this._frames] = [now, 0];
+    this._from = now;
+    this._frames = 0;
     if (this._before && fps < KEPT) {
       this.fineness = this._before;
       this._patience = Math.min(LONGEST, 2 * this._patience);
