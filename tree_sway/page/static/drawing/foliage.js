@@ -17,7 +17,7 @@ const LEAST_CARD = 0.08;
  * leaves in leaves. */
 const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
 /** Most tufts over the number of other small cards, as sky is seen between them. */
-const SPARSE = 0.62;
+const SPARSE = 0.7;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
 const [FULLNESS, FILLED] = [3.8, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
@@ -232,7 +232,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 2.5 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 2 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };

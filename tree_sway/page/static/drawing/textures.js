@@ -52,7 +52,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.64, 0, 0, 0.35, 26);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   else brush.spray(1 / along);
@@ -217,7 +217,7 @@ class Brush {
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1 * random());
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.011, color));
       }
     }
   }
