@@ -44,7 +44,7 @@ const [WEEPS, CURTAIN] = [0.8, 14];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.4, 0.75, 0.6, 45];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.75, 0.6, 45];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [2.2, 0.25];
 /** Numbers per vertex of a card. */
@@ -119,7 +119,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       for (const quad of [0, 4]) faces.push(facesFrom(values.length / PER_VERTEX + quad, 4));
       const foot = end.map((each, c) => each - origin[c]);
       for (const { place, normal, u, v } of candle) {
-        values.push(row, ...turned(back, place.map((each, c) => (0.5 + 0.6 * deep) * each + foot[c])), ...ORIGIN);
+        values.push(row, ...turned(back, place.map((each, c) => (0.5 + deep) * each + foot[c])), ...ORIGIN);
         values.push(...turned(back, normal), ...light, ...flutter, open, 1, leaves + (1 - leaves) * v, u);
       }
     }

@@ -123,7 +123,7 @@ export class Scene {
     this._high = [1, 1, 1];
     this._extent = 1;
     this._potSize = 0;
-    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0, stem: [] });
+    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0, stem: [0, 0, 0, 0] });
   }
 
   get hasLeaves() {
@@ -175,7 +175,7 @@ export class Scene {
     this._potSize = trees.length === 1 && lookOf(kinds[0]).is_potted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
     const [kind, haze] = this._potSize ? [0, 1 / (30 * this.height)] : [1, 1 / Math.max(1500, 30 * this._extent)];
-    this._under = { kind, ground: this.ground, haze, stem: [root[0], root[1], 2 / wide, 1 / Math.max(0.02 * tall, 0.5 * this._potSize)] };
+    this._under = { kind, ground: this.ground, haze, stem: [root[0], root[1], 2 / wide, 1 / (0.02 * tall + 0.4 * this._potSize)] };
     if (!isSame) {
       this.picked = -1;
       this.camera.home([[this._low[0], this._low[1], this.ground], this._high]);

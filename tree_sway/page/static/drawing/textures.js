@@ -12,8 +12,6 @@ const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
 const LEAF_SHARE = 0.75;
-/** Area of the leaves of a shoot over that of its picture, which is seen as leaves and gaps and not as one leaf. */
-const FILLED = 0.6;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -55,7 +53,8 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts" && along < 5) brush.tuft(0.64, 0, 0, 0.35, 26);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else brush.spray(1 / along);
+  // Small cards are seen as leaves and gaps, and not as a leaf each.
+  else brush.spray(1 / along, isSpread ? 0.6 : 0.75);
   return brush.context.canvas;
 }
 
@@ -140,11 +139,12 @@ class Brush {
   }
 
   /** A shoot whose leaves, in layers, hang on twigs of its axis: fewer and fewer from its middle on, as any outline would
-   * look from afar like that of one large leaf. @param {number} leaf length of one */
-  spray(leaf) {
+   * look from afar like that of one large leaf. @param {number} leaf length of one @param {number} filled area
+   * of the leaves over that of the picture */
+  spray(leaf, filled) {
     const { half, random, look } = this;
     const unit = this.unit * leaf;
-    const count = Math.round((FILLED * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
+    const count = Math.round((filled * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
     const places = Array.from({ length: count }, () => {
       const [turn, far, size] = [7 * random(), random() ** 0.55, unit * (0.75 + 0.35 * random())];
       const [x, y] = [0.5 + 0.5 * (1 - unit) * far * Math.cos(turn), (half - 0.5 * unit) * far * Math.sin(turn)];
@@ -216,7 +216,7 @@ class Brush {
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1 * random());
+        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
         this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.011, color));
       }
     }
