@@ -88,6 +88,9 @@ whole picture.
 DRAWN = 300.0
 """Until the first pictures of a thousand trees are drawn in full quality on a processor [s]."""
 
+COARSE = 0.2
+"""Pixels per pixel of the page, each way, until the last pictures, the first with leaves."""
+
 SETTLING = 15.0
 """Until a page without a graphics unit has chosen what it leaves out [s]."""
 
@@ -179,7 +182,12 @@ async def look(url: str, view: View, path: Path) -> None:
     width, height = view.size
     async with Browser() as browser:
         address = f'{url}?quality=full' if view.is_full else url
-        await browser.open(address, width=width, height=height, dark=view.is_dark)
+        await browser.open(
+            address, width=width, height=height, dark=view.is_dark, scale=COARSE if view.is_full else 1
+        )
+        await browser.until('window.treeSway', DRAWN)
+        if view.is_full:
+            await browser.run('treeSway.scene.leavesShown = false')
         live = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
         await browser.until(live, DRAWN)
         if not view.has_cards:
@@ -187,8 +195,14 @@ async def look(url: str, view: View, path: Path) -> None:
         if view.script:
             await browser.run(view.script)
         await browser.until('treeSway.traces.wind._points.length > 6')
+        if view.is_full:
+            await browser.run('treeSway.scene.leavesShown = true')
+            await browser.call(
+                'Emulation.setDeviceMetricsOverride',
+                width=width, height=height, deviceScaleFactor=1, mobile=width < 700,
+            )  # fmt: skip
         drawn = await browser.run('treeSway.scene._frame')
-        await browser.until(f'treeSway.scene._frame > {drawn} + 3')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 2', DRAWN)
         if not view.is_full:
             await settled(browser)
         if view.is_film:

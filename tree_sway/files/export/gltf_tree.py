@@ -203,6 +203,8 @@ def _primitive(
     look = look_of(species)
     color = look.bark if is_bark else (1.0, 1.0, 1.0)
     png = bark_picture(look.bark_pattern) if is_bark else leaf_picture(species)
+    # Leaves are there from both sides: viewers turn the normals of a back, which is dark then.
+    triangles = mesh.triangles if is_bark else np.vstack([mesh.triangles, mesh.triangles[:, ::-1]])
     kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
         'attributes': {
@@ -210,12 +212,11 @@ def _primitive(
             'TEXCOORD_0': _add_floats(document, mesh.texture),
         },
         'indices': document.add_array(
-            mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
+            triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
         ),
         'material': document.add(
             'materials',
             name=material,
-            doubleSided=None if is_bark else True,
             alphaMode=None if is_bark else 'MASK',
             alphaCutoff=None if is_bark else _CUTOFF,
             pbrMetallicRoughness={

@@ -224,6 +224,8 @@ interface Ground {
   ground: number;
   /** Inverse of the visual range [1/m]. */
   haze: number;
+  /** Place of the first tree, one over the radius of the trees and of its stem or pot [1/m]. */
+  stem: number[];
 }
 
 interface Daylight {

@@ -17,9 +17,9 @@ const LEAST_CARD = 0.08;
  * leaves in leaves. */
 const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
 /** Most tufts over the number of other small cards, as sky is seen between them. */
-const SPARSE = 0.62;
+const SPARSE = 0.7;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
-const [FULLNESS, FILLED] = [3.2, 0.55];
+const [FULLNESS, FILLED] = [3.8, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 2;
 /** Largest size of a cluster over the mean one, as its leaves are larger with it. */
@@ -44,9 +44,9 @@ const [WEEPS, CURTAIN] = [0.8, 14];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the leaves below are at
  * least, and the number of cards per candle. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.2, 0.62, 0.6, 79];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, PER_CANDLE] = [1.1, 0.75, 0.6, 45];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
-const [BROWSED, LEAST_BROWSED] = [1.6, 0.25];
+const [BROWSED, LEAST_BROWSED] = [2.2, 0.25];
 /** Numbers per vertex of a card. */
 const PER_VERTEX = 19;
 const ORIGIN = [0, 0, 0];
@@ -114,12 +114,12 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
         values.push(row, ...inFrame(own, place, shoot.size, centre), ...inFrame(own, swing, shoot.size));
         values.push(...inFrame(own, normal, 1), ...light, ...flutter, open, tint, leaves * u, v);
       }
-      if (leaves === 1 || open < CANDLE_OPEN || card % PER_CANDLE) continue;
+      if (leaves === 1 || open < CANDLE_OPEN || random() * PER_CANDLE > 1) continue;
       // A candle stands upright, whatever the direction of its shoot.
       for (const quad of [0, 4]) faces.push(facesFrom(values.length / PER_VERTEX + quad, 4));
       const foot = end.map((each, c) => each - origin[c]);
       for (const { place, normal, u, v } of candle) {
-        values.push(row, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
+        values.push(row, ...turned(back, place.map((each, c) => (0.5 + deep) * each + foot[c])), ...ORIGIN);
         values.push(...turned(back, normal), ...light, ...flutter, open, 1, leaves + (1 - leaves) * v, u);
       }
     }
@@ -131,7 +131,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
  * @param {Look} look @param {number} foot height of the foot of the tree @param {number} top */
 function lowestLeaves(look, foot, top) {
   if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
-  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.1 * (top - foot));
+  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
   return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
 }
 
@@ -194,8 +194,9 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   const add = (segment, along) => {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
-    const frame = weeps ? DOWN : own;
-    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (weeps && c > 1 ? 0.5 * size : 0));
+    // Some shoots of a weeping bough clothe its back.
+    const frame = weeps && shoots.length % 2 ? DOWN : own;
+    const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (frame === DOWN && c > 1 ? 0.5 * size : 0));
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
   for (const branch of branches) {
@@ -231,7 +232,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 2.5 : hangs(look) || look.form === "needles" ? 4.5 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 2 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };

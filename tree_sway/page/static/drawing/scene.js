@@ -123,7 +123,7 @@ export class Scene {
     this._high = [1, 1, 1];
     this._extent = 1;
     this._potSize = 0;
-    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0 });
+    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0, stem: [0, 0, 0, 0] });
   }
 
   get hasLeaves() {
@@ -131,7 +131,7 @@ export class Scene {
   }
 
   /** Show or hide leaves, and change their season; all pictures are painted again.
-   * @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves */
+   * @param {{leavesShown?: boolean, isAutumn?: boolean, isFlowering?: boolean}} leaves */
   dress(leaves) {
     Object.assign(this, leaves);
     if (this.description) this.describe(this.description);
@@ -140,9 +140,7 @@ export class Scene {
   /** Show the flowers of a month. @param {number} month from 1, with its fraction */
   flower(month) {
     const isFlowering = month >= FLOWERING[0] && month < FLOWERING[1];
-    if (isFlowering === this.isFlowering) return;
-    this.isFlowering = isFlowering;
-    this.dress({});
+    if (isFlowering !== this.isFlowering) this.dress({ isFlowering });
   }
 
   /** Take another description. @param {Description} description */
@@ -176,8 +174,8 @@ export class Scene {
     const { place: root } = trees[0];
     this._potSize = trees.length === 1 && lookOf(kinds[0]).is_potted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
-    this._under = this._potSize ? { kind: 0, ground: this.ground, haze: 1 / (30 * this.height) }
-      : { kind: 1, ground: this.ground, haze: 1 / Math.max(1500, 30 * this._extent) };
+    const [kind, haze] = this._potSize ? [0, 1 / (30 * this.height)] : [1, 1 / Math.max(1500, 30 * this._extent)];
+    this._under = { kind, ground: this.ground, haze, stem: [root[0], root[1], 2 / wide, 1 / (0.02 * tall + 0.4 * this._potSize)] };
     if (!isSame) {
       this.picked = -1;
       this.camera.home([[this._low[0], this._low[1], this.ground], this._high]);
@@ -559,7 +557,7 @@ export class Scene {
     const { gl, _shadow: { texture } } = this;
     use(gl, this._programs.shadow, {
       camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
-      softness: (0.015 * this.height) / this._shadowArea[2], depth: 0.6, shadow: [1, texture],
+      softness: (0.015 * this.height) / this._shadowArea[2], depth: 0.65, shadow: [1, texture], ...this._under,
     });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

@@ -8,6 +8,12 @@ precision highp float;
 precision highp int;
 // Tones of light: deep shade is lifted and full sun held back, as in a photograph.
 vec3 toned(vec3 c) { return 1.95 * c / (c + 0.8); }
+uniform vec4 stem; // of the first tree: place, one over the radius of the trees and of the stem or the pot
+// Share of the light of the sky that reaches the ground: less under a crown, least beside a stem.
+float skyAt(vec2 p) {
+  vec2 far = distance(p, stem.xy) * stem.zw;
+  return (0.72 + 0.28 * smoothstep(0.0, 1.3, far.x)) * (1.0 - 0.66 * exp(-0.12 * far.y * far.y));
+}
 
 #part seen tones
 uniform mat4 camera;
@@ -245,15 +251,15 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
-  vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
+  float sunny = mix(0.1, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near);
+  vec3 up = sky * (0.1 + 0.68 * near) * (0.5 + 0.5 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.05, 0.5) * (0.9 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.08 + 1.9 * max(0.85 * across + 0.15, 0.0) + through);
+  vec3 through = vec3(0.9, 1.05, 0.4) * (0.7 * max(-side * dot(flat_, light), 0.0));
+  vec3 direct = sun * sunny * (0.06 + 2.6 * max(0.9 * across + 0.1, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
-  hue += (0.6 * (flutter.w - 1.0) + 0.2 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
+  hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
   float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
   hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
@@ -396,14 +402,14 @@ uniform float time;
 uniform float dimmed;
 out vec4 base;
 void main() {
-  vec2 foot = field.xy + field.z * blade.xy;
+  vec2 root = field.xy + field.z * blade.xy;
   float tall = field.w * blade.z;
-  vec3 p = vec3(foot, ground);
+  vec3 p = vec3(root, ground);
   float sunny = sunlight(p);
   float own = 6.2831853 * blade.w;
   // Gust fronts are curved.
-  float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
-  float far = dot(foot, downwind.xy) - downwind.z + 0.06 * field.z * (sin(7.0 * cross_) + sin(17.0 * cross_ + 2.0));
+  float cross_ = dot(root, vec2(-downwind.y, downwind.x)) / field.z;
+  float far = dot(root, downwind.xy) - downwind.z + 0.06 * field.z * (sin(7.0 * cross_) + sin(17.0 * cross_ + 2.0));
   float place = (0.5 + 0.5 * clamp(far / downwind.w, -1.0, 1.0)) * float(PLACES - 1);
   int low = min(int(place), PLACES - 2);
   float speed = mix(gusts[low], gusts[low + 1], place - float(low));
@@ -416,7 +422,7 @@ void main() {
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
-  base = vec4(tint * mix(vec3(0.43, 0.46, 0.55), vec3(1.0), sunny), clearness(p));
+  base = vec4(tint * skyAt(root) * mix(vec3(0.36, 0.4, 0.5), vec3(1.0), sunny), clearness(p));
   gl_Position = seen(p);
 }
 
@@ -433,9 +439,9 @@ void main() {
   gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
 }
 
-#part shadow.fragment
-precision highp float;
+#part shadow.fragment tones
 in vec2 at;
+uniform vec4 area;
 uniform sampler2D shadow; // 0 in the sun, else the brighter, the lower what casts it
 uniform float softness; // widest border of a shadow; 0 where every pixel counts
 uniform float depth;
@@ -460,8 +466,9 @@ void main() {
   }
   dark /= 28.0;
 #endif
-  if (dark < 0.01) discard;
-  color = vec4(0.05, 0.08, 0.13, depth * dark);
+  float open = (1.0 - depth * dark) * skyAt(area.xy + area.z * (2.0 * at - 1.0));
+  if (open > 0.99) discard;
+  color = vec4(0.05, 0.08, 0.13, 1.0 - open);
 }
 
 #part backdrop.vertex
@@ -553,8 +560,10 @@ vec4 treeRow(vec3 way, float round, float seed) {
   vec2 leaf = vec2(9.0 * along, up);
   float rough = cloudy(0.55 * leaf + seed);
   float fine = cloudy(2.3 * leaf + seed);
+  // Clumps are lit on their side towards the sun.
+  float relief = rough - cloudy(0.55 * (leaf + 1.1 * vec2(dot(light.xy, beside), light.z)) + seed);
   // Woods, hedges and gaps.
-  float wooded = smoothstep(0.28, 0.52, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
+  float wooded = smoothstep(0.16, 0.42, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
   vec4 best = vec4(0.0);
   float first = -1.0;
   for (float k = -1.0; k < 2.0; k++) {
@@ -562,24 +571,25 @@ vec4 treeRow(vec3 way, float round, float seed) {
     vec2 name = vec2(cell, 17.0 * seed);
     float one = hash(name);
     float two = hash(name + 71.0);
-    float dense = smoothstep(0.28, 0.52, tiled(vec2(cell * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
-    if (one < 0.75 - 0.75 * dense || two < first) continue;
-    float tall = (8.0 + 8.0 * hash(name + 5.0)) * (0.5 + 0.5 * dense);
-    float wide = tall * mix(0.3, 0.42, two) + 0.5;
-    bool isPointed = hash(name + 9.0) < 0.25;
-    if (isPointed) { wide *= 0.6; tall *= 1.25; }
+    float dense = smoothstep(0.16, 0.42, tiled(vec2(cell * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
+    if (one < 0.8 - 0.8 * dense || two < first) continue;
+    float high = hash(name + 5.0);
+    float tall = (7.0 + 10.0 * high * high) * (0.5 + 0.5 * dense);
+    float wide = tall * mix(0.34, 0.55, two) + 1.0;
+    bool isPointed = hash(name + 9.0) < 0.2 * dense;
+    if (isPointed) { wide *= 0.6; tall *= 1.1; }
     float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
     float z = (up - 0.52 * tall) / (0.5 * tall);
     float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
-    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.5 : 1.3) * (rough - 0.48) + 0.5 * (fine - 0.48);
+    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.9 : 1.3) * (rough - 0.48) + 0.8 * (fine - 0.48);
     if (edge > 1.0 && (abs(x) * wide > 0.03 * tall || z > 0.0)) continue;
     first = two;
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
     vec3 n = vec3(x * beside - deep * outward, z);
-    float shone = max(0.0, 0.25 + 0.75 * dot(normalize(n), light) + 1.5 * (fine - 0.5) + 1.2 * (rough - 0.5));
-    vec3 own = mix(isPointed ? vec3(0.1, 0.17, 0.1) : vec3(0.17, 0.24, 0.09), vec3(0.3, 0.33, 0.12), one * one * (isPointed ? 0.2 : 1.0));
+    float shone = max(0.0, 0.2 + 0.7 * dot(normalize(n), light) + 0.8 * (fine - 0.5) + 2.2 * relief);
+    vec3 own = mix(isPointed ? vec3(0.12, 0.19, 0.1) : vec3(0.17, 0.24, 0.1), vec3(0.27, 0.31, 0.12), one * one * (isPointed ? 0.2 : 1.0));
     vec3 lit = own * toned(sky * (0.3 + 0.4 * smoothstep(-0.9, 0.9, z) + 0.8 * (rough - 0.5)) + 1.3 * sun * shone);
-    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.94, edge));
+    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.88, edge));
   }
   // Bushes and nettles hide the stems.
   float hedge = wooded * (0.8 + 3.2 * rough) - 0.6 + 0.6 * fine;
@@ -639,7 +649,7 @@ void main() {
 #ifndef PLAIN
   if (kind > 0.5) {
     // Rows of trees stand on it, the far one first.
-    for (float row = 2.0; row > 0.0; row--) {
+    for (float row = 3.0; row > 0.0; row--) {
       vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
       c = mix(c, mix(dimmed * trees.rgb, horizon, 0.06 + 0.13 * row), trees.a);
     }

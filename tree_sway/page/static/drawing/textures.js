@@ -12,8 +12,6 @@ const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
 const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
 /** Width of the leaf beside a candle of flowers, over that of the picture. */
 const LEAF_SHARE = 0.75;
-/** Area of the leaves of a shoot over that of its picture. */
-const FILLED = 0.75;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
@@ -52,10 +50,11 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.62, 0, 0, 0.44, 30);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.64, 0, 0, 0.35, 26);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
-  else brush.spray(1 / along);
+  // Small cards are seen as leaves and gaps, and not as a leaf each.
+  else brush.spray(1 / along, isSpread ? 0.6 : 0.75);
   return brush.context.canvas;
 }
 
@@ -107,7 +106,7 @@ class Brush {
     this.unit = IN_LEAFLETS[look.form] ?? 1;
     const half = outlineOf(look).map(([x, y]) => [x, 0.5 * look.slenderness * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
-    this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
+    this.blades = [[...half, ...other], half].map((outline) => new Path2D(`M${outline.join("L")}Z`));
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     // The picture fills the texture, however wide the card is.
@@ -139,17 +138,13 @@ class Brush {
     this.context.stroke(new Path2D(`M0 0H${long}`));
   }
 
-  /** Half width of the spray at a place of its axis. @param {number} x 0 to 1 */
-  outline(x) {
-    return this.half * Math.max(0, Math.sin(Math.PI * Math.min(1, 0.12 + 0.88 * x) ** 0.85)) ** 0.7;
-  }
-
   /** A shoot whose leaves, in layers, hang on twigs of its axis: fewer and fewer from its middle on, as any outline would
-   * look from afar like that of one large leaf. @param {number} leaf length of one */
-  spray(leaf) {
+   * look from afar like that of one large leaf. @param {number} leaf length of one @param {number} filled area
+   * of the leaves over that of the picture */
+  spray(leaf, filled) {
     const { half, random, look } = this;
     const unit = this.unit * leaf;
-    const count = Math.round((FILLED * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
+    const count = Math.round((filled * 2 * half) / (unit * unit * Math.max(0.7, Math.sqrt(look.slenderness))));
     const places = Array.from({ length: count }, () => {
       const [turn, far, size] = [7 * random(), random() ** 0.55, unit * (0.75 + 0.35 * random())];
       const [x, y] = [0.5 + 0.5 * (1 - unit) * far * Math.cos(turn), (half - 0.5 * unit) * far * Math.sin(turn)];
@@ -174,14 +169,14 @@ class Brush {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
     const apart = Math.max(0.12, 0.95 * shoot);
-    const long = (isFrond ? 0.4 : 0.31) * apart;
+    const long = (isFrond ? 0.4 : 0.22) * apart;
     const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
-    for (let x = 0.02; x < 0.9; x += 0.5 * apart, side = -side) {
+    for (let x = 0.02; x < 0.9; x += 0.36 * apart, side = -side) {
       const lean = side * (0.75 + 0.25 * random());
-      const reach = (0.7 + 0.3 * random()) * Math.min(this.outline(x), (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
+      const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
       if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
       for (let far = apart; far < reach - 0.5 * apart; far += apart) {
         shoots.push([x + far * Math.cos(lean), far * Math.sin(lean), lean - 0.8 * side, 0.5 * (reach - far)]);
@@ -191,11 +186,11 @@ class Brush {
       for (const [x, y, lean, reach] of shoots) {
         this.at(x, y, lean, 1, () => {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
-          const count = Math.max(5, Math.round((isUpper ? 0.8 : 1.3) * reach / wide));
+          const count = Math.max(5, Math.round((isUpper ? 0.6 : 0.9) * reach / wide));
           for (let i = 0; i < count; i++) {
             const far = (i + random()) / count;
             const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
-            const color = this.color((isUpper ? 0.72 : 0.42) + 0.5 * out, Math.max(0, 1.6 * far - 0.8));
+            const color = this.color((isUpper ? 0.72 : 0.45) + 0.4 * out, 0.3 * far);
             const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.55 + 0.5 * random()) * (isUpper ? 0.7 : 1);
             this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
           }
@@ -221,8 +216,8 @@ class Brush {
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
-        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), isUpper ? 0.2 * random() : 0);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.016, color));
+        const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.011, color));
       }
     }
   }
@@ -238,16 +233,13 @@ class Brush {
   /** One leaf from its stalk on. @param {number} long @param {number} light */
   leaf(long, light) {
     const { context, look } = this;
-    const color = this.color(light, light > 0.9 ? 0.12 : 0);
-    context.fillStyle = color;
+    const color = this.color(light, 0);
     const blade = () => {
-      context.fill(this.blade);
+      context.fillStyle = color;
+      context.fill(this.blades[0]);
       // One half lies in the shade of the other; the midrib is light.
-      context.save();
-      context.clip(this.blade);
       context.fillStyle = "rgb(0 0 0 / 14%)";
-      context.fillRect(0, 0, 1, 1);
-      context.restore();
+      context.fill(this.blades[1]);
       this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
     };
     this.at(0, 0, 0, long, () => {
@@ -265,7 +257,7 @@ class Brush {
       const up = random();
       const reach = half * (1 - up) ** 0.6;
       const light = 0.75 + 0.25 * random();
-      context.fillStyle = i % 9 ? css([0.9, 1, 0.69], light) : css([0.85, 0.74, 0.5], light);
+      context.fillStyle = css(i % 9 ? [0.9, 1, 0.69] : [0.85, 0.74, 0.5], light);
       context.beginPath();
       context.arc(middle + reach * (2 * random() - 1), 0.46 - 0.9 * up, 0.016, 0, 7);
       context.fill();
