@@ -38,7 +38,7 @@ class Probe(SolverAnnex):
     def _receive(self, message):
         self.count += 1
 
-    def before_step(self, felt):
+    def before_step(self, end, late):
         self.steps += 1
 
     def statuses(self):

@@ -359,7 +359,13 @@ class Session:
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
         run = Run(simulator, RATE, intake=intake)
         if isinstance(simulator, ObservedTree):
-            run = Run(simulator, RATE, intake=intake, starting=simulator.set_time)
+            twin = simulator
+
+            def begin(end: float, late: float) -> None:
+                twin.set_time(end)
+                twin.late_wind.known_late = late
+
+            run = Run(simulator, RATE, intake=intake, starting=begin)
         return scene, run
 
     def _build_wanted(self, wanted: Choices) -> None:

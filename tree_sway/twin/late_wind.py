@@ -30,6 +30,9 @@ _AVERAGED = 600.0
 _SLOWEST = 1.0
 """Least mean speed in [m/s] with which gusts travel, so that a calm delays nothing for ever."""
 
+_TOLD_LATE = 1.5
+"""Time in [s] from which it is told that the wind is known so late."""
+
 _CAPACITY = 1024
 """Number of past winds that are kept."""
 
@@ -58,6 +61,8 @@ class LateWind:
         self._way = np.array([distance, 0.0])  # distance [m], and 1 while it is not yet known
         self._delay, self._wind = np.zeros(1), np.zeros((1, 3))
         self._measured = np.zeros(3)
+        self.known_late = 0.0
+        """Time in [s] by which the wind that is pushed is older than what sensors are read for."""
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -103,13 +108,16 @@ class LateWind:
 
     @property
     def note(self) -> str:
-        """What is said of the delay; empty without one."""
-        if not self.delay:
-            return ''
-        return (
-            f'the tree moves {self.delay:.1f} s after the wind: the anemometer is upwind of it, '
-            'or their clocks differ'
-        )
+        """What is said of the delay, and of a wind that is known late; empty without both."""
+        told = []
+        if self.delay:
+            told.append(
+                f'the tree moves {self.delay:.1f} s after the wind: the anemometer is upwind of '
+                'it, or their clocks differ'
+            )
+        if self.known_late > _TOLD_LATE:
+            told.append(f'the wind is known {self.known_late:.1f} s late: sensors tell the rest')
+        return '; '.join(told)
 
     @property
     def distance(self) -> float:

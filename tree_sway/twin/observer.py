@@ -82,6 +82,7 @@ class Observer:
         self.tracks, self._dt = list(tracks), dt
         oscillators: Any = simulator.banks[0].oscillators
         swing = oscillators.swing
+        wind = wind or LateWind()
         n = self.count = min(MOST_COORDINATES, oscillators.shapes.shape[1])
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
@@ -90,12 +91,12 @@ class Observer:
             self.unknown = UnknownMotion(simulator, n, dt)
             """Stiffness and damping of the model, and what the wind does not tell."""
             self._readings = SensorReadings(
-                self.unknown, self.tracks, places, dt, swing, wind or LateWind()
+                self.unknown, self.tracks, places, dt, swing, wind
             )
             load = crown_slope(simulator, _USUAL_WIND, oscillators.shapes.shape[1])[:2]
             for track, place in zip(self.tracks, places, strict=True):
                 track.bend = lean_per_load(place, self.unknown.all_stiffness, load)
-        self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt)
+        self._fit = RunningFit(self.unknown, self.tracks, places, frequency, dt, wind)
         if before is not None:
             self._fit.follow(before._fit)
         self._design = GainDesign(self.unknown, self.tracks, places)

@@ -14,6 +14,7 @@ from functools import partial
 
 import numpy as np
 
+from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_spectrum import SensorSpectrum
@@ -49,6 +50,8 @@ class RunningFit:
         First frequency of the model in [Hz].
     dt
         Time step in [s].
+    wind
+        Wind of the tree, which may be known late; None for one that is not.
 
     """
 
@@ -59,8 +62,9 @@ class RunningFit:
         places: Sequence[PlaceMotion],
         frequency: float,
         dt: float,
+        wind: LateWind | None = None,
     ) -> None:
-        self._unknown, self._tracks = unknown, tracks
+        self._unknown, self._tracks, self._wind = unknown, tracks, wind or LateWind()
         n = unknown.count
         self._places = [each.first(n) for each in places]
         self._frequency, self._dt = frequency, dt
@@ -176,9 +180,13 @@ class RunningFit:
         has_gravity = track.alignment is None or track.alignment.has_gravity
         rows = sensed_rows(self._places[which], self._stiffness, self._damping)
         felt = as_felt(rows, has_gravity=has_gravity)
+        products = measured.products.copy()
+        # Of forces with motion: they would have come sooner, had their wind been known.
+        sooner = np.exp(1j * self._wind.known_late * measured.circular)
+        products[:, 2:, :2] *= sooner[:, None, None]
         return Spectrum(
             felt[3 * track.fitted : 3 * track.fitted + 3],
-            measured.products,
+            products,
             measured.circular,
             measured.new_stretches,
             measured.new_seconds,

@@ -155,8 +155,9 @@ class SensorReadings:
             if each is not track and each.is_comparable
         )
         way = LagRange(
-            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later, others=others
-        )
+            0, 0, 1, about, none, self._wind.is_told, later=self._wind.later, others=others,
+            of_wind=round(self._wind.known_late / self._dt),
+        )  # fmt: skip
         if way.is_told or self._told_lag not in (None, track):
             return way
         if delay:

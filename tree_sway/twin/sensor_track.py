@@ -144,6 +144,7 @@ class LagRange(NamedTuple):
     is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
     last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the gusts
     that it shares with its model (`sensor_lag`), ``others`` are further sensors of the tree.
+    ``of_wind`` is by how many steps the wind of the model is known to be late.
     """
 
     earliest: int
@@ -155,6 +156,7 @@ class LagRange(NamedTuple):
     left_for: float | None = None
     later: Callable[[Floats], Complexes] | None = None
     others: tuple[OtherSensor, ...] = ()
+    of_wind: int = 0
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -194,10 +196,13 @@ def _mounting(
     bend: Floats,
 ) -> FoundMounting:
     """Find a mounting by samples (n, 9), rows of the model, (12, n), and its lean by loads."""
+    whole = sensed
+    now, later = _lagging(-min(lags.of_wind, len(sensed) // 2), len(sensed))
+    sensed, computed = sensed[now], computed[:, later]
     upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
     sway = Sway(bend, 1.0 / (windows.period * windows.dt), windows.dt)
-    sign, whole = 0.0, sensed
+    sign = 0.0
     found = align(sensed, upright, free, *known, sway=sway)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()

@@ -58,9 +58,10 @@ class ImuIntake(SolverAnnex):
         for topic in self.twin.sensors:
             self.node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
-    def before_step(self, felt: float) -> None:
-        """Note the time at which sensors are read."""
-        self.twin.set_time(felt)
+    def before_step(self, end: float, late: float) -> None:
+        """Note the time at which sensors are read, and by how much the wind is later."""
+        self.twin.set_time(end)
+        self.twin.late_wind.known_late = late
 
     def _callback_of(self, topic: str) -> Any:
         followed = self._followed[topic]
@@ -77,10 +78,10 @@ class ImuIntake(SolverAnnex):
 
         return receive
 
-    def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
+    def lacking(self, end: int) -> Iterator[tuple[str, int]]:
         """Tell which sensors have not yet sent what a step reads of them."""
         # A step averages the samples within half a period about its time.
-        read = end - round(1e9 * self._run.behind(delay)) + self._run.period // 2
+        read = end + self._run.period // 2
         for topic, followed in self._followed.items():
             if followed.lacks(read):
                 yield topic, followed.newest

@@ -189,21 +189,20 @@ class SolverNode(TreeSwayNode):
         self.stream.publish(self.simulator, index, now, self.values['publish_every'])
         self._state.publish(index, now, self._run)
 
-    def _starting(self, felt: float) -> None:
-        """Prepare annexes for a step whose wind was measured at a time in [s]."""
+    def _starting(self, end: float, late: float) -> None:
+        """Prepare annexes for a step by its end, and by how much its wind is late [s]."""
         for annex in self._annexes:
-            annex.before_step(felt)
+            annex.before_step(end, late)
 
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
-        delay = self.values['wind_delay']
         newest = self._run.newest
         if newest is None:
             yield self._topic, UNHEARD
-        elif self._run.lacks_wind(to, delay=delay):
+        elif self._run.lacks_wind(to, delay=self.values['wind_delay']):
             yield self._topic, newest
         for annex in self._annexes:
-            yield from annex.lacking(to, delay)
+            yield from annex.lacking(to)
 
     def _statuses(self) -> list[Status]:
         wind = self.publishers_of(self._topic, 'geometry_msgs/Vector3Stamped')

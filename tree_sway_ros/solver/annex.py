@@ -49,10 +49,10 @@ class SolverAnnex:
 
         """
 
-    def before_step(self, felt: float) -> None:
-        """Prepare for a step, in its thread; its wind was measured at a time in [s]."""
+    def before_step(self, end: float, late: float) -> None:
+        """Prepare for a step by its end, and by how much its wind is late [s], in its thread."""
 
-    def lacking(self, end: int, delay: float) -> Iterable[tuple[str, int]]:
+    def lacking(self, end: int) -> Iterable[tuple[str, int]]:
         """
         Tell which topics have not yet sent what a step of a replay reads of them.
 
@@ -60,8 +60,6 @@ class SolverAnnex:
         ----------
         end
             End of the step in [ns].
-        delay
-            Delay of the wind in [s], as for `Run.advance`.
 
         Yields
         ------

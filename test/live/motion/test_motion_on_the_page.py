@@ -5,13 +5,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 import threading
 import time
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ from tree_sway.live.motion.motion_registry import open_motion  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.simulation.wind_source import RecordedWind  # noqa: E402
+from tree_sway.simulation.wind_source import RecordedWind, Sample  # noqa: E402
 from tree_sway.twin.camera import Camera, looking  # noqa: E402
 from tree_sway.twin.commands.on_the_page import SensorsOnThePage  # noqa: E402
 from tree_sway.twin.observed_tree import ObservedTree  # noqa: E402
@@ -171,10 +171,27 @@ class StillFilm:
         return [] if self.is_over else [Sighting(self._clock.now, 0, self._points)]
 
 
-def session_of(placed: list[PlacedSensor], film: StillFilm | None = None) -> Session:
+class SlowWind:
+    """The wind of the truth at some times alone [s], of which nobody knows what is to come."""
+
+    source: ClassVar[dict[str, object]] = {'kind': 'live'}
+
+    def __init__(self, times: Sequence[float]) -> None:
+        self._left = list(times)
+
+    def between(self, _since: float, until: float) -> Iterator[Sample]:
+        """Return the samples up to a time."""
+        while self._left and self._left[0] <= until:
+            x, y, z = truth().wind[round(self._left[0] * 60)].tolist()
+            yield self._left.pop(0), (x, y, z)
+
+
+def session_of(
+    placed: list[PlacedSensor], film: StillFilm | None = None, slow: SlowWind | None = None
+) -> Session:
     """Make a session with the wind of the truth."""
     wind = truth().wind
-    record = RecordedWind(DT * np.arange(len(wind)), wind)
+    record = RecordedWind(DT * np.arange(len(wind)), wind) if slow is None else slow
     arguments = show_arguments()
     feed = MotionFeed(placed)
     feed.film = film  # type: ignore[assignment]
@@ -190,9 +207,11 @@ def session_of(placed: list[PlacedSensor], film: StillFilm | None = None) -> Ses
     return session
 
 
-def swayed(sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS) -> tuple[Any, Floats]:
+def swayed(
+    sensor: Sensor, placed: list[PlacedSensor], until: int = SECONDS, slow: SlowWind | None = None
+) -> tuple[Any, Floats]:
     """Step a session with the wind of the truth; its tip displacement at each step."""
-    session = session_of(placed)
+    session = session_of(placed, slow=slow)
     tips = np.empty((until * 60, 3))
     for k in range(len(tips)):
         sensor.now += DT
@@ -235,6 +254,28 @@ def test_the_tree_follows_and_the_page_says_how(sensor: Sensor) -> None:
     assert said['shares'][0] == f'{100.0 * status["explained"]:.0f}'
     assert said.get('learned_sway', [None])[-1] == (learned and f'{learned.hours:.2f}')
     print(f'error {error(alone):.2f} by the wind, {error(tips):.2f} with it; {status}')
+
+
+def test_a_slow_anemometer_makes_no_sensor_late(sensor: Sensor) -> None:
+    """What is measured is used as it comes, whatever the time to which the wind is known."""
+    placed = [PlacedSensor(sensor, f'segment:{SEGMENT}')]  # type: ignore[arg-type]
+    session, tips = swayed(sensor, placed, slow=SlowWind(range(0, SECONDS, 3)))
+    (told,) = session.status()['motion']['sensors']
+    assert told['in_use']
+    assert told['refused'] == 0
+    assert 'the wind is known 3.0 s late' in told['notes'][-1]
+    wrong, wanted = (each[-10 * 60 :] for each in (tips - truth().tips, truth().tips))
+    assert np.var(wrong, axis=0).sum() < 0.25 * np.var(wanted, axis=0).sum()
+
+
+def test_a_pair_of_winds_far_apart_turns_no_clock_back(sensor: Sensor) -> None:
+    placed = [PlacedSensor(sensor, f'segment:{SEGMENT}')]  # type: ignore[arg-type]
+    session, _ = swayed(sensor, placed, until=12, slow=SlowWind((0, 10)))
+    twin: Any = session._scene.simulator
+    assert twin.now == pytest.approx(12.0)
+    (known,) = twin.sensors.values()
+    assert known.counts.refused == 0
+    assert known.counts.accepted == pytest.approx(1200, abs=10)
 
 
 def test_what_a_page_learns_is_kept_and_gone_on_with(

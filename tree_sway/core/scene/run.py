@@ -65,7 +65,7 @@ class Run:
     stepped
         Function called after each step with its end [ns] and its mean wind [m/s], (3,).
     starting
-        Function called before each step with the time [s] up to which its wind was measured.
+        Function called before each step with its end and by how much its wind is late, both [s].
     timer
         Clock in [s] to measure the cost of a step; None to never join steps.
 
@@ -79,7 +79,7 @@ class Run:
         intake: WindIntake | None = None,
         make_wind: Callable[[], WindAverage] = WindAverage,
         stepped: Callable[[int, Floats], object] = lambda end, wind: None,
-        starting: Callable[[float], object] = lambda felt: None,
+        starting: Callable[[float, float], object] = lambda end, late: None,
         timer: Callable[[], float] | None = None,
     ) -> None:
         self.simulator = simulator
@@ -155,14 +155,6 @@ class Run:
         period = self._wind.period or 0.0
         expected = self._seconds(self.newest) + self._wind.lateness + _EARLIEST * period
         return self._seconds(to) - delay >= expected
-
-    def behind(self, delay: float) -> float:
-        """
-        Time in [s] by which the wind of a step was measured before the end of the step.
-
-        A sample acts after the delay of the wind in [s] and a period more, when the next is known.
-        """
-        return delay + self._wind.lateness + (self._wind.period or 0.0)
 
     def request(
         self, action: Callable[[], object], refused: _Refused = lambda reason: None
@@ -294,7 +286,9 @@ class Run:
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
-            self._starting(end * 1e-9 - self.behind(delay))
+            # A sample acts a period later, when the next is known.
+            behind = delay + self._wind.lateness + (self._wind.period or 0.0)
+            self._starting(end * 1e-9, behind)
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:
