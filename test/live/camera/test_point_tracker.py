@@ -70,12 +70,19 @@ def test_the_edge_of_a_shadow_and_a_cloud_behind_drag_no_point() -> None:
     assert np.nanpercentile(missed, 90) < 0.25
 
 
-def test_points_are_found_under_the_mask_alone() -> None:
+def test_points_are_found_under_the_mask_and_some_far_beside_it() -> None:
     mask = np.zeros((300, 400), dtype=np.uint8)
     mask[100:180, 50:150] = 255
-    points = PointTracker(cv2, mask).follow(0.0, picture(0.0, 0.0)).points
-    assert len(points) > 5
-    assert ((points >= [50, 100]) & (points < [150, 180])).all()
+    tracker = PointTracker(cv2, mask)
+    points = tracker.follow(0.0, picture(0.0, 0.0)).points
+    is_inside = ((points >= [50, 100]) & (points < [150, 180])).all(axis=1)
+    assert is_inside.sum() > 5
+    behind = points[~is_inside]
+    assert len(behind) > 5
+    gap = np.maximum([50, 100] - behind, behind - [149, 179]).max(axis=1)
+    assert gap.min() > 29.0
+    moved = tracker.follow(0.1, picture(1.5, -0.7)).points[~is_inside] - behind
+    np.testing.assert_allclose(np.nanmedian(moved, axis=0), [1.5, -0.7], atol=0.1)
 
 
 def test_points_are_found_anew_when_most_are_lost_for_long() -> None:

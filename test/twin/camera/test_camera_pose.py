@@ -81,6 +81,18 @@ def test_clicks_of_another_tree_fit_no_camera(tree: Tree, camera: Camera) -> Non
         camera_of_clicks(tree, SIZE, clicks, Told(bearing=BEARING, distance=DISTANCE))
 
 
+def test_a_click_beside_its_place_is_named(tree: Tree, camera: Camera) -> None:
+    clicks = clicked(tree, camera, STEM)
+    told = Told(bearing=BEARING, distance=DISTANCE)
+    assert 'check' not in str(camera_of_clicks(tree, SIZE, clicks, told))
+    clicks[2] = clicks[2]._replace(x=clicks[2].x + 15.0)
+    beside = f'check {clicks[2].x:.0f},{clicks[2].y:.0f},3, which misses by'
+    assert beside in str(camera_of_clicks(tree, SIZE, clicks, told))
+    clicks[2] = clicks[2]._replace(x=clicks[2].x + 285.0)
+    with pytest.raises(ParameterError, match=',3, which misses by'):
+        camera_of_clicks(tree, SIZE, clicks, told)
+
+
 def test_too_few_clicks_are_refused(tree: Tree, camera: Camera) -> None:
     with pytest.raises(ParameterError, match='2 clicked points'):
         camera_of_clicks(tree, SIZE, clicked(tree, camera, STEM[:2]))

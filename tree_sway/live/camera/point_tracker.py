@@ -20,6 +20,10 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 
 _MOST_POINTS = 300
+_MOST_BEHIND, _BEHIND_APART = 40, 20
+"""Largest number of points beside the mask, and their least distance in pixels."""
+_AWAY = 30
+"""Pixels from the mask from which they are found."""
 _QUALITY = 0.01
 _APART = 5
 """Least distance of two points in pixels."""
@@ -38,7 +42,7 @@ _FEWEST = 0.4
 """Share of the points below which most are lost."""
 _LONG = 10.0
 """Time in [s] for which most must be lost before points are found anew."""
-_EDGE = 16
+_EDGE = 60
 """Margin in pixels about the mask."""
 
 
@@ -60,6 +64,7 @@ class PointTracker:
         The module of OpenCV.
     mask
         Where in the picture points are found, not 0 there, (high, wide); everywhere if None.
+        Some are found far beside it too, which tell whether the camera shakes.
 
     """
 
@@ -117,6 +122,13 @@ class PointTracker:
             grey, _MOST_POINTS, _QUALITY, _APART, mask=self._mask
         )
         self._found = np.zeros((0, 1, 2), dtype=np.float32) if found is None else found
+        if self._mask is not None and len(self._found):
+            near = self._cv2.dilate(self._mask, np.ones((2 * _AWAY + 1, 2 * _AWAY + 1), np.uint8))
+            behind = self._cv2.goodFeaturesToTrack(
+                grey, _MOST_BEHIND, _QUALITY, _BEHIND_APART, mask=255 - near
+            )
+            if behind is not None:
+                self._found = np.concatenate([self._found, behind])
         self._last, self._good_at = self._found, time
         self._first = grey if len(self._found) else None
         self._reference += 1

@@ -30,6 +30,9 @@ _CLICK = 2.0
 _MOST_MISSED = 12.0
 """Root mean square in pixels by which clicks may miss."""
 
+_DOUBTED = 8.0
+"""Error in pixels from which a single click is doubted."""
+
 _BEARING_ERROR = math.radians(25.0)
 """Error of the bearing beyond which a film tells nothing of depth."""
 
@@ -76,10 +79,12 @@ class FoundCamera(NamedTuple):
     camera: Camera
     missed: float
     errors: dict[str, float]
+    doubt: str = ''
+    """The click that misses most, where that is far."""
 
     def __str__(self) -> str:
         errors = ', '.join(f'{name} {value:.2g}' for name, value in self.errors.items())
-        return f'clicks miss by {self.missed:.1f} px; errors: {errors}'
+        return f'clicks miss by {self.missed:.1f} px; errors: {errors}{self.doubt}'
 
 
 def camera_of_clicks(
@@ -124,10 +129,14 @@ def camera_of_clicks(
         bearings = (math.radians(45.0) * np.arange(8)).tolist()
     found = min((fit.from_bearing(each) for each in bearings), key=lambda each: each.cost)
     camera = fit.camera(found.x)
-    missed = float(np.sqrt(np.square(camera.project(points) - image).sum(axis=1).mean()))
+    each_missed = np.linalg.norm(camera.project(points) - image, axis=1)
+    missed = float(np.sqrt(np.square(each_missed).mean()))
+    worst = int(each_missed.argmax())
+    x, y, place = clicks[worst]
+    doubt = f"; check {x:.0f},{y:.0f},{place}, which misses by {each_missed[worst]:.0f} px"
     if not missed < _MOST_MISSED:
         cure = 'check the clicks and their places, and what is told of bearing and distance'
-        what = f'no camera fits the clicks: they miss by {missed:.0f} px'
+        what = f'no camera fits the clicks: they miss by {missed:.0f} px{doubt}'
         raise ParameterError(what, where='camera', cure=cure)
     bearing, distance, height, _, pitch, roll, focal = np.sqrt(
         np.diag(np.linalg.inv(found.jac.T @ found.jac))
@@ -143,7 +152,7 @@ def camera_of_clicks(
         'roll': math.degrees(roll),
         'focal': focal * camera.focal,
     }
-    return FoundCamera(camera, missed, errors)
+    return FoundCamera(camera, missed, errors, doubt if each_missed[worst] > _DOUBTED else '')
 
 
 class _Fit:

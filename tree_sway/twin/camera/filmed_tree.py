@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.run import Outcome
-from tree_sway.twin.camera.limb_points import LimbPoints, matched_points
+from tree_sway.core.tree import ends_of_poses
+from tree_sway.twin.camera.limb_points import LimbPoints, matched_points, points_behind
 from tree_sway.twin.camera.motion_filter import MotionFilter, TICK
 from tree_sway.twin.camera.pinhole import Camera
 from tree_sway.twin.disturbance import crown_slope, disturbance
@@ -50,15 +51,12 @@ _LAW_EVERY = 300
 _UNTOLD = 0.7
 """Standard deviation of the unknown wind of the whole crown over the mean wind [-]."""
 
-_BESIDE_WIND = 0.15
+_LASTS = 0.5
 """
-Variance of the unknown forces where a wind is measured, over that without [-].
+Time in [s] after which an unknown force has decayed to 1/e.
 
-With all of it, the trees of drawn films followed the noise of their points.
+That of a wood which is softer than the model's changes as fast as the tree sways.
 """
-
-_LASTS = 1.5
-"""Time in [s] after which an unknown force has decayed to 1/e: the lean lasts, gusts do not."""
 
 _NEARER = 0.4
 """Share of the way to the estimate that the tree goes in a step."""
@@ -77,6 +75,16 @@ _FEWEST = 6
 
 _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
+
+_SHAKEN = 0.3
+"""Motion in [px] of all that is behind the tree from which the camera shakes."""
+_SHAKEN_IN, _LOOKED = 45, 15
+"""Pictures in which it is looked for, and after which it is looked for again."""
+_REMEMBERED = 0.99
+"""Share of the strongest shake that is left then."""
+
+_FEW = 6.0
+"""Pictures in a period of the first sway below which they are few."""
 
 
 class FilmedMotion(NamedTuple):
@@ -120,7 +128,8 @@ class FilmedTree(ObservedTree):
         self._slopes, self._offset = np.zeros((0, 2, n)), np.zeros((0, 2))
         self._poses = np.zeros((self.tree.n_segments, 7))
         self._seen_at = -np.inf
-        self._begun_at = np.zeros((0, 2))
+        self._begun_at = self._behind_at = np.zeros((0, 2))
+        self._behind = np.zeros(0, dtype=np.int64)
         self.refused = 0
         """Pictures that were too old, out of order, or told too little."""
         self.filter: MotionFilter
@@ -135,9 +144,6 @@ class FilmedTree(ObservedTree):
         whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
         covariance = covariance + whole.T @ whole
         covariance = covariance + _OWN * np.diag(np.diag(covariance))
-        self._has_wind = self.observer.mean_wind > 0.0
-        if self._has_wind:
-            covariance = _BESIDE_WIND * covariance
         unknown = self.observer.unknown
         damping = unknown.all_damping[:n] + found.air_damping
         return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
@@ -208,7 +214,6 @@ class FilmedTree(ObservedTree):
         """Take the law of the present mean wind and of the present tree."""
         measured = self.observer.mean_wind
         speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
-        self._is_outdated |= self._has_wind != (measured > 0.0)
         if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
             self._speed, self._is_outdated = speed, False
             self.filter.set_law(self._law())
@@ -234,22 +239,49 @@ class FilmedTree(ObservedTree):
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
             self.refused += 1
             return
+        self._rate += 0.1 * (1.0 / (time - self._seen_at) - self._rate)
         self._seen_at = time
+        self._note_behind(image[self._behind] - self._behind_at)
         moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
         self._square += float(np.nanmedian(moved))
         self._n_seen += 1
-        self.filter.see(self._slopes, missed)
+        self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
+
+    def _note_behind(self, moved: Floats) -> None:
+        """Note how far points behind the tree are from where they were found, (k, 2)."""
+        moved = moved[np.isfinite(moved).all(axis=1)]
+        if len(moved) < _FEWEST:
+            return
+        shift = np.median(moved, axis=0)
+        self._shifts.append((*shift, np.median(np.abs(moved - shift))))
+        n = len(self._shifts)
+        if n == _SHAKEN_IN and self._n_seen % _LOOKED == 0:
+            rows, at = np.array(self._shifts), np.linspace(-1.0, 1.0, n)
+            # A cloud drifts evenly.
+            left = rows - rows.mean(axis=0) - np.outer(at, at @ rows) / (at @ at)
+            found = float(np.sqrt(np.square(left[:, :2]).sum(axis=1).mean()))
+            self.shake *= _REMEMBERED
+            if found > 2.0 * np.median(rows[:, 2]):
+                self.shake = max(self.shake, found)
 
     def _begin(self, camera: Camera, reference: int, poses: Floats, image: Floats) -> None:
         """Follow the points of another picture, in which the tree has these poses."""
         self._reference = reference
+        self._n_begun += 1
+        self._shifts.clear()
+        self._behind = points_behind(self.tree, poses, camera, image)
+        self._behind_at = image[self._behind]
         found = matched_points(self.tree, poses, camera, image)
         self.points = found
         at = found.at(poses)
         self._begun_at = image[found.row]
         self._offset = self._begun_at - camera.project(at)
-        slopes = found.slopes(self)[:, :, : self._n]
-        self._slopes = camera.slopes(at) @ slopes
+        seen = camera.slopes(at)
+        start, end = ends_of_poses(poses[found.segment], self.tree.length[found.segment])
+        along = np.einsum('pij,pj->pi', seen, end - start)
+        along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+        self._axes = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=1)
+        self._slopes = self._axes @ seen @ found.slopes(self)[:, :, : self._n]
         self.filter.begin(len(found.row))
 
     def _computed(self, time: float) -> Floats:
@@ -269,6 +301,10 @@ class FilmedTree(ObservedTree):
         self._waiting.clear()
         self._square, self._n_seen = 0.0, 0
         self._seen_at, self._reference = -np.inf, -1
+        self._n_begun, self._rate = 0, 0.0
+        self._shifts = deque[tuple[float, float, float]](maxlen=_SHAKEN_IN)
+        self.shake = 0.0
+        """Strongest shake of the camera in the last minute, root mean square [px]."""
         law = self._law()
         self.filter = MotionFilter(law, stationary_covariance(law))
 
@@ -300,7 +336,7 @@ class FilmedTree(ObservedTree):
                     'whether the picture is sharp'
                 )
             return f'the camera moves nothing: {why}'
-        used = int((self.filter.weights > _USED).sum())
+        used = int((self.filter.weights > _USED).any(axis=1).sum())
         told = (
             f'the camera: {n_points} points on the tree, {used} in use at the end, their error '
             f'{self.error:.1f} px; {self.refused} pictures refused'
@@ -309,6 +345,15 @@ class FilmedTree(ObservedTree):
             told += f'; no picture in the last {self.now - self._seen_at:.1f} s'
         if used < 0.25 * n_points:
             told += '; most points are lost: was the camera moved, or did the light change?'
+        if self._n_begun > 1:
+            told += '; points were found anew: check that the camera stands where it stood'
+        if self.shake > _SHAKEN:
+            told += (
+                f'; what is behind the tree moves by {self.shake:.1f} px: the camera shakes, and '
+                'that is taken for sway: use a tripod'
+            )
+        if self._rate < _FEW * float(self.frequencies(1)[0]):
+            told += f'; {self._rate:.0f} pictures a second are few: its sway is told roughly'
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 _APART = 0.03
 """Distance of two places along a ray, over the height of the tree, from which they are two."""
 
+_BEHIND = 20.0
+"""Gap in pixels from which a point is not of the tree."""
+
 
 class LimbPoints(NamedTuple):
     """
@@ -88,14 +91,11 @@ def matched_points(
 
     """
     start, end = ends_of_poses(poses, tree.length)
-    first, last, width, depth = drawn_wood(camera, start, end, tree.base_diameter)
-    along = last - first
-    square = np.maximum(np.square(along).sum(axis=1), 1e-12)
+    wood = drawn_wood(camera, start, end, tree.base_diameter)
+    depth = wood.depth
     apart = _APART * float(np.ptp(end[:, 2]))
     found = []
-    for row, point in enumerate(image):
-        share = np.clip(((point - first) * along).sum(axis=1) / square, 0.0, 1.0)
-        gap = np.linalg.norm(first + share[:, None] * along - point, axis=1) - 0.5 * width
+    for row, (share, gap) in enumerate(zip(*_nearest(wood, image), strict=True)):
         near = np.flatnonzero(gap < within)
         if not len(near):
             continue
@@ -112,3 +112,19 @@ def matched_points(
         np.array(segments, dtype=np.int64), np.array(away, dtype=float),
         np.array(rows, dtype=np.int64),
     )  # fmt: skip
+
+
+def points_behind(tree: Tree, poses: Floats, camera: Camera, image: Floats) -> Ints:
+    """Find points (k, 2) of a picture that are far from all wood: their numbers."""
+    wood = drawn_wood(camera, *ends_of_poses(poses, tree.length), tree.base_diameter)
+    return np.flatnonzero(_nearest(wood, image)[1].min(axis=1) > _BEHIND)
+
+
+def _nearest(wood: DrawnWood, image: Floats) -> tuple[Floats, Floats]:
+    """Share of each segment that is nearest to each point, and the gap in pixels, (k, s)."""
+    along = wood.last - wood.first
+    square = np.maximum(np.square(along).sum(axis=1), 1e-12)
+    apart = image[:, None] - wood.first
+    share = np.clip((apart * along).sum(axis=2) / square, 0.0, 1.0)
+    gap = np.linalg.norm(apart - share[..., None] * along, axis=2) - 0.5 * wood.width
+    return share, gap

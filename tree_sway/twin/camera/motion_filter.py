@@ -8,9 +8,14 @@ coordinate. The covariance is kept, not steady, for points come and leave. A pic
 numbers than there are coordinates, so they are joined to the information on these: with rows H,
 weights W and missed r, ``H' W H`` and ``H' W r``.
 
-Each point has an error of its own, which follows its residual; beyond that its weight in a picture
-falls with its residual as Geman & McClure's (1987). So a fluttering leaf, a shadow or a bird move
-nothing.
+A limb is followed to 0.05 px across it, and to 0.3 px along it, where its edges tell nothing. So
+each point has two errors of its own, along its limb and across it, which follow its residuals;
+beyond that its weight in a picture falls with its residual as Geman & McClure's (1987), along and
+across. So a fluttering leaf, a shadow or a bird move nothing.
+
+How strong the unknown forces are over those of the law follows what they are found to be
+(Dempster, Laird & Rubin 1977, Journal of the Royal Statistical Society B 39, 1-38): their squares
+and what remains unknown of them.
 """
 
 from __future__ import annotations
@@ -25,7 +30,7 @@ TICK = 1.0 / 240.0
 """Grid of the times of pictures in [s], and the step of the law."""
 
 _MOST_TICKS = 60
-_NOISE = 0.15
+_NOISE = 0.03
 """Least error of a point in pixels."""
 _FIRST_NOISE = 0.5
 _JOINED = 4.0
@@ -38,6 +43,9 @@ _FOLLOWED = 0.02
 _OUTLIER = 3.0
 """Residual over its expected size at which the weight of a point is a quarter."""
 _ROUNDS = 2
+_STRENGTHENED = 0.01
+"""Share of a picture in the strength of the unknown forces."""
+_STRONGEST = 16.0
 
 
 class MotionFilter:
@@ -59,17 +67,20 @@ class MotionFilter:
         """Displacement, rate and unknown force of each coordinate, (3, n)."""
         self.covariance = covariance.copy()
         """Covariance of the state, (3 n, 3 n)."""
-        self.errors = np.zeros(0)
-        """Error of each point in pixels, (p,)."""
+        self.errors = np.zeros((0, 2))
+        """Error of each point in pixels along its limb and across it, (p, 2)."""
         self.residuals = np.zeros((0, 2))
-        """How far each point was from its place after the last picture, in pixels, (p, 2)."""
-        self.weights = np.zeros(0)
-        """Weight of each point in the last picture, 0 to 1, (p,)."""
+        """How far each was from its place after the last picture, so too, in pixels, (p, 2)."""
+        self.weights = np.zeros((0, 2))
+        """Weights of each point in the last picture, so too, 0 to 1, (p, 2)."""
+        self.strength = 1.0
+        """Variance of the unknown forces over that of the law [-]."""
         self.set_law(law)
 
     def set_law(self, law: SwayLaw) -> None:
         """Go on by another law."""
         self._law = law
+        self._usual = np.diag(law.driven) / (1.0 - np.square(law.step[2, 2]))
         self._ahead: dict[int, tuple[Floats, Floats]] = {}
 
     def _several(self, ticks: int) -> tuple[Floats, Floats]:
@@ -90,7 +101,7 @@ class MotionFilter:
             step, driven = self._several(some)
             self.state = np.einsum('ijn,jn->in', step, self.state)
             n = self.count
-            blocks = _moved(step, self.covariance.reshape(3, n, 3, n)) + driven
+            blocks = _moved(step, self.covariance.reshape(3, n, 3, n)) + self.strength * driven
             self.covariance = blocks.reshape(3 * n, 3 * n)
             ticks -= some
 
@@ -105,8 +116,8 @@ class MotionFilter:
 
     def begin(self, n_points: int) -> None:
         """Follow other points."""
-        self.errors = np.full(n_points, _FIRST_NOISE)
-        self.weights = np.zeros(n_points)
+        self.errors = np.full((n_points, 2), _FIRST_NOISE)
+        self.weights = np.zeros((n_points, 2))
         self.residuals = np.full((n_points, 2), np.nan)
 
     def see(self, slopes: Floats, missed: Floats) -> None:
@@ -116,25 +127,25 @@ class MotionFilter:
         Parameters
         ----------
         slopes
-            Motion of each point in pixels per unit of each coordinate, (p, 2, n).
+            Motion of each point along its limb and across it, in pixels per unit of each
+            coordinate, (p, 2, n).
         missed
-            Seen places less expected ones in pixels, (p, 2); not a number where it is not seen.
+            Seen places less expected ones, so too, in pixels, (p, 2); not a number where it is not
+            seen.
 
         """
         n = self.count
         seen = np.isfinite(missed).all(axis=1)
         rows = slopes[seen].reshape(-1, n)
         apart = missed[seen].ravel()
-        expected = np.square(self.errors[seen])
+        expected = np.square(self.errors[seen]).ravel()
         with one_thread():
             moves = self.covariance[:n, :n]
-            spread = np.einsum('ij,ij->i', rows @ moves, rows).reshape(-1, 2).sum(axis=1)
-            left, allowed = apart, expected + spread
+            left, allowed = apart, expected + np.einsum('ij,ij->i', rows @ moves, rows)
             for _ in range(1 + _ROUNDS):
-                squares = np.square(left).reshape(-1, 2).sum(axis=1)
+                squares = np.square(left)
                 shares = 1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed))
-                weights = np.repeat(shares / (_JOINED * expected), 2)
-                weighted = rows * weights[:, None]
+                weighted = rows * (shares / (_JOINED * expected))[:, None]
                 told, towards = rows.T @ weighted, weighted.T @ apart
                 inner = np.linalg.solve(np.eye(n) + told @ moves, np.column_stack([towards, told]))
                 left, allowed = apart - rows @ (moves @ inner[:, 0]), 2.0 * expected
@@ -142,13 +153,16 @@ class MotionFilter:
             self.state += (across @ inner[:, 0]).reshape(3, n)
             self.covariance -= across @ inner[:, 1:] @ across.T
         self.covariance = 0.5 * (self.covariance + self.covariance.T)
+        forces = np.square(self.state[2]) + np.diag(self.covariance)[2 * n :]
+        self.strength += _STRENGTHENED * (float((forces / self._usual).mean()) - self.strength)
+        self.strength = min(self.strength, _STRONGEST)
         self.weights[:] = 0.0
         self.residuals[:] = np.nan
-        self.weights[seen], self.residuals[seen] = shares, left.reshape(-1, 2)
+        self.weights[seen], self.residuals[seen] = shares.reshape(-1, 2), left.reshape(-1, 2)
         # A far outlier does not make a point's error its own.
-        residual = np.minimum(0.5 * squares, 100.0 * expected)
+        residual = np.minimum(squares, 100.0 * expected)
         expected += _FOLLOWED * (residual - expected)
-        self.errors[seen] = np.maximum(np.sqrt(expected), _NOISE)
+        self.errors[seen] = np.maximum(np.sqrt(expected), _NOISE).reshape(-1, 2)
 
 
 def _moved(step: Floats, blocks: Floats) -> Floats:
