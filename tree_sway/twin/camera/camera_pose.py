@@ -133,7 +133,7 @@ def camera_of_clicks(
     missed = float(np.sqrt(np.square(each_missed).mean()))
     worst = int(each_missed.argmax())
     x, y, place = clicks[worst]
-    doubt = f"; check {x:.0f},{y:.0f},{place}, which misses by {each_missed[worst]:.0f} px"
+    doubt = f'; check {x:.0f},{y:.0f},{place}, which misses by {each_missed[worst]:.0f} px'
     if not missed < _MOST_MISSED:
         cure = 'check the clicks and their places, and what is told of bearing and distance'
         what = f'no camera fits the clicks: they miss by {missed:.0f} px{doubt}'

@@ -130,6 +130,8 @@ class FilmedTree(ObservedTree):
         self._seen_at = -np.inf
         self._begun_at = self._behind_at = np.zeros((0, 2))
         self._behind = np.zeros(0, dtype=np.int64)
+        self.shake = 0.0
+        """Strongest shake of the camera in the last minute, root mean square [px]."""
         self.refused = 0
         """Pictures that were too old, out of order, or told too little."""
         self.filter: MotionFilter
@@ -304,7 +306,6 @@ class FilmedTree(ObservedTree):
         self._n_begun, self._rate = 0, 0.0
         self._shifts = deque[tuple[float, float, float]](maxlen=_SHAKEN_IN)
         self.shake = 0.0
-        """Strongest shake of the camera in the last minute, root mean square [px]."""
         law = self._law()
         self.filter = MotionFilter(law, stationary_covariance(law))
 
