@@ -155,6 +155,24 @@ def test_a_mounting_that_is_less_sure_does_not_replace_one(
     assert track.alignment is other
 
 
+@pytest.mark.parametrize(
+    ('angle', 'minutes', 'is_taken'), [(0.9, 5, True), (0.5, 5, False), (0.9, 11, False)]
+)
+def test_a_mounting_that_all_motion_and_more_contradicts_is_replaced(
+    angle: float, minutes: int, is_taken: bool
+) -> None:
+    """One of ten minutes after it was forgotten is not of more motion than it."""
+    track = track_of(readings(1)[0])
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1), azimuth_error=0.1)
+    track.take(FoundMounting(known, np.zeros(9)))
+    track.native.count = round(minutes * 60.0 / DT)
+    other = replace(known.turned(angle), azimuth_error=0.2)
+    track.take(FoundMounting(other, np.zeros(9)))
+    assert track.alignment is (other if is_taken else known)
+
+
 def test_a_sensor_that_disagrees_is_refused_until_it_agrees() -> None:
     of, *_ = readings(1)
     track = track_of(of)
