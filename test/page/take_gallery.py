@@ -182,9 +182,8 @@ async def look(url: str, view: View, path: Path) -> None:
     width, height = view.size
     async with Browser() as browser:
         address = f'{url}?quality=full' if view.is_full else url
-        await browser.open(
-            address, width=width, height=height, dark=view.is_dark, scale=COARSE if view.is_full else 1
-        )
+        scale = COARSE if view.is_full else 1.0
+        await browser.open(address, width=width, height=height, dark=view.is_dark, scale=scale)
         await browser.until('window.treeSway', DRAWN)
         if view.is_full:
             await browser.run('treeSway.scene.leavesShown = false')

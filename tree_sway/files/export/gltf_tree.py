@@ -211,9 +211,7 @@ def _primitive(
             **attributes,
             'TEXCOORD_0': _add_floats(document, mesh.texture),
         },
-        'indices': document.add_array(
-            triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
-        ),
+        'indices': document.add_array(triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER),
         'material': document.add(
             'materials',
             name=material,
