@@ -279,6 +279,7 @@ typedef struct sway_correction {
   const double *stiffness; /* [1/s^2] (n) */
   const double *wanted; /* trust of new gains (n) */
   double *trust; /* share of the correction that is applied (n), written */
+  const double *leaning; /* share of its lean that is applied at most (n) */
   double *moved; /* displacement and rate of the correction (2, n), written */
   double *energies; /* of the motion with and without it, both twice (2), written */
 } sway_correction;

@@ -268,7 +268,7 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
     }
     const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
     const double lean = ahead[8 * n + i] * calm[2 * n + i] / stiffness;
-    moved[i] += (most - trust[i]) * lean;
+    moved[i] += fmax(most * correction->leaning[i] - trust[i], 0.0) * lean;
     const double at = x + moved[i], going = v + moving[i];
     whole += stiffness * at * at + going * going;
     own += stiffness * x * x + v * v;

@@ -76,17 +76,17 @@ def test_it_moves_by_its_law_and_is_corrected_by_limited_innovations(gains: Stea
 def test_the_calm_motion_is_carried_to_the_present(gains: SteadyFilter, late: int) -> None:
     rng = np.random.default_rng(14)
     ahead, calm = gains.law.ahead(late), rng.normal(size=(3, M))
-    wanted, before, stiffness = rng.random((3, M))
+    wanted, before, stiffness, leaning = rng.random((4, M))
     swing = rng.normal(size=(2, M))
     trust = before + 0.3 * (wanted - before)
     by_matrix = np.linalg.matrix_power(gains.law.matrix, late) @ calm.ravel()
     eta, rate, force = by_matrix.reshape(3, M)
-    lean = (trust.max() - trust) * force / stiffness
+    lean = np.maximum(trust.max() * leaning - trust, 0.0) * force / stiffness
     expected = np.stack([trust * eta + lean, trust * rate])
     moved, energies = np.zeros((2, M)), np.zeros(2)
     native = NativeCorrection(
-        coordinates=M, stiffness=stiffness, wanted=wanted, trust=before, moved=moved,
-        energies=energies,
+        coordinates=M, stiffness=stiffness, wanted=wanted, trust=before,
+        leaning=leaning, moved=moved, energies=energies,
     )  # fmt: skip
     arrays = ahead, calm, swing[0], swing[1]
     ahead_at, calm_at, *swing_at = map(address, arrays)

@@ -7,7 +7,8 @@ A sensor on the stem tells about a hanging twig only what both have in common by
 gusts, and of all that the filter knows, that law is known least for fast gusts: slow ones hold a
 whole crown. The sway of a coordinate is corrected where the sensors take away enough of its
 variance even if each limb meets gusts of its own; its lean, force over stiffness, where they do so
-of any coordinate. Elsewhere the tree sways in the wind alone.
+of any coordinate, but that of a hanging twig: its wind damps it so strongly that it streams, and
+leans less than its force tells. Elsewhere the tree sways in the wind alone.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ Shares of the variance of a coordinate that the sensors take away below and abov
 correction is not applied, and applied whole.
 """
 
+_SWAYS, _STREAMS = 0.25, 0.5
+"""Damping ratios in the mean wind below and above which a coordinate leans, and streams [-]."""
+
 _LATER = 1.4
 """How much more of its motion there is when the strength of the gusts is found again."""
 
@@ -47,13 +51,14 @@ class Gains(NamedTuple):
     Gains for some sensors.
 
     ``used`` are their numbers, ``noise`` that of their measurements, (p,), and ``trust`` the share
-    of the correction of each coordinate to apply, (n,).
+    of the correction of each coordinate to apply, ``leaning`` that of its lean, (n,).
     """
 
     used: tuple[int, ...]
     noise: Floats
     filter: SteadyFilter
     trust: Floats
+    leaning: Floats
 
 
 class GainDesign:
@@ -130,10 +135,16 @@ class GainDesign:
             unknown.dt,
         )
 
+        damping_ratio = 0.5 * unknown.damped / np.sqrt(unknown.stiffness)
+        leaning = np.clip((_STREAMS - damping_ratio) / (_STREAMS - _SWAYS), 0.0, 1.0)
+
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            return _gains(used, own, others, sensed, noise)
+            found = steady_filter(own, sensed, NOISE * noise)
+            told = told_shares(found, others, NOISE * noise)
+            beyond_little = (told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
+            return Gains(used, noise, found, np.clip(beyond_little, 0.0, 1.0), leaning)
 
         return LaterWork(found_later, _DUE)
 
@@ -147,12 +158,3 @@ class GainDesign:
         uses = list(track.uses)
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
 
-
-def _gains(
-    used: tuple[int, ...], law: SwayLaw, apart: SwayLaw, sensed: Floats, noise: Floats
-) -> Gains:
-    """Find the gains of some sensors, judged by gusts of each limb."""
-    found = steady_filter(law, sensed, NOISE * noise)
-    told = told_shares(found, apart, NOISE * noise)
-    trust = np.clip((told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE), 0.0, 1.0)
-    return Gains(used, noise, found, trust)

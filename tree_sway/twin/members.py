@@ -320,7 +320,8 @@ class Members:
         ahead = beyond[: self._count]
         trust = self._observer.trust[:, None]
         lean = estimate[2] / self._observer.stiffness[:, None]
-        told = trust * estimate[0] + (trust.max() - trust) * lean
+        leaning = trust.max() * self._observer.leaning[:, None]
+        told = trust * estimate[0] + np.maximum(leaning - trust, 0.0) * lean
         self.errors = ahead - told
 
     def _beyond(self, eta: Floats, rate: Floats, force: Floats) -> Floats:

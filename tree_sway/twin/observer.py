@@ -105,6 +105,8 @@ class Observer:
         self.trust = np.zeros(n)
         """Share of the correction of each coordinate that is applied [-], (count,)."""
         self._wanted_trust = np.zeros(n)
+        self.leaning = np.zeros(n)
+        """Share of the lean of each that is applied where a sensor tells enough [-], (count,)."""
         self.noise = np.zeros(0)
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, tuple[Floats, int]] = {}
@@ -129,7 +131,8 @@ class Observer:
         """Let the native core correct the present model."""
         self._native = NativeCorrection(
             coordinates=self.count, stiffness=self.stiffness,
-            wanted=self._wanted_trust, trust=self.trust, moved=self._moved, energies=self.energies,
+            wanted=self._wanted_trust, trust=self.trust, leaning=self.leaning,
+            moved=self._moved, energies=self.energies,
         )  # fmt: skip
 
     @property
@@ -214,6 +217,7 @@ class Observer:
         rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
         self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
         self.noise, self._wanted_trust[:] = gains.noise, gains.trust
+        self.leaning[:] = gains.leaning
         for k in gains.used:
             self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}

@@ -89,7 +89,7 @@ class NativeFilter(Structure):
 class NativeCorrection(Structure):
     """``sway_correction``."""
 
-    _fields_ = _fields('coordinates stiffness wanted trust moved energies')
+    _fields_ = _fields('coordinates stiffness wanted trust leaning moved energies')
 
 
 class NativeDragged(Structure):
