@@ -196,7 +196,7 @@ def test_a_limb_of_more_modes_than_the_filter_is_no_disagreement_and_a_later_fau
     of, *_ = readings(1)
     track, rng = track_of(of), np.random.default_rng(5)
     track.native.is_mounted = track.native.in_use = 1
-    for size in 8.0 * rng.gamma(2.0, size=3600):
+    for size in 20.0 * rng.gamma(2.0, size=3600):
         track.judge(size)
     assert track.in_use
     for _ in range(180):
