@@ -40,12 +40,12 @@ constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN =
 // These are over what is usual of this sensor, found while it is in use (Mehra 1972, IEEE Transactions
 // on Automatic Control 17, 693-698): a limb has more modes than the filter, and its rate is mostly
 // theirs. A sensor begins with the most that right ones have, and is followed up and down with time
-// constants [s]; up to several times of before, so that a fault is none that is usual soon.
-constexpr double MOST_USUAL = 60.0, USUAL_UP = 60.0, USUAL_DOWN = 10.0, UP_TO = 6.0;
+// constants [s].
+constexpr double MOST_USUAL = 6.0, USUAL_UP = 60.0, USUAL_DOWN = 5.0;
 
-// Largest square that counts, and over what is usual if that is more: one spike in a hundred samples
-// is no reason to disagree, and after a knock a sensor is to be followed again in half a minute.
-constexpr double LARGEST = 400.0, LARGEST_OVER = 25.0;
+// Largest square that counts: one spike in a hundred samples is no reason to disagree, and after a
+// knock a sensor is to be followed again in half a minute.
+constexpr double LARGEST = 400.0;
 
 // to += factor * values, whose loop has no order: sums run over rows, not along them.
 void add_row(int64_t count, double factor, const double *values, double *__restrict to) {
@@ -197,8 +197,7 @@ int64_t sway_read_sensors(sway_readings *readings, int64_t now, int64_t done, do
 void sway_judge(sway_sensor *judged, double size) {
   sway_sensor &sensor = *judged;
   sensor.usual = fmin(sensor.usual, MOST_USUAL);
-  const double most = fmax(LARGEST, LARGEST_OVER * sensor.usual);
-  sensor.excess += sensor.dt / AVERAGED * (fmin(size, most) - sensor.excess);
+  sensor.excess += sensor.dt / AVERAGED * (fmin(size, LARGEST) - sensor.excess);
   if (sensor.is_refused) {
     sensor.agreed = sensor.excess < AGREES * sensor.usual ? sensor.agreed + sensor.dt : 0.0;
     if (sensor.agreed > TRUSTED_AGAIN) sensor.is_refused = 0;
@@ -208,8 +207,8 @@ void sway_judge(sway_sensor *judged, double size) {
     sensor.agreed = 0.0;
     sensor.disagreements++;
   } else {
-    const double usual = fmin(fmax(sensor.excess, 1.0), UP_TO * sensor.usual);
-    const double more = fmin(usual, MOST_USUAL) - sensor.usual;
+    const double usual = fmin(fmax(sensor.excess, 1.0), MOST_USUAL);
+    const double more = usual - sensor.usual;
     sensor.usual += sensor.dt / (more > 0.0 ? USUAL_UP : USUAL_DOWN) * more;
   }
   if (!sensor.is_refused && sensor.is_mounted) sensor.in_use = 1;
