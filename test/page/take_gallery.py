@@ -58,6 +58,7 @@ _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.08))
 _MAY = 'treeSway.scene.flower(5.5);'
+_TRACED = 'treeSway.traces.wind._shown.points.length > 3'
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -77,6 +78,7 @@ class View:
 
 _BARE = """
 for (const each of document.querySelectorAll('.card, #tools')) each.style.display = 'none';
+document.querySelector('main').style.gridArea = '1 / 1 / -1 / -1';
 treeSway.scene.hasArrow = treeSway.scene.hasPerson = false;
 treeSway.scene.camera.home();
 """
@@ -202,6 +204,8 @@ async def look(url: str, view: View, path: Path) -> None:
             )  # fmt: skip
         drawn = await browser.run('treeSway.scene._frame')
         await browser.until(f'treeSway.scene._frame > {drawn} + 2', DRAWN)
+        if view.has_cards:
+            await browser.until(f'{live} && {_TRACED}', DRAWN)
         if not view.is_full:
             await settled(browser)
         if view.is_film:
