@@ -44,7 +44,7 @@ const [WEEPS, CURTAIN] = [0.8, 14];
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the twigs below are at
  * least, and the share of these that bear one. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, CANDLES] = [1.1, 0.75, 0.6, 0.18];
+const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, CANDLES] = [1.3, 0.75, 0.6, 0.18];
 /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
 const [BROWSED, LEAST_BROWSED] = [2.2, 0.25];
 /** Numbers per vertex of a card. */
@@ -114,12 +114,12 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
         values.push(row, ...inFrame(own, place, shoot.size, centre), ...inFrame(own, swing, shoot.size));
         values.push(...inFrame(own, normal, 1), ...light, ...flutter, open, tint, leaves * u, v);
       }
-      if (part || leaves === 1 || open < CANDLE_OPEN || random() > CANDLES) continue;
-      // A candle stands upright at the end of its twig, whatever the direction of that.
+      if (part || card + onTwig > count || leaves === 1 || open < CANDLE_OPEN || random() > CANDLES) continue;
+      // A candle stands upright at the end of a twig that has all its leaves.
       for (const quad of [0, 4]) faces.push(facesFrom(values.length / PER_VERTEX + quad, 4));
       const foot = end.map((each, c) => each - origin[c]);
       for (const { place, normal, u, v } of candle) {
-        values.push(row, ...turned(back, place.map((each, c) => (0.5 + deep) * each + foot[c])), ...ORIGIN);
+        values.push(row, ...turned(back, place.map((each, c) => each + foot[c])), ...ORIGIN);
         values.push(...turned(back, normal), ...light, ...flutter, open, 1, leaves + (1 - leaves) * v, u);
       }
     }
