@@ -58,7 +58,7 @@ _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.08))
 _MAY = 'treeSway.scene.flower(5.5);'
-_TRACED = 'treeSway.traces.wind._shown.points.length > 3'
+_TRACED = 'treeSway.traces.wind._shown.points.length > 1'
 _AUTUMN = "document.getElementById('season').click();"
 
 
