@@ -179,21 +179,21 @@ def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():
     arrived = []
     node, run = IntakeNode(), Run(twin, 60.0)
     intake = intake_of(twin, node, run, lambda: arrived.append(True))
-    assert list(intake.lacking(BEGIN)) == [('tree/imu', UNHEARD)]
+    assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', UNHEARD)]
     node.receive(imu(BEGIN * 1e-9), {})
     assert arrived
     # Samples within half a period about the time are averaged.
-    assert list(intake.lacking(BEGIN)) == [('tree/imu', BEGIN)]
-    assert not list(intake.lacking(BEGIN - PERIOD))
+    assert list(intake.lacking(BEGIN, 0.0)) == [('tree/imu', BEGIN)]
+    assert not list(intake.lacking(BEGIN, 0.01))
     node.receive(imu((BEGIN + PERIOD) * 1e-9), {})
-    assert not list(intake.lacking(BEGIN))
-    assert list(intake.lacking(BEGIN + PERIOD)) == [('tree/imu', BEGIN + PERIOD)]
+    assert not list(intake.lacking(BEGIN, 0.0))
+    assert list(intake.lacking(BEGIN + PERIOD, 0.0)) == [('tree/imu', BEGIN + PERIOD)]
 
 
 def test_a_topic_that_nobody_publishes_is_not_waited_for():
     twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
     intake = intake_of(twin, IntakeNode(publishers=0))
-    assert not list(intake.lacking(BEGIN))
+    assert not list(intake.lacking(BEGIN, 0.0))
 
 
 def test_a_status_has_what_was_learned(monkeypatch):
@@ -258,7 +258,7 @@ def test_a_file_to_learn_without_a_sensor_is_refused(compose, tmp_path, tree_fil
 
 
 def test_messages_move_a_tree_as_a_recording_does():
-    """`simulate` and the steps of the solver, where each knows the wind, give one motion."""
+    """`simulate` and the steps of the solver, which follow the wind later, give one motion."""
     tree, at = builtin_tree('goldcrest'), 'segment:3'
     softer = replace(species_named('goldcrest'), modulus=6.0e9)
     rng, dt = np.random.default_rng(21), PERIOD * 1e-9
@@ -276,7 +276,8 @@ def test_messages_move_a_tree_as_a_recording_does():
     twin = ObservedTree(tree, at={'tree/imu': at}, rate=60.0)
     tips = []
     run = Run(
-        twin, 60.0, intake=WindIntake.of_velocities(), starting=lambda end, _: twin.set_time(end),
+        twin, 60.0, intake=WindIntake.of_velocities(),
+        starting=lambda end, late: twin.set_time(end - late),  # as late as the wind
         stepped=lambda end, mean: tips.append(twin.tip_displacement.copy()),
     )  # fmt: skip
     node = IntakeNode()
@@ -289,19 +290,17 @@ def test_messages_move_a_tree_as_a_recording_does():
         ):
             vector.x, vector.y, vector.z = values.tolist()
         node.receive(message, {})
-    for k in range(len(wind)):
-        if k % 6 == 0 and k + 6 < len(wind):  # as much earlier as its samples are apart
-            soon = [k + 6] if k else [0, 6]
-            for each in soon:
-                stamp = BEGIN + each * PERIOD
-                run.offer(stamp, tuple(wind[each].tolist()), stamp)
-        run.advance(BEGIN + k * PERIOD, delay=-6 * dt)
+    for k, each in enumerate(wind.tolist()):
+        if k % 6 == 0:
+            run.offer(BEGIN + k * PERIOD, tuple(each), BEGIN + k * PERIOD)
+        run.advance(BEGIN + k * PERIOD, delay=dt)
     assert twin.observer.is_active
     later = slice(37 * 60, len(known.tips) - 12)
     wanted = known.tips[later, 0]
     found = np.array(tips)
-    # A first step at the first stamp.
-    wrong = found[later.start + 1 : later.stop + 1] - wanted
+    # A period of the wind of six steps, a delay of one, and a first step at the first stamp.
+    late = 6 + 1 + 1
+    wrong = found[later.start + late : later.stop + late] - wanted
     assert np.std(wrong, axis=0).max() < 0.01 * np.std(wanted, axis=0).max()
 
 

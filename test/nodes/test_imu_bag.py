@@ -26,6 +26,7 @@ from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
 from tree_sway.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.simulation.rig import PlacedMotion, simulate  # noqa: E402
+from tree_sway.twin.late_wind import LateWind  # noqa: E402
 from tree_sway.twin.sensor_place import place_on  # noqa: E402
 from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
 from tree_sway_ros.wire.cdr import poses_of, stamp_of  # noqa: E402
@@ -40,6 +41,8 @@ PERIOD = 16_666_667
 DT, SECONDS = PERIOD * 1e-9, 34
 DELAY = 0.5
 """Delay of the wind in [s]: samples are there before, also on a busy machine."""
+LATE = 0.05
+"""Period of the wind in [s], after which the next sample of it is known."""
 START = 102_000_000_000 * PERIOD
 """End of a step of the solver in [ns]."""
 TREE = builtin_tree('goldcrest')
@@ -96,18 +99,22 @@ def error_at(lag: float, at: Floats, found: Floats, known: Floats) -> float:
     ids=['on the steps', 'between the steps'],
 )
 def test_player_and_solver_give_what_simulate_gives(
-    compose: Any, observer: Any, tmp_path: Path, motion_off: int, wind_off: int, most: float
-) -> None:
+    compose: Any, observer: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+    motion_off: int, wind_off: int, most: float,
+) -> None:  # fmt: skip
     bag = str(tmp_path / 'bag')
     write_bag(Path(bag), motion_off=motion_off, wind_off=wind_off)
     epoch = START + motion_off
     wind, motion = read_wind(bag), read_imu_bag(Path(bag))
-    placed = PlacedMotion(
-        'tree/imu', AT, motion.times_after(wind.epoch), motion.acceleration, motion.rate
-    )
-    followed, alone = (
-        simulate(TREE, wind, motion=sensors).tips[:, 0] for sensors in ([placed], [])
-    )
+    # Where motion is known, the wind of a period ago is.
+    times = motion.times_after(wind.epoch) - LATE
+    placed = PlacedMotion('tree/imu', AT, times, motion.acceleration, motion.rate)
+    with monkeypatch.context() as patch:
+        told = property(lambda wind: LATE, lambda wind, late: None)
+        patch.setattr(LateWind, 'known_late', told, raising=False)
+        followed, alone = (
+            simulate(TREE, wind, motion=sensors).tips[:, 0] for sensors in ([placed], [])
+        )
     frames = observer.listen(SEGMENT_POSES, raw=True, depth=4000)
     nodes = compose(
         player={
@@ -136,6 +143,6 @@ def test_player_and_solver_give_what_simulate_gives(
     lag = float(lags[int(np.argmin(errors))])
     print(f'error {min(errors):.4f} at {lag:.3f} s; {error_at(lag, at, found, alone):.2f} alone')
     # The wind acts after its delay and a period of its own.
-    assert lag == pytest.approx(DELAY + 0.05, abs=2.5 * DT)
+    assert lag == pytest.approx(DELAY + LATE, abs=2.5 * DT)
     assert min(errors) < most
     assert error_at(lag, at, found, alone) > 0.2

@@ -24,7 +24,7 @@ from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
-from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, SwayLaw, told_shares
+from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
 from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
 
 NOISE = 1.0

@@ -64,11 +64,11 @@ class MotionAnnex(ImuIntake):
             assert isinstance(self.twin, FilmedTree)
             self._camera.begin(self.twin, run, arrived)
 
-    def lacking(self, end: int) -> Iterator[tuple[str, int]]:
+    def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
         """Tell which sensors have not yet sent what a step reads of them."""
-        yield from super().lacking(end)
+        yield from super().lacking(end, delay)
         if self._camera is not None:
-            yield from self._camera.lacking(end)
+            yield from self._camera.lacking(end, delay)
 
     def statuses(self) -> list[Status]:
         """Report each sensor and the camera."""

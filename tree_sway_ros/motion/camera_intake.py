@@ -85,9 +85,9 @@ class CameraIntake:
         self._twin.camera = self._view.camera
         self._twin.film(*seen)
 
-    def lacking(self, end: int) -> Iterator[tuple[str, int]]:
+    def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
         """Tell whether the picture that a step reads has yet to come."""
-        if self._followed.lacks(end):
+        if self._followed.lacks(end - round(1e9 * delay)):
             yield self.topic, self._followed.newest
 
     def status(self) -> Status:

@@ -78,10 +78,10 @@ class ImuIntake(SolverAnnex):
 
         return receive
 
-    def lacking(self, end: int) -> Iterator[tuple[str, int]]:
+    def lacking(self, end: int, delay: float) -> Iterator[tuple[str, int]]:
         """Tell which sensors have not yet sent what a step reads of them."""
         # A step averages the samples within half a period about its time.
-        read = end + self._run.period // 2
+        read = end - round(1e9 * delay) + self._run.period // 2
         for topic, followed in self._followed.items():
             if followed.lacks(read):
                 yield topic, followed.newest

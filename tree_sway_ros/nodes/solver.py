@@ -190,19 +190,19 @@ class SolverNode(TreeSwayNode):
         self._state.publish(index, now, self._run)
 
     def _starting(self, end: float, late: float) -> None:
-        """Prepare annexes for a step by its end, and by how much its wind is late [s]."""
+        """Prepare annexes for a step, as `SolverAnnex.before_step`."""
         for annex in self._annexes:
             annex.before_step(end, late)
 
     def _lacking(self, to: int) -> Iterator[tuple[str, int]]:
         """Tell which topics have yet to send what a step reads, and their newest stamps [ns]."""
-        newest = self._run.newest
+        delay, newest = self.values['wind_delay'], self._run.newest
         if newest is None:
             yield self._topic, UNHEARD
-        elif self._run.lacks_wind(to, delay=self.values['wind_delay']):
+        elif self._run.lacks_wind(to, delay=delay):
             yield self._topic, newest
         for annex in self._annexes:
-            yield from annex.lacking(to)
+            yield from annex.lacking(to, delay)
 
     def _statuses(self) -> list[Status]:
         wind = self.publishers_of(self._topic, 'geometry_msgs/Vector3Stamped')

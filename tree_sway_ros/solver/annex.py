@@ -50,9 +50,13 @@ class SolverAnnex:
         """
 
     def before_step(self, end: float, late: float) -> None:
-        """Prepare for a step by its end, and by how much its wind is late [s], in its thread."""
+        """
+        Prepare for a step, in its thread.
 
-    def lacking(self, end: int) -> Iterable[tuple[str, int]]:
+        It has an end, less the delay of wind and sensors, and its wind is late by a time [s].
+        """
+
+    def lacking(self, end: int, delay: float) -> Iterable[tuple[str, int]]:
         """
         Tell which topics have not yet sent what a step of a replay reads of them.
 
@@ -60,6 +64,8 @@ class SolverAnnex:
         ----------
         end
             End of the step in [ns].
+        delay
+            Delay of wind and sensors in [s], as for `Run.advance`.
 
         Yields
         ------

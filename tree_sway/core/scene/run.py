@@ -65,7 +65,8 @@ class Run:
     stepped
         Function called after each step with its end [ns] and its mean wind [m/s], (3,).
     starting
-        Function called before each step with its end and by how much its wind is late, both [s].
+        Function called before each step with its end, less the delay that was asked for, and by
+        how much its wind is later than that, both [s].
     timer
         Clock in [s] to measure the cost of a step; None to never join steps.
 
@@ -287,8 +288,8 @@ class Run:
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
             # A sample acts a period later, when the next is known.
-            behind = delay + self._wind.lateness + (self._wind.period or 0.0)
-            self._starting(end * 1e-9, behind)
+            behind = self._wind.lateness + (self._wind.period or 0.0)
+            self._starting(end * 1e-9 - delay, behind)
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:

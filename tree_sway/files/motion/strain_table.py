@@ -46,7 +46,7 @@ class StrainRecord:
     notes: tuple[str, ...] = ()
 
     def motion(self, pair: int = 0) -> MotionRecord:
-        """Return a pair as the record of a motion sensor at a place of strain, about its median."""
+        """Return a pair, about its median, as the record of a sensor at a place of strain."""
         strain = self.strain[:, pair]
         turns = as_orientation(strain - np.nanmedian(strain, axis=0))
         return MotionRecord(self.time, None, None, turns, self.source, self.epoch, self.notes)
