@@ -37,7 +37,8 @@ class SensorReport(NamedTuple):
         Counts of its samples.
     notes
         Properties that were recognised, such as a unit, how late the wind is, what the sensor
-        measures no more or not as numbers, that its clock may be behind, and why many samples were refused.
+        measures no more or not as numbers, that its clock may be behind, and why many samples
+        were refused.
     change
         Whether the tree sways as it did; None before there is a past.
 
