@@ -151,7 +151,7 @@ class IntakeNode:
     stamp_limits = {'lead': 10**12, 'lag': 10**12}  # noqa: RUF012
 
     def __init__(self, publishers=1):
-        self.receive = None
+        self.receive, self.now = None, BEGIN
         self._publishers = publishers
 
     def count_publishers(self, topic):
@@ -164,7 +164,7 @@ class IntakeNode:
         self.receive = receive
 
     def get_clock(self):
-        return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=BEGIN))
+        return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=self.now))
 
 
 def intake_of(twin, node=None, run=None, arrived=lambda: None):
@@ -172,6 +172,26 @@ def intake_of(twin, node=None, run=None, arrived=lambda: None):
     intake.twin = twin
     intake.begin(run or Run(twin, 60.0), arrived)
     return intake
+
+
+@pytest.mark.parametrize(('jump', 'said'), [(60.0, 'by 60.0 s: synchronise'), (None, 'battery')])
+def test_a_followed_sensor_whose_clock_jumps_is_not_one_that_is_silent(jump, said):
+    twin = ObservedTree(builtin_tree('goldcrest'), at={'tree/imu': 'segment:3'}, rate=60.0)
+    node = IntakeNode()
+    node.stamp_limits = {'lead': 0, 'lag': 0}
+    run = Run(twin, 60.0, starting=lambda end, _: twin.set_time(end))
+    intake = intake_of(twin, node, run)
+    node.receive(imu(BEGIN * 1e-9 - 3600.0), {})  # before its clock is set
+    for k in range(120):
+        node.now = BEGIN + k * PERIOD
+        if k < 30 or jump is not None:
+            ahead = 0.0 if k < 30 else jump
+            node.receive(imu(node.now * 1e-9 + ahead, rate=0.001 * k), {})
+        run.advance(node.now)
+    (status,) = intake.statuses()
+    assert status.values['accepted'] == 30
+    assert said in status.message
+    assert ('silent' in status.message) == (jump is None)
 
 
 def test_a_step_lacks_the_motion_that_it_reads_until_that_arrives():

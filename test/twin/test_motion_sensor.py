@@ -176,6 +176,19 @@ def test_a_part_that_stops_does_not_make_the_rest_useless() -> None:
     assert not phone.trouble
 
 
+@pytest.mark.parametrize('broken', ['acceleration', 'rate'])
+def test_a_quantity_without_an_axis_from_the_beginning_is_named(broken: str) -> None:
+    phone = sensor()
+    for k in range(10):
+        moved = swaying(k)
+        assert phone.offer(0.01 * k, **moved | {broken: (math.nan, *moved[broken][1:])})
+    assert phone.unusable == (broken,)
+    for k in range(10, 30):
+        phone.offer(0.01 * k, **swaying(k))
+    assert phone.unusable == ()
+    assert phone.lost == ()
+
+
 def test_a_dead_sensor_is_told_within_two_seconds() -> None:
     phone = sensor()
     for k in range(500):

@@ -532,6 +532,13 @@ def test_what_a_sensor_measures_no_more_is_reported() -> None:
     assert is_said
 
 
+def test_a_quantity_that_is_no_number_from_the_beginning_is_reported() -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    assert twin.offer('phone', 0.0, acceleration=(0.1, np.nan, 9.8), rate=(0.1, 0.0, 0.2))
+    (told,) = notes(twin)
+    assert told.startswith('it is used without its acceleration, of which some values are no num')
+
+
 def test_the_correction_does_not_touch_the_motion_in_the_wind(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

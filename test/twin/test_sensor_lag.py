@@ -153,6 +153,17 @@ def test_a_late_sensor_is_left_where_the_way_of_the_wind_is_known(is_told: bool)
     assert track.in_use != is_told
 
 
+def test_a_lag_that_is_no_chance_is_told_before_three_minutes() -> None:
+    def is_left(late: float, seed: int) -> bool:
+        model, sensed = noise(150.0, np.random.default_rng(seed), 4.0)
+        track = seeing(np.roll(sensed, round(late / DT), axis=0), model)
+        track.take(track.search(NO_LAG._replace(is_told=True))())
+        return not track.in_use
+
+    assert sum(is_left(2.0, seed) for seed in range(20)) > 10
+    assert not any(is_left(0.0, seed) for seed in range(20))
+
+
 def test_a_sensor_is_left_when_its_motion_has_nothing_of_the_wind() -> None:
     model, sensed = noise(300.0, np.random.default_rng(4), 1e9)
     track = seeing(sensed, model)

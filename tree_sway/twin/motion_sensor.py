@@ -101,11 +101,13 @@ class MotionSensor:
         """Quantities of most samples; others are ignored."""
         self.lost: tuple[str, ...] = ()
         """Quantities that it measured before, and no more."""
+        self.unusable: tuple[str, ...] = ()
+        """Quantities that it sends, but not as numbers from the beginning."""
         self.trouble = ''
         """Why its newest sample was refused, and what to do; empty if it was not."""
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
-        self._sample = np.full(9, nan)
+        self._sample, self._sent = np.full(9, nan), (False, False, False)
         self.ring = SampleRing(self._sample)
         """Its last samples."""
         self.reference: Floats | None = None
@@ -171,6 +173,8 @@ class MotionSensor:
         values[:] = nan
         if self.place.is_strain:
             acceleration = rate = None  # gauges measure neither
+        # An orientation of zeros is not measured.
+        self._sent = acceleration is not None, rate is not None, False
         try:
             if acceleration is not None:
                 values[0:3] = acceleration
@@ -217,6 +221,11 @@ class MotionSensor:
         self.quantities = tuple([name for name, is_there in pairs if is_there])
         if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
+        self.unusable = tuple([
+            name
+            for name, is_sent in zip(_QUANTITIES, self._sent, strict=True)
+            if is_sent and name not in (*self.quantities, *self.lost)
+        ])
         self.ring.ask_for(is_given)
         if is_given[2]:
             self.reference = None

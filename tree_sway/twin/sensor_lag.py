@@ -69,6 +69,12 @@ Least size of a lag over its standard deviation: of four right sensors on a tree
 anemometer, two had 2.1 and 2.6 after 100 s.
 """
 
+_CLEAR = 10.0
+"""
+Logarithm of the likelihood of a lag over that of none from which it is believed before `_LONG`:
+right sensors on nine drawn trees had 1.5 at most, those that were 2 s late 8 to 21.
+"""
+
 _DOUBTED = 0.5
 """Logarithm of the likelihood of a lag over that of none above which a sensor stays left."""
 
@@ -122,6 +128,11 @@ class SensorLag(NamedTuple):
     def is_long(self) -> bool:
         """Whether enough motion was compared for a sensor to be left for what the wind tells."""
         return self.motion >= _LONG
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether a sensor may be left for it: after long motion, or where it is clear."""
+        return self.is_long or self.over_none > _CLEAR
 
     @property
     def is_by_chance(self) -> bool:

@@ -37,7 +37,8 @@ class SensorReport(NamedTuple):
         Counts of its samples.
     notes
         Properties that were recognised, such as a unit, how late the wind is, what the sensor
-        measures no more, that its clock may be behind, and why many samples were refused.
+        measures no more or not as numbers, that its clock may be behind, and why many samples
+        were refused.
     change
         Whether the tree sways as it did; None before there is a past.
 
@@ -72,6 +73,11 @@ def sensor_reports(twin: ObservedTree) -> list[SensorReport]:
         sensor, alignment = track.sensor, track.alignment
         recognised = () if alignment is None else (*alignment.notes, *late)
         lost = [f'it measures no {name} any more: restart it' for name in sensor.lost]
+        lost += [
+            f'it is used without its {name}, of which some values are no numbers: look at what it '
+            'sends'
+            for name in sensor.unusable
+        ]
         if sensor.is_behind:
             lost.append(
                 f'its samples come {sensor.lateness:.1f} s after their times: a slow connection, '

@@ -241,7 +241,7 @@ def _mounting(
         left_for, said = apart
     elif left.is_by_chance:
         left_for, said = 0.0 if sensor.place.facing is None else None, _ALIEN
-    elif _is_off(left, lags) and (left.is_long or lags.left_for is not None):
+    elif _is_off(left, lags) and (left.is_enough or lags.left_for is not None):
         left_for = _lag_left_for(left, lags) if lags.is_told else None
         said = left.said_of('the tree in this wind')
     elif lags.left_for is not None and not found.problem:

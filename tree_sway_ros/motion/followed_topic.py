@@ -55,6 +55,7 @@ class FollowedTopic:
             self.apart += 1
             self._by = by * 1e-9
             return None
+        self._by = 0.0
         return stamp or now
 
     def lacks(self, read: int) -> bool:
@@ -63,8 +64,8 @@ class FollowedTopic:
 
     @property
     def clock_problem(self) -> str:
-        """What is wrong with its stamps, and the cure; empty if none was refused."""
-        if not self.apart:
+        """What is wrong with its stamps, and the cure; empty if the newest was admitted."""
+        if not self._by:
             return ''
         return (
             f'{self.apart} refused: stamps differ from this clock by {self._by:.1f} s: '

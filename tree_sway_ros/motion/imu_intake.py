@@ -124,7 +124,8 @@ class ImuIntake(SolverAnnex):
         """Report each sensor: in use or why not, and its counts."""
         found = []
         self._run.request(self._find_band)
-        for each in sensor_reports(self.twin):
+        tracks = self.twin.observer.tracks
+        for each, track in zip(sensor_reports(self.twin), tracks, strict=True):
             problem = each.problem
             counts = each.counts
             followed = self._followed[each.name]
@@ -143,7 +144,7 @@ class ImuIntake(SolverAnnex):
                 **self._band,
                 **self._learned_values(),
             }
-            if not counts.accepted:
+            if track.is_silent or not counts.accepted:
                 problem = followed.clock_problem or problem
             said = ['the tree follows it', *each.notes]
             has_changed = False
