@@ -466,7 +466,9 @@ void main() {
   }
   dark /= 28.0;
 #endif
-  float open = (1.0 - depth * dark) * skyAt(area.xy + area.z * (2.0 * at - 1.0));
+  vec2 rim = min(at, 1.0 - at);
+  float sky = skyAt(area.xy + area.z * (2.0 * at - 1.0));
+  float open = (1.0 - depth * dark) * mix(1.0, sky, smoothstep(0.0, 0.15, min(rim.x, rim.y)));
   if (open > 0.99) discard;
   color = vec4(0.05, 0.08, 0.13, 1.0 - open);
 }
@@ -581,7 +583,7 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
     float z = (up - 0.52 * tall) / (0.5 * tall);
     float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
-    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.9 : 1.3) * (rough - 0.48) + 0.8 * (fine - 0.48);
+    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.9 : 1.3) * (rough - 0.48) + 0.5 * (fine - 0.48);
     if (edge > 1.0 && (abs(x) * wide > 0.03 * tall || z > 0.0)) continue;
     first = two;
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
