@@ -71,3 +71,17 @@ def test_a_first_interval_of_an_hour_is_an_outage_of_a_topic_too() -> None:
     assert timing.longest_live == timing.longest_hold == 1.0
     timing.note_interval(0.1)
     assert timing.period == 0.1
+
+
+def test_an_instrument_that_sends_no_numbers_any_more_is_said_once_and_counted(
+    hear, port, send
+) -> None:
+    heard = hear(f'udp://127.0.0.1:{port}')
+    heard.until(lambda: heard.wind.newest, lambda: send(port, b'{"wind_speed": 5.0}\n'))
+    heard.until(
+        lambda: sum(heard.wind.refused.values()) > 3,
+        lambda: send(port, b'{"wind_speed": "nan"}\n'),
+    )
+    (said,) = (each for each in heard.said if 'refused, and counted' in each)
+    assert "speed is 'nan'" in said
+    assert "refused: speed is 'nan'" in heard.wind.refused_text

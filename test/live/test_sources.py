@@ -26,6 +26,7 @@ from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.settings import Settings
 from tree_sway.core.wind.intake import WindIntake
+from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.live.reading import Refusal, WindReading
@@ -401,3 +402,13 @@ def test_registers_of_modbus_sway_a_tree(hear, modbus, sways):
     heard = hear(f'modbus:{place}?{options}')
     newest = sways(heard, lambda: None, (1.0, 0.0))
     assert newest.speed == pytest.approx(6.5)
+
+
+@pytest.mark.parametrize(
+    ('query', 'guess'), [('units=km/h', 'unit'), ('speeds=a.b', 'speed'), ('every_=3', 'every')]
+)
+def test_a_misspelt_option_of_ours_is_not_left_to_the_server(query: str, guess: str) -> None:
+    with pytest.raises(ParameterError, match=f"did you mean '{guess}'"):
+        open_source(f'http://127.0.0.1/state.json?{query}')
+    open_source(f'http://127.0.0.1/state.json?{query}#every=60')
+    open_source('http://127.0.0.1/state.json?units=metric&appid=3')

@@ -83,6 +83,11 @@ def test_the_record_as_columns(fork):
     assert repr(simulate(fork(), STEADY[:5], branches=[], model=12)).endswith('mean wind 3 m/s')
 
 
+def test_what_was_made_up_about_the_wind_is_said_of_the_sway(fork):
+    wind = SimpleNamespace(time=np.arange(3.0), velocity=STEADY[:3], notes=('made up',))
+    assert 'note: made up' in repr(simulate(fork(), wind, model=12))
+
+
 def test_a_data_frame_has_its_columns(fork, monkeypatch):
     frames = SimpleNamespace(DataFrame=dict)  # of pandas, which the tests do not install
     monkeypatch.setitem(sys.modules, 'pandas', frames)

@@ -143,6 +143,13 @@ class LiveSource(ABC):
         is_other = origin in senders.refused and not is_shared
         return not (is_live and is_other) or self._follows(message.origin)
 
+    @property
+    def refused_text(self) -> str:
+        """Number of what was refused, with the first cause, to stand behind a count of samples."""
+        if not self.refused:
+            return ''
+        return f', {sum(self.refused.values())} refused: {next(iter(self.refused))}'
+
     def _refuse(self, cause: str, count: int = 1) -> None:
         self._link.refuse(cause, count)
 

@@ -214,7 +214,8 @@ class LiveWind(LiveSource):
         if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
             cause = 'speed is too fast or no number'
         if cause:
-            self._refuse(cause)
+            if self._link.refuse(cause) and self.accepted:
+                self._log(f'{self._opened.name}: refused, and counted: {cause}')
             return False
         sender = reading.sender if isinstance(reading, WindReading) else ''
         if not self._follows(' '.join(filter(None, (origin, sender)))):

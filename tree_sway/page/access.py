@@ -250,7 +250,7 @@ def refusal(
     if is_loopback(address) and not is_loopback(_name_of(host)):
         return f"host '{host}' is not this machine"
     if origin is not None and origin not in origins and urlsplit(origin).netloc != host:
-        return f"origin '{origin}' is not this server"
+        return f"origin '{origin}' is not this server; start it with --origin {origin}"
     if access_of(given, token) is Access.NONE:
         return WRONG_TOKEN
     return None

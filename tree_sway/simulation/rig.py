@@ -256,6 +256,7 @@ class Rig:
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
             (
                 *filter(None, [short]),
+                *getattr(wind, 'notes', ()),
                 *_doubts(simulator, before),
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(observed),

@@ -35,3 +35,9 @@ def test_neither():
         open_tree('benjamin')
     with pytest.raises(FormatError, match=r"no tree '\./none\.yaml'; give a file, or one of"):
         open_tree('./none.yaml')
+
+
+def test_a_file_with_nearly_the_name_is_named(tmp_path):
+    (tmp_path / 'willow.yaml').write_text('')
+    with pytest.raises(FormatError, match=r"did you mean '.*willow\.yaml'"):
+        open_tree(tmp_path / 'wilow.yaml')

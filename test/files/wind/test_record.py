@@ -58,3 +58,23 @@ def test_time_starts_at_zero_and_arrays_are_read_only():
     assert (record.time[0], record.duration, record.period, record.epoch) == (0.0, 1.0, 0.5, 110.0)
     with pytest.raises(ValueError, match='read-only'):
         record.velocity[0, 0] = 1.0
+
+
+@pytest.mark.parametrize(('period', 'meanwhile'), [(0.1, 'a calm'), (300.0, 'a straight line')])
+def test_a_gap_is_said_with_what_is_taken_there(period, meanwhile):
+    times = [period * each for each in (*range(10), *range(50, 60))]
+    (note,) = rows_of(times).record().notes
+    assert note.startswith(f'no samples in {41 * period:.4g} of {59 * period:.4g} s')
+    assert note.endswith(f'from {9 * period:g} s on: {meanwhile} is taken there')
+    assert rows_of(times[:10]).record().notes == ()
+    assert note in repr(rows_of(times).record())
+
+
+def test_gusts_below_the_wind_are_doubted():
+    rows = rows_of([0.0, 1.0, 2.0], speed=5.0)
+    rows.gust = np.array([4.0, 3.0, 9.0])
+    assert rows.record().notes == (
+        'the gust is slower than the wind in 2 rows: are the columns swapped?',
+    )
+    rows.gust = np.array([4.0, 8.0, np.nan])
+    assert rows.record().notes == ()

@@ -86,3 +86,7 @@ def test_a_log(tmp_path: Path):
     (tmp_path / 'sonic.txt').write_text('start\n')
     with pytest.raises(FormatError, match='no sentence gill'):
         read_instrument_wind(tmp_path / 'sonic.txt')
+
+
+def test_a_sonic_that_measures_no_direction_in_a_calm_measures_a_wind():
+    assert read_instrument(gill('Q,,000.05,M,00,')).speed == 0.05

@@ -28,6 +28,7 @@ from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.forest.commands.on_the_page import RiskOnThePage  # noqa: E402
 from tree_sway.growth.growing import grow  # noqa: E402
 from tree_sway.page.commands import show  # noqa: E402
+from tree_sway.page.commands.page_arguments import page_settings  # noqa: E402
 from tree_sway.page.commands.page_controls import page_controls  # noqa: E402
 from tree_sway.page.session import Choices  # noqa: E402
 from tree_sway.simulation.wind_source import RecordedWind, SimulatedWind  # noqa: E402
@@ -289,3 +290,18 @@ def test_each_control_of_the_page_has_its_hint_in_all_languages() -> None:
     described = {each.name for each in controls if each.description}
     assert 'sensor_at' in described
     assert [name for name in sorted(described) if len(words.get(f'{name}_hint', [])) != 4] == []
+
+
+@pytest.mark.parametrize(
+    ('given', 'cure'),
+    [
+        ('localhost:5173', 'http://localhost:5173'),
+        ('https://example.org/page', 'https://example.org'),
+    ],
+)
+def test_an_origin_that_no_browser_sends_is_refused_with_the_right_one(
+    given: str, cure: str
+) -> None:
+    with pytest.raises(ParameterError, match=f'--origin {cure}$'):
+        page_settings(shown('goldcrest', '--origin', given))
+    assert page_settings(shown('goldcrest', '--origin', cure)).origins == (cure,)

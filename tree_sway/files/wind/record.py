@@ -20,6 +20,13 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.wind import FASTEST_WIND, WindConvention
 from tree_sway.drawn import Drawn
 from tree_sway.errors import FormatError
+from tree_sway.simulation.wind import LEAST_INTERVAL
+
+_GAP_PERIODS, _SHORTEST_GAP = 3.0, 2.0
+"""Least gap, in usual times between samples, and in [s]."""
+
+_LEAST_OF_GAPS = 3
+"""Number of times between samples of which one may be unusual."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,13 +66,14 @@ class WindRecord(Drawn):
     gust: Floats | None = None
 
     def __repr__(self) -> str:
-        """Return source, length and mean speed on one line."""
+        """Return source, length and mean speed on one line, and each note on one of its own."""
         seconds = float(self.time[-1]) if len(self.time) else 0.0
         speed = float(np.linalg.norm(self.velocity, axis=1).mean()) if len(self.time) else 0.0
-        return (
+        said = (
             f'WindRecord {self.source!r}: {len(self.time)} samples, {seconds:.4g} s, '
             f'mean speed {speed:.3g} m/s'
         )
+        return '\n'.join([said, *(f'note: {each}' for each in self.notes)])
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -161,11 +169,39 @@ class WindRows:
             )
         time = time[rows]
         velocity = np.ascontiguousarray(velocity[rows])
+        gust = None if self.gust is None else self.gust[rows]
+        doubts = (*gaps_of(time - time[0]), *_slower_gusts(gust, speed[rows]))
         return WindRecord(
             time - time[0], velocity, self.source, self.refused, self.first_refused,
-            None if epoch is None else epoch + float(time[0]), notes,
-            None if self.gust is None else self.gust[rows],
+            None if epoch is None else epoch + float(time[0]), (*notes, *doubts), gust,
         )  # fmt: skip
+
+
+def _slower_gusts(gust: Floats | None, speed: Floats) -> tuple[str, ...]:
+    """Return a sentence about gusts (n,) that are mostly slower than the wind, in [m/s]."""
+    if gust is None:
+        return ()
+    slower = np.count_nonzero(gust < speed)
+    if 2 * slower <= np.count_nonzero(np.isfinite(gust)):
+        return ()
+    return (f'the gust is slower than the wind in {slower} rows: are the columns swapped?',)
+
+
+def gaps_of(time: Floats) -> tuple[str, ...]:
+    """Return a sentence about the gaps in times (n,) [s], if there are any."""
+    apart = np.diff(time)
+    if len(apart) < _LEAST_OF_GAPS:
+        return ()
+    period = float(np.median(apart))
+    gaps = apart[apart > max(_GAP_PERIODS * period, _SHORTEST_GAP)]
+    if not len(gaps):
+        return ()
+    longest = int(apart.argmax())
+    meanwhile = 'a straight line' if period >= LEAST_INTERVAL else 'a calm'
+    return (
+        f'no samples in {gaps.sum():.4g} of {time[-1]:.4g} s, the longest gap {gaps.max():.4g} s '
+        f'from {time[longest]:.6g} s on: {meanwhile} is taken there',
+    )
 
 
 def increasing(time: Floats) -> NDArray[np.bool_]:

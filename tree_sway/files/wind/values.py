@@ -12,7 +12,7 @@ from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.reading import Reading, Refusal, WindReading
 
 _CALM = 0.05
-"""Speed [m/s] below which a direction may be missing."""
+"""Speed [m/s] up to which a direction may be missing: WindSonics have none below 0.05."""
 _LONGEST = 40
 """Length of the longest text that may be a number or a direction."""
 
@@ -75,7 +75,7 @@ def reading_of(
     size = factor * value
     bearing = None if direction is None else bearing_of(direction)
     if bearing is None and direction is not None:
-        if size >= _CALM:
+        if size > _CALM:
             return Refusal(kind, f"direction is '{str(direction)[:20]}'")
         bearing = 0.0
     turned = None if bearing is None else (bearing + turn) % math.tau

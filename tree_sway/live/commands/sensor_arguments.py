@@ -99,7 +99,7 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
                 samples += wind.drain()
         except KeyboardInterrupt:
             say('ended: what came so far is used')
-        name = wind.name
+        name, refused = wind.name, wind.refused_text
     if len(samples) < 2:
         raise TransportError(
             f'{len(samples)} samples within {seconds:g} s', where='--sensor', cure='wait longer'
@@ -107,5 +107,5 @@ def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
     times = np.array([time for time, _ in samples])
     velocity = np.array([velocity for _, velocity in samples])
     rising = np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0.0])
-    note = f'{name}, {int(rising.sum())} samples'
+    note = f'{name}, {int(rising.sum())} samples{refused}'
     return WindRecord(times[rising] - times[0], velocity[rising], name, notes=(note,))

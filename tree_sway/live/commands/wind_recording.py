@@ -58,7 +58,8 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     if not table.count:
         raise TransportError(problem or 'no wind came', where='--sensor')
     table.rows.say_short(seconds)
-    print(f'{path}: {table.count} {"means" if table.is_of_means else "samples"} of {wind.name}')
+    kind = 'means' if table.is_of_means else 'samples'
+    print(f'{path}: {table.count} {kind} of {wind.name}{wind.refused_text}')
     return 0
 
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
+from tree_sway.errors import nearest
+from tree_sway.files import unit_factor
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
@@ -25,6 +27,9 @@ _OPTIONS = (
     *('name', 'mean', 'from_degrees'),
 )
 """Options of ours in a query; others belong to the server."""
+_ALIKE = 0.8
+"""Share of common letters from which an option of the query is a misspelt one of ours."""
+
 _EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
 
 
@@ -35,6 +40,15 @@ def _json_reader(names: WindNames) -> Read:
         return read_document(parse_json(message.data), names)
 
     return read
+
+
+def _refuse_misspelt(address: SourceAddress, name: str, value: str) -> None:
+    """Raise a `ParameterError` for an option of ours with another letter: servers get the rest."""
+    guess = nearest(name, _OPTIONS, _ALIKE)
+    is_theirs = name == 'units' and unit_factor('speed', value) is None
+    if guess and not is_theirs:
+        cure = f"{guess} Behind a '#' are options of ours alone, and all of the query is sent"
+        raise address.error(f"no option '{name}'", cure)
 
 
 def open_source(address: SourceAddress) -> Source:
@@ -48,6 +62,8 @@ def open_source(address: SourceAddress) -> Source:
     parts = address.parts
     if not parts.fragment:
         theirs = [each for each in parse_qsl(parts.query, True) if each[0] not in _OPTIONS]
+        for name, value in theirs:
+            _refuse_misspelt(address, name, value)
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
     every = address.number('every', 60.0, _SHORTEST, _LONGEST)

@@ -7,10 +7,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 import sys
-from urllib.parse import urlencode
+from urllib.parse import urlencode, urlsplit
 
 from tree_sway.core.checks import within
 from tree_sway.doorkeeper import is_loopback
+from tree_sway.errors import ParameterError
 from tree_sway.page import PageServer, PageSettings, read_token
 from tree_sway.page.access import make_token
 from tree_sway.page.page_settings import USUAL_PORT
@@ -47,10 +48,16 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
     """
     Make settings of the page's server from the arguments, and a missing file with a token.
 
-    A `ParameterError` reports a bad port, or a token that cannot be written.
+    A `ParameterError` reports a bad port or origin, or a token that cannot be written.
     """
     if arguments.port is not None:
         within('--port', arguments.port, 0, 65535)
+    for origin in arguments.origin:
+        parts = urlsplit(origin if '//' in origin else f'http://{origin}')
+        sent = f'{parts.scheme}://{parts.netloc}'
+        if sent != origin:
+            cure = f'browsers send a scheme and a host: --origin {sent}'
+            raise ParameterError(f"--origin is '{origin}'", cure=cure)
     if arguments.token_file and not Path(arguments.token_file).exists():
         make_token(arguments.token_file)
         print(f'{arguments.token_file}: a new token, which only you may read', flush=True)
