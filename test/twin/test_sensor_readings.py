@@ -274,6 +274,37 @@ def test_samples_known_ahead_need_no_lateness() -> None:
     assert lateness_of([(0.01 * k, 0.01 * k + 0.5) for k in range(1000)], 10.0) == 0
 
 
+@pytest.mark.parametrize('rate', [10.0, 25.0, 60.0, 150.0])
+def test_the_noise_that_is_told_is_the_one_in_the_spectrum_of_sway(rate: float) -> None:
+    """By the steps between few samples, which are on lines, there is hardly any."""
+    of, _, state = readings(1)
+    state[:] = 0.0
+    track, rng, deviation = track_of(of), np.random.default_rng(4), 0.02
+    track._next_fit = 10**9
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1))
+    track.take(FoundMounting(known, np.zeros(9)))
+    spectrum = SensorSpectrum(1.0, DT, N)
+    track.native.series = spectrum.native.at
+    stamp = 0.4 * DT
+    for step in range(9000):
+        while stamp < (step + 1) * DT + 1.0 / rate:
+            noise = deviation * rng.normal(size=(2, 3))
+            track.sensor.offer(stamp, acceleration=REST + noise[0], rate=noise[1])
+            stamp += 1.0 / rate
+        of.read(step * DT, step, step - 1)
+        spectrum.advance()
+    track._computed[:, 6:9] = track._sensed[:, 3:6]  # a model that turns as fast as it
+    found = track.search()()
+    assert found.alignment.noise[1] == pytest.approx(deviation, rel=0.08)
+    sure = replace(found.alignment, problem='', azimuth_error=0.0)
+    track.take(found._replace(alignment=sure))
+    is_slow = spectrum.circular < 2.0 * np.pi
+    power = spectrum.products[is_slow][:, (0, 1), (0, 1)].real.mean()
+    assert spectrum.power_of_noise(track.fitted_noise) == pytest.approx(power, rel=0.15)
+
+
 def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() -> None:
     of, _, _ = readings(1)
     track: Any = track_of(of)

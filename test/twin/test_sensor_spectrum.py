@@ -63,3 +63,16 @@ def test_a_gap_begins_a_stretch_anew() -> None:
         add(spectrum, *still)
     assert spectrum.count == 1
     assert spectrum.until_first == 0.0
+
+
+def test_the_noise_is_the_mean_over_the_stretches_that_are_new() -> None:
+    spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
+    spectrum.note_noise(0.1)
+    spectrum.count = 1
+    assert spectrum.noise == pytest.approx(spectrum.power_of_noise(0.1))
+    spectrum.take_products()
+    assert spectrum.noise == 0.0
+    spectrum.note_noise(0.2)
+    spectrum.note_noise(0.4)
+    spectrum.count = 3
+    assert spectrum.noise == pytest.approx(spectrum.power_of_noise(0.1**0.5))

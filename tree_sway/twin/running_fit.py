@@ -99,6 +99,7 @@ class RunningFit:
                 self._begin(k)
             if self._spectra[k].advance():
                 if self._spectra[k].count != self._noted[k]:
+                    self._spectra[k].note_noise(track.fitted_noise)
                     self._note_air(k)
                 watch = self.watches[k]
                 if watch.is_due:
@@ -190,5 +191,5 @@ class RunningFit:
             measured.circular,
             measured.new_stretches,
             measured.new_seconds,
-            measured.power_of_noise(track.fitted_noise),
+            measured.noise,
         )

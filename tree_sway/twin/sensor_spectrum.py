@@ -100,6 +100,7 @@ class SensorSpectrum:
         self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
+        self._noise = 0.0
         self._taken = 0, 0.0
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
@@ -172,6 +173,15 @@ class SensorSpectrum:
         """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
         return deviation**2 * float(np.square(self._window).sum())
 
+    def note_noise(self, deviation: float) -> None:
+        """Note the noise in a step of the last stretch, a standard deviation."""
+        self._noise += self.power_of_noise(deviation)
+
+    @property
+    def noise(self) -> float:
+        """Mean power of the noise of the new stretches at each frequency, of one axis."""
+        return self._noise / max(self.new_stretches, 1)
+
     @property
     def new_stretches(self) -> int:
         """Number of stretches since products were taken last."""
@@ -185,6 +195,7 @@ class SensorSpectrum:
     def take_products(self) -> None:
         """Begin the products anew."""
         self._products[:] = 0.0
+        self._noise = 0.0
         self._taken = self.count, self.seconds
 
     @property

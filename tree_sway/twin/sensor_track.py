@@ -194,8 +194,13 @@ def _mounting(
     windows: Windows,
     lags: LagRange,
     bend: Floats,
+    samples: tuple[Floats, float],
 ) -> FoundMounting:
-    """Find a mounting by samples (n, 9), rows of the model, (12, n), and its lean by loads."""
+    """
+    Find a mounting by motion (n, 9), rows of the model, (12, n), and its lean by loads.
+
+    ``samples`` are the last ones as they came, (m, 9), and the steps from one to the next.
+    """
     whole = sensed
     now, later = _lagging(-min(lags.of_wind, len(sensed) // 2), len(sensed))
     sensed, computed = sensed[now], computed[:, later]
@@ -203,7 +208,7 @@ def _mounting(
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
     sway = Sway(bend, 1.0 / (windows.period * windows.dt), windows.dt)
     sign = 0.0
-    found = align(sensed, upright, free, *known, sway=sway)
+    found = align(sensed, upright, free, *known, 0.0, sway, *samples)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
     if not lag and found.problem != TELLS_LITTLE:
@@ -212,7 +217,7 @@ def _mounting(
         if found.has_gravity and np.isfinite(sensed[:, :3]).all():
             # Of opposite sign, a lean is mirrored.
             rival_sign = -math.copysign(1.0, found.scale[0])
-            rival = align(sensed, upright, free, *known, rival_sign, sway)
+            rival = align(sensed, upright, free, *known, rival_sign, sway, *samples)
             other = _slow_lag(rival.motion(sensed), model, windows, lags)
             if other.evidence > left.evidence + _MIRRORED:
                 found, left, sign = rival, other, rival_sign
@@ -223,7 +228,7 @@ def _mounting(
     if lag:
         later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known, sign, sway)
+        found = align(sensed, upright, free, *known, sign, sway, *samples)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
@@ -413,13 +418,6 @@ class SensorTrack:
             is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
-        self.fitted_noise = self.watched_noise = 0.0
-        """
-        Noise in each sample of this quantity, and of the acceleration, standard deviations.
-
-        Without an acceleration, the first of the others is watched. The acceleration tells more of
-        fast sway than the angular rate, which is less above its noise.
-        """
 
     def _uses(self) -> tuple[int, ...]:
         given = self._quantities
@@ -433,15 +431,36 @@ class SensorTrack:
 
     @property
     def noise(self) -> Floats:
-        """Standard deviation of the noise at each step, (3,)."""
-        known = LEAST_NOISE
-        if self.alignment is not None:
-            known = np.maximum(self.alignment.noise, LEAST_NOISE)
-        known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
+        """Standard deviation of the noise at each step, at least a usual or stated one, (3,)."""
+        stated = np.minimum(self.sensor.stated_noise, _CEILING)
+        return np.maximum(self._own_noise, np.maximum(stated, LEAST_NOISE) * math.sqrt(self._held))
+
+    @property
+    def _own_noise(self) -> Floats:
+        """Standard deviation of the noise that it has at each step, (3,)."""
+        known = np.zeros(3) if self.alignment is None else self.alignment.noise
+        return np.asarray(known * math.sqrt(self._held))
+
+    @property
+    def _held(self) -> float:
+        """Steps that have the same noise: samples are joined by lines, or averaged."""
         period = self.sensor.ring.period
-        # Samples that are joined by lines have the same noise in several steps.
-        held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
-        return known * math.sqrt(held)
+        return 1.0 if math.isnan(period) else period / self._dt
+
+    @property
+    def fitted_noise(self) -> float:
+        """Standard deviation of the noise at each step of the fitted quantity."""
+        return float(self._own_noise[self.fitted])
+
+    @property
+    def watched_noise(self) -> float:
+        """
+        Standard deviation of the noise at each step of the watched quantity, the acceleration.
+
+        Without one, the first of the others is watched. The acceleration tells more of fast sway
+        than the angular rate, which is less above its noise.
+        """
+        return float(self._own_noise[self.uses[0]])
 
     @property
     def in_use(self) -> bool:
@@ -532,7 +551,10 @@ class SensorTrack:
         sensed, computed = self._remembered()
         lags = lags._replace(left_for=self._left_for)
         model = computed.T.copy()
-        return partial(_mounting, sensed, model, self.sensor, self._windows, lags, self.bend)
+        samples = self.sensor.ring.newest_samples(), self._held
+        return partial(
+            _mounting, sensed, model, self.sensor, self._windows, lags, self.bend, samples
+        )
 
     @property
     def window(self) -> int:
@@ -611,8 +633,6 @@ class SensorTrack:
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
-        self.fitted_noise = float(found.noise[self.fitted])
-        self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
         self._next_mean = native.count + round(_MEAN_EVERY / self._dt)
 
