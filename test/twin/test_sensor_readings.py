@@ -134,6 +134,23 @@ def test_the_mean_difference_from_the_model_is_that_of_the_last_ten_minutes() ->
         np.testing.assert_allclose(missed, left * found.motion(sample), rtol=0.15)
 
 
+def test_the_noise_is_that_of_the_newest_samples() -> None:
+    """That of a battery that faded, found in wind, was told for an hour of a calm."""
+    track, rng, deviation = track_of(readings(1)[0]), np.random.default_rng(2), 0.02
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.array([GRAVITY, 1.0]), True, 0.9, np.full(3, 0.1))
+    track.take(FoundMounting(known, np.zeros(9)))
+    assert track.fitted_noise == 0.1
+    for k in range(4000):
+        noise = deviation * rng.normal(size=(2, 3))
+        track.sensor.offer(k * DT, acceleration=np.divide(REST, GRAVITY) + noise[0], rate=noise[1])
+    track.native.count += 1800
+    track.heed()
+    assert track.fitted_noise == pytest.approx(deviation, rel=0.1)
+    assert track.watched_noise == pytest.approx(deviation * GRAVITY, rel=0.1)
+
+
 @pytest.mark.parametrize(
     ('unit', 'error', 'is_taken'),
     [(1.0, 0.1, True), (1.0, 0.14, True), (1.0, 0.2, False), (0.0175, 0.14, False),

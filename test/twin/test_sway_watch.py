@@ -46,10 +46,13 @@ def watched(
         for each in motion:
             rows[native.filled % len(rows), [0, 1, 3, 4]] = *each[:2], *each[:2]
             native.filled += 1
+            n_noted = spectrum.count
             assert spectrum.advance()
+            if spectrum.count > n_noted:
+                spectrum.note_noise(NOISE, NOISE)
             blown, count = blown + wind, count + 1
             if watch.is_due:
-                watch.advance((blown, 0.0, count), NOISE, NOISE)
+                watch.advance((blown, 0.0, count))
     return watch
 
 

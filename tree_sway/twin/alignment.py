@@ -220,7 +220,7 @@ def align(
         scale[0] *= GRAVITY
         likeness, ratio = _likeness(found.motion(sensed), model, measures)
     moved, error = found.motion(raw), _TOLD_ERROR
-    noise = _noise_of(moved if samples is None else found.motion(samples))
+    noise = noise_of(moved if samples is None else found.motion(samples))
     if facing is None or not has_gravity:
         error = _azimuth_error(likeness, count)
     if sway is not None and facing is None and measures[0] and has_gravity:
@@ -388,7 +388,7 @@ def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> 
     return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
 
 
-def _noise_of(moved: Floats) -> Floats:
+def noise_of(moved: Floats) -> Floats:
     """
     Estimate the deviation of the noise of each quantity, (3,), from the motion of samples, (n, 9).
 

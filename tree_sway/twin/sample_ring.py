@@ -35,8 +35,8 @@ With the last one, most samples are of other quantities from this one on (`Sampl
 CAPACITY = 4096
 """Samples that are kept."""
 
-_RECENT = 40
-"""Samples whose period is told."""
+_RECENT, _NEWEST = 40, 1024
+"""Samples whose period is told, and newest samples."""
 
 _RING = np.dtype(
     [
@@ -105,7 +105,7 @@ class SampleRing:
 
     def newest_samples(self) -> Floats:
         """Copy the samples that came last, also those that were read, the oldest first, (n, 9)."""
-        return np.array(self.memory['values'][0, self._newest_rows(CAPACITY)])
+        return np.array(self.memory['values'][0, self._newest_rows(_NEWEST)])
 
     def _newest_rows(self, count: int) -> Ints:
         """Return the rows of the samples that came last, a number at most."""

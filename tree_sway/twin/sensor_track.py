@@ -26,6 +26,7 @@ from tree_sway.twin.alignment import (
     averaged,
     GRAVITY,
     LEAST_NOISE,
+    noise_of,
     TELLS_LITTLE,
 )
 from tree_sway.twin.late_wind import LONGEST_WAY
@@ -513,7 +514,7 @@ class SensorTrack:
         native, counts = self.native, self.sensor.counts
         alignment = self.alignment
         if native.in_use and native.count >= self._next_mean and alignment is not None:
-            self._follow_mean(alignment)
+            self._follow(alignment)
         counts.silent = native.silences
         if native.disagreements != counts.disagreed:
             counts.disagreed = native.disagreements
@@ -530,8 +531,14 @@ class SensorTrack:
         self._next_fit = round(_LEARNING / self._dt)
         return True
 
-    def _follow_mean(self, alignment: Alignment) -> None:
-        """Let the mean difference from the model be that of the last minutes."""
+    def _follow(self, alignment: Alignment) -> None:
+        """
+        Let the mean difference from the model be that of the last minutes, and the noise its own.
+
+        Of few samples a second, in wind, sway between them is noise as well.
+        """
+        noise = noise_of(alignment.motion(self.sensor.ring.newest_samples()))
+        self.alignment = replace(alignment, noise=noise)
         every = round(_MEAN_EVERY / self._dt)
         count = self.native.count
         self._next_mean = count + every

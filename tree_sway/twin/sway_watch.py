@@ -156,7 +156,7 @@ class SwayWatch:
         """Whether a block ends, or bands are being compared."""
         return self._work is not None or self._spectrum.block_seconds >= BLOCK
 
-    def advance(self, winds: tuple[float, float, int], noise: float, watched_noise: float) -> None:
+    def advance(self, winds: tuple[float, float, int]) -> None:
         """
         End a block, or go on with comparing its bands.
 
@@ -164,8 +164,6 @@ class SwayWatch:
         ----------
         winds
             Sums of the winds so far to east and north [m/s], and their number.
-        noise, watched_noise
-            Noise of the sensor, and that of its watched motion.
 
         """
         if self._work is not None and (found := self._work.advance()) is not None:
@@ -177,7 +175,7 @@ class SwayWatch:
         east, north, count = (now - then for now, then in zip(winds, self._began, strict=True))
         wind = east / count, north / count
         self._began = winds
-        floor = 2.0 * block.n_stretches * self._spectrum.power_of_noise(noise)
+        floor = 2.0 * float(block.noise[0])
         power = np.maximum(block.power - floor, 0.0)
         if power.sum() > max(_LEAST_POWER * floor * len(power), 1e-300):
             frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
@@ -186,7 +184,7 @@ class SwayWatch:
             find = partial(
                 self._bands.add,
                 block.watched / block.n_stretches,
-                self._spectrum.power_of_noise(watched_noise),
+                float(block.noise[1]) / block.n_stretches,
                 block.seconds,
                 wind,
             )
