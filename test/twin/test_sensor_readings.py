@@ -134,21 +134,31 @@ def test_the_mean_difference_from_the_model_is_that_of_the_last_ten_minutes() ->
         np.testing.assert_allclose(missed, left * found.motion(sample), rtol=0.15)
 
 
-def test_the_noise_is_that_of_the_newest_samples() -> None:
+def test_the_noise_is_that_of_the_newest_samples_but_for_sway_between_fewer() -> None:
     """That of a battery that faded, found in wind, was told for an hour of a calm."""
-    track, rng, deviation = track_of(readings(1)[0]), np.random.default_rng(2), 0.02
+    track, rng = track_of(readings(1)[0]), np.random.default_rng(2)
     track.sensor.quantities = ('acceleration', 'rate')
     track.heed()
     known = Alignment(np.eye(3), np.array([GRAVITY, 1.0]), True, 0.9, np.full(3, 0.1))
     track.take(FoundMounting(known, np.zeros(9)))
     assert track.fitted_noise == 0.1
-    for k in range(4000):
-        noise = deviation * rng.normal(size=(2, 3))
-        track.sensor.offer(k * DT, acceleration=np.divide(REST, GRAVITY) + noise[0], rate=noise[1])
-    track.native.count += 1800
-    track.heed()
-    assert track.fitted_noise == pytest.approx(deviation, rel=0.1)
-    assert track.watched_noise == pytest.approx(deviation * GRAVITY, rel=0.1)
+    time = 0.0
+    for period, noise, told in (
+        (DT, 0.02, 0.02), (DT, 0.05, 0.05), (0.1, 0.2, 0.05), (0.1, 0.01, 0.01), (DT, 0.02, 0.02),
+    ):  # fmt: skip
+        for _ in range(1200):
+            time += period
+            moved = noise * rng.normal(size=(2, 3))
+            felt = np.divide(REST, GRAVITY) + moved[0]
+            track.sensor.offer(time, acceleration=felt, rate=moved[1])
+        track.native.count += 1800
+        track.heed()
+        held = (period / DT) ** 0.5
+        assert track.fitted_noise == pytest.approx(held * told, rel=0.1)
+        assert track.watched_noise == pytest.approx(held * told * GRAVITY, rel=0.1)
+    slow = replace(known, noise=np.full(3, 0.3), azimuth_error=-1.0)
+    track.take(FoundMounting(slow, np.zeros(9)))
+    assert track.fitted_noise == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,9 @@ Time in [s] after which the mean difference from the model is found again: with 
 wind, or of a battery that was warmer, the tree would lean for an hour as it does not.
 """
 _KNOCKED = 5.0
+_AS_OFTEN = 1.05
+"""Time between samples over the one by which their noise is known, up to which it is followed."""
+
 _COMPARED, _LEAST_COMPARED = 8.0, 3.0
 """
 Time in [s], and periods of the first sway at least, over which motions are averaged to find a
@@ -406,6 +409,7 @@ class SensorTrack:
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(_LEARNING / dt)
         self._next_mean = 0
+        self._noise_period = math.inf
         self._quantities = sensor.quantities
         self._left_for: float | None = None
         self.late = 0.0
@@ -532,13 +536,9 @@ class SensorTrack:
         return True
 
     def _follow(self, alignment: Alignment) -> None:
-        """
-        Let the mean difference from the model be that of the last minutes, and the noise its own.
-
-        Of few samples a second, in wind, sway between them is noise as well.
-        """
+        """Let the noise and the mean difference from the model be those of the last minutes."""
         noise = noise_of(alignment.motion(self.sensor.ring.newest_samples()))
-        self.alignment = replace(alignment, noise=noise)
+        self.alignment = replace(alignment, noise=self._known_noise(noise))
         every = round(_MEAN_EVERY / self._dt)
         count = self.native.count
         self._next_mean = count + every
@@ -546,6 +546,19 @@ class SensorTrack:
         model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
         missed = (alignment.motion(self._sensed[rows]) - model).mean(axis=0) - self.bias
         self.bias += len(rows) / len(self._sensed) * missed
+
+    def _known_noise(self, found: Floats) -> Floats:
+        """
+        Return the noise of a sample as it is known with the newest samples, (3,).
+
+        The farther samples are apart, the more of the sway is between them, and taken for noise:
+        of fewer a second than before only less noise is believed.
+        """
+        period = self.sensor.ring.period
+        if self.alignment is not None and period > _AS_OFTEN * self._noise_period:
+            return np.minimum(found, self.alignment.noise)
+        self._noise_period = period
+        return found
 
     @property
     def is_due(self) -> bool:
@@ -630,7 +643,8 @@ class SensorTrack:
         is_kept = native.is_mounted and not native.is_refused and not is_left
         if is_kept and (found.problem or self._is_less_sure(found)):
             return
-        self.alignment = found
+        noise = self._known_noise(found.noise)
+        self.alignment = found if noise is found.noise else replace(found, noise=noise)
         native.is_awaited, native.is_mounted = 0, not found.problem
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
