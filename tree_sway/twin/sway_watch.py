@@ -11,7 +11,7 @@ before foretell for their wind, by a line over the logarithm of the mean wind wh
 roughly before anything is measured.
 
 A change is told until the tree sways as before again, as when wet leaves have dried: as surely
-otherwise than with the change as it was told. Blocks of a changed tree foretell nothing.
+otherwise than with the change when it was largest. Blocks of a changed tree foretell nothing.
 
 The loss of a small limb moves the middle by less than chance does. It changes the power in narrow
 bands, which `spectrum_change` compares.
@@ -148,6 +148,7 @@ class SwayWatch:
         self._blocks: list[_Middle] = []
         self._n_past = 0
         self._began = (0.0, 0.0, 0)
+        self._told = 1.0  # the largest ratio since a change is told
         self.change: SwayChange | None = None
         """The change that lasts, else the last comparison; None before any."""
 
@@ -211,10 +212,12 @@ class SwayWatch:
         band = None if before is None else before.band
         now = SwayChange(math.exp(found - foretold), error, hours, band)
         if is_changed and before is not None and now.of_middle <= 1.0:
-            apart = abs(math.log(now.ratio / before.ratio))
+            apart = abs(math.log(now.ratio / self._told))
             if apart <= _CHANGED * error:  # in this wind the change would not be seen
                 return
             del self._blocks[self._n_past : -_RECENT]
+        if not is_changed or abs(math.log(now.ratio)) > abs(math.log(self._told)):
+            self._told = now.ratio
         self.change = now
 
 
