@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import pytest
 
 from tree_sway.twin.sample_ring import CAPACITY, SampleRing
 
@@ -49,3 +52,26 @@ def test_the_oldest_samples_make_room() -> None:
         assert ring.keep(float(k)) == 'accepted'
     assert ring.read(99.0, DT) is None
     np.testing.assert_array_equal(ring.read(count - 1.0, DT), (count - 1) % 7)
+
+
+def test_the_newest_samples_are_those_of_one_clock() -> None:
+    sample = np.zeros(9)
+    ring = SampleRing(sample)
+    assert math.isnan(ring.period)
+    assert len(ring.newest_samples()) == 0
+    ring.ask_for((True, True, True))
+    for k in range(100):
+        sample[:] = k
+        ring.keep(100.0 + 0.1 * k)
+        ring.read(100.0 + 0.1 * k, DT)
+    np.testing.assert_array_equal(ring.newest_samples()[:, 0], np.arange(100))
+    assert ring.period == pytest.approx(0.1)
+    outcomes = list[str]()
+    for k in range(10):
+        sample[:] = 100 + k
+        outcomes.append(ring.keep(50.0 + 0.04 * k))
+    first = outcomes.index('restarted')
+    np.testing.assert_array_equal(ring.newest_samples()[:, 0], np.arange(100 + first, 110))
+    assert ring.period == pytest.approx(0.04)
+    ring.ask_for((True, False, False))
+    assert len(ring.newest_samples()) == 0

@@ -134,6 +134,33 @@ def test_the_mean_difference_from_the_model_is_that_of_the_last_ten_minutes() ->
         np.testing.assert_allclose(missed, left * found.motion(sample), rtol=0.15)
 
 
+def test_the_noise_is_that_of_the_newest_samples_but_for_sway_between_fewer() -> None:
+    """That of a battery that faded, found in wind, was told for an hour of a calm."""
+    track, rng = track_of(readings(1)[0]), np.random.default_rng(2)
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.array([GRAVITY, 1.0]), True, 0.9, np.full(3, 0.1))
+    track.take(FoundMounting(known, np.zeros(9)))
+    assert track.fitted_noise == 0.1
+    time = 0.0
+    for period, noise, told in (
+        (DT, 0.02, 0.02), (DT, 0.05, 0.05), (0.1, 0.2, 0.05), (0.1, 0.01, 0.01), (DT, 0.02, 0.02),
+    ):  # fmt: skip
+        for _ in range(1200):
+            time += period
+            moved = noise * rng.normal(size=(2, 3))
+            felt = np.divide(REST, GRAVITY) + moved[0]
+            track.sensor.offer(time, acceleration=felt, rate=moved[1])
+        track.native.count += 1800
+        track.heed()
+        held = (period / DT) ** 0.5
+        assert track.fitted_noise == pytest.approx(held * told, rel=0.1)
+        assert track.watched_noise == pytest.approx(held * told * GRAVITY, rel=0.1)
+    slow = replace(known, noise=np.full(3, 0.3), azimuth_error=-1.0)
+    track.take(FoundMounting(slow, np.zeros(9)))
+    assert track.fitted_noise == pytest.approx(0.3)
+
+
 @pytest.mark.parametrize(
     ('unit', 'error', 'is_taken'),
     [(1.0, 0.1, True), (1.0, 0.14, True), (1.0, 0.2, False), (0.0175, 0.14, False),
@@ -272,6 +299,37 @@ def test_silence_and_a_stall_leave_the_lateness() -> None:
 
 def test_samples_known_ahead_need_no_lateness() -> None:
     assert lateness_of([(0.01 * k, 0.01 * k + 0.5) for k in range(1000)], 10.0) == 0
+
+
+@pytest.mark.parametrize('rate', [10.0, 25.0, 60.0, 150.0])
+def test_the_noise_that_is_told_is_the_one_in_the_spectrum_of_sway(rate: float) -> None:
+    """By the steps between few samples, which are on lines, there is hardly any."""
+    of, _, state = readings(1)
+    state[:] = 0.0
+    track, rng, deviation = track_of(of), np.random.default_rng(4), 0.02
+    track._next_fit = 10**9
+    track.sensor.quantities = ('acceleration', 'rate')
+    track.heed()
+    known = Alignment(np.eye(3), np.ones(2), True, 0.9, np.full(3, 0.1))
+    track.take(FoundMounting(known, np.zeros(9)))
+    spectrum = SensorSpectrum(1.0, DT, N)
+    track.native.series = spectrum.native.at
+    stamp = 0.4 * DT
+    for step in range(9000):
+        while stamp < (step + 1) * DT + 1.0 / rate:
+            noise = deviation * rng.normal(size=(2, 3))
+            track.sensor.offer(stamp, acceleration=REST + noise[0], rate=noise[1])
+            stamp += 1.0 / rate
+        of.read(step * DT, step, step - 1)
+        spectrum.advance()
+    track._computed[:, 6:9] = track._sensed[:, 3:6]  # a model that turns as fast as it
+    found = track.search()()
+    assert found.alignment.noise[1] == pytest.approx(deviation, rel=0.08)
+    sure = replace(found.alignment, problem='', azimuth_error=0.0)
+    track.take(found._replace(alignment=sure))
+    is_slow = spectrum.circular < 2.0 * np.pi
+    power = spectrum.products[is_slow][:, (0, 1), (0, 1)].real.mean()
+    assert spectrum.power_of_noise(track.fitted_noise) == pytest.approx(power, rel=0.15)
 
 
 def test_a_mounting_of_quantities_that_a_sensor_no_more_measures_is_not_taken() -> None:

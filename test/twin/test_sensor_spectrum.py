@@ -63,3 +63,20 @@ def test_a_gap_begins_a_stretch_anew() -> None:
         add(spectrum, *still)
     assert spectrum.count == 1
     assert spectrum.until_first == 0.0
+
+
+def test_the_noise_is_the_mean_over_the_stretches_that_are_new() -> None:
+    spectrum = SensorSpectrum(FREQUENCY, DT, FORCES)
+    one = spectrum.power_of_noise(1.0)
+    spectrum.note_noise(0.1, 1.0)
+    spectrum.count = 1
+    assert spectrum.noise == pytest.approx(0.01 * one)
+    spectrum.take_products()
+    assert spectrum.noise == 0.0
+    spectrum.note_noise(0.2, 2.0)
+    spectrum.note_noise(0.4, 4.0)
+    spectrum.count = 3
+    assert spectrum.noise == pytest.approx(0.1 * one)
+    np.testing.assert_allclose(spectrum.end_block().noise, [0.21 * one, 21.0 * one])
+    spectrum.note_noise(0.3, 3.0)
+    np.testing.assert_allclose(spectrum.end_block().noise, [0.09 * one, 9.0 * one])

@@ -15,7 +15,7 @@ from tree_sway.twin.sway_watch import BLOCK, SwayWatch
 DT, NOISE = 0.1, 0.004
 N_STEPS = round(BLOCK / DT) + 1
 """Steps of a block."""
-WINDS = (4.0, 7.0, 3.0, 5.0, 8.0, 4.0, 6.0, 3.5, 5.0, 7.5)
+WINDS = (4.0, 7.0, 3.0, 5.0, 8.0, 4.0, 6.0, 3.5, 5.0, 7.5, 5.0)
 
 
 def swayed(frequency: float, wind: float, rng: np.random.Generator) -> Floats:
@@ -46,10 +46,13 @@ def watched(
         for each in motion:
             rows[native.filled % len(rows), [0, 1, 3, 4]] = *each[:2], *each[:2]
             native.filled += 1
+            n_noted = spectrum.count
             assert spectrum.advance()
+            if spectrum.count > n_noted:
+                spectrum.note_noise(NOISE, NOISE)
             blown, count = blown + wind, count + 1
             if watch.is_due:
-                watch.advance((blown, 0.0, count), NOISE, NOISE)
+                watch.advance((blown, 0.0, count))
     return watch
 
 
@@ -81,6 +84,14 @@ def test_leaves_that_have_dried_are_no_change_any_more() -> None:
     dried = watched([*frequencies, 1.0, 1.0, 1.0], seed=7)
     assert not has_changed(dried)
     assert 'as before' in str(dried.change)
+
+
+def test_leaves_that_dry_slowly_are_no_change_any_more() -> None:
+    frequencies = [1.0] * 5 + [0.85, 0.85, 0.91, 0.91]
+    wet, dried = watched(frequencies, seed=7), watched([*frequencies, 0.96, 0.96], seed=7)
+    assert wet.change is not None
+    assert dried.change is not None
+    assert wet.change.of_middle > 1.0 > dried.change.of_middle
 
 
 def test_another_mode_of_a_limb_is_seen_in_its_band() -> None:

@@ -92,7 +92,7 @@ class Alignment:
     azimuth_error
         Standard deviation of its azimuth [rad].
     noise
-        Standard deviation of its noise: acceleration, rate, rotation, (3,).
+        Standard deviation of the noise of a sample: acceleration, rate, rotation, (3,).
     problem
         Why it cannot be used and what to do; empty if it can.
     notes
@@ -136,6 +136,8 @@ def align(
     facing: float | None = None,
     sign: float = 0.0,
     sway: Sway | None = None,
+    samples: Floats | None = None,
+    held: float = 1.0,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -162,6 +164,11 @@ def align(
     sway
         What is known of the sway there, by which a lean tells the azimuth (`sway_azimuth`); None
         without.
+    samples
+        Its last samples as it sent them, (m, 9), which tell its noise; None if those at equal
+        steps are these.
+    held
+        Steps from one of them to the next [-].
 
     """
     raw, sensed = sensed, averaged(sensed, window)
@@ -213,11 +220,13 @@ def align(
         scale[0] *= GRAVITY
         likeness, ratio = _likeness(found.motion(sensed), model, measures)
     moved, error = found.motion(raw), _TOLD_ERROR
-    noise = _noise_of(moved)
+    noise = noise_of(moved if samples is None else found.motion(samples))
     if facing is None or not has_gravity:
         error = _azimuth_error(likeness, count)
     if sway is not None and facing is None and measures[0] and has_gravity:
-        turn, error = sway_azimuth(moved[:, :2], with_gravity[:, :2], float(noise[0]), sway)
+        turn, error = sway_azimuth(
+            moved[:, :2], with_gravity[:, :2], float(noise[0]) * math.sqrt(held), sway
+        )
         found = found.turned(turn)
         likeness, _ = _likeness(found.motion(sensed), model, measures)
     if not problem and _is_below_noise(model, measures, window):
@@ -379,12 +388,13 @@ def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> 
     return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
 
 
-def _noise_of(moved: Floats) -> Floats:
+def noise_of(moved: Floats) -> Floats:
     """
-    Estimate the deviation of the noise of each quantity, (3,), from motion at equal steps, (n, 9).
+    Estimate the deviation of the noise of each quantity, (3,), from the motion of samples, (n, 9).
 
     The third difference of white noise has 20 times its variance, and hardly any sway. Its median
-    counts: a knock, or a gap between two samples, would be most of its mean.
+    counts: a knock, or a gap between two samples, would be most of its mean. Samples that are
+    joined by lines have less noise from step to step, and as much in slow sway.
     """
     found = np.zeros(3)
     for quantity in range(3):

@@ -99,11 +99,12 @@ class RunningFit:
                 self._begin(k)
             if self._spectra[k].advance():
                 if self._spectra[k].count != self._noted[k]:
+                    self._spectra[k].note_noise(track.fitted_noise, track.watched_noise)
                     self._note_air(k)
                 watch = self.watches[k]
                 if watch.is_due:
                     winds = self._east, self._north, self._n_winds
-                    watch.advance(winds, track.fitted_noise, track.watched_noise)
+                    watch.advance(winds)
             elif track.is_silent:
                 self._spectra[k].skip()
 
@@ -190,5 +191,5 @@ class RunningFit:
             measured.circular,
             measured.new_stretches,
             measured.new_seconds,
-            measured.power_of_noise(track.fitted_noise),
+            measured.noise,
         )

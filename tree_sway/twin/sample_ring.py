@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native import address, LIBRARY
 from tree_sway.twin.alignment import LEAST_NOISE
 
@@ -34,6 +34,9 @@ With the last one, most samples are of other quantities from this one on (`Sampl
 
 CAPACITY = 4096
 """Samples that are kept."""
+
+_RECENT, _NEWEST = 40, 1024
+"""Samples whose period is told, and newest samples."""
 
 _RING = np.dtype(
     [
@@ -75,8 +78,10 @@ class SampleRing:
     def __init__(self, sample: Floats) -> None:
         self.memory: NDArray[Any] = np.zeros(1, dtype=_RING)
         """Its memory, ``sway_ring`` of the native core."""
-        self._newest, self._period = self.memory['newest'], self.memory['period']
-        self._newest[0], self._period[0] = -math.inf, math.nan
+        self._newest, self._times = self.memory['newest'], self.memory['time'][0]
+        self._first, self._count = self.memory['first'], self.memory['count']
+        self._newest[0], self._times[:] = -math.inf, math.nan
+        self.memory['period'] = math.nan
         self.memory['before'] = self.memory['offered'] = math.nan
         self.memory['noise'] = LEAST_NOISE
         self.memory['given'] = -1
@@ -98,8 +103,22 @@ class SampleRing:
         found = LIBRARY.sway_read_samples(self._at, time, dt, self._found_at)
         return self._found if found else None
 
+    def newest_samples(self) -> Floats:
+        """Copy the samples that came last, also those that were read, the oldest first, (n, 9)."""
+        return np.array(self.memory['values'][0, self._newest_rows(_NEWEST)])
+
+    def _newest_rows(self, count: int) -> Ints:
+        """Return the rows of the samples that came last, a number at most."""
+        end = int(self._first[0] + self._count[0])
+        rows = np.arange(end - count, end) % CAPACITY
+        rows = rows[np.isfinite(self._times[rows])]
+        # Times rise, but where the clock was set back.
+        falls = np.flatnonzero(np.diff(self._times[rows]) <= 0.0)
+        return rows[falls[-1] + 1 :] if len(falls) else rows
+
     def ask_for(self, is_given: Sequence[bool]) -> None:
         """Forget all samples, and ask for some of the three quantities; the clock stays."""
+        self._times[:] = math.nan
         LIBRARY.sway_ask_for(self._at, sum(asked << k for k, asked in enumerate(is_given)))
 
     @property
@@ -109,5 +128,6 @@ class SampleRing:
 
     @property
     def period(self) -> float:
-        """Time between samples in [s], a running median; not a number before two samples."""
-        return float(self._period[0])
+        """Time between samples in [s], the median of the last; not a number before two samples."""
+        apart = np.sort(np.diff(self._times[self._newest_rows(_RECENT)]))
+        return float(apart[len(apart) // 2]) if len(apart) else math.nan

@@ -38,12 +38,13 @@ class SpectrumBlock(NamedTuple):
     """
     Power of east and north together at each frequency, (f,), a sum over ``n_stretches``.
 
-    ``watched`` is that of the watched motion, of east and north, (g, 2), and ``seconds`` the
-    length of the motion in [s].
+    ``watched`` is that of the watched motion, of east and north, (g, 2), ``noise`` that of the
+    noise of one axis of both motions, (2,), and ``seconds`` the length of the motion in [s].
     """
 
     power: Floats
     watched: Floats
+    noise: Floats
     n_stretches: int
     seconds: float
 
@@ -95,12 +96,15 @@ class SensorSpectrum:
         self.watched_frequencies: Floats = np.asarray(axis[self._is_watched], dtype=np.float64)
         """Frequencies of the watched motion in [Hz], (g,)."""
         self._watched = np.zeros((len(self.watched_frequencies), 2))
-        self._block = SpectrumBlock(np.zeros(n_frequencies), self._watched.copy(), 0, 0.0)
+        self._noise = np.zeros(2)
+        self._block = SpectrumBlock(
+            np.zeros(n_frequencies), self._watched.copy(), self._noise.copy(), 0, 0.0
+        )
         self._filled = 0
         self._n_series = self._next = n_series
         self.count = 0
         """Number of stretches."""
-        self._taken = 0, 0.0
+        self._taken = 0, 0.0, 0.0
         self.seconds = 0.0
         """Length of the motion so far in [s]."""
 
@@ -159,11 +163,13 @@ class SensorSpectrum:
 
     def end_block(self) -> SpectrumBlock:
         """Begin a block; return the last one."""
-        before, power = self._block, self._power.copy()
-        self._block = SpectrumBlock(power, self._watched.copy(), self.count, self.seconds)
+        before, power, noise = self._block, self._power.copy(), self._noise.copy()
+        watched = self._watched.copy()
+        self._block = SpectrumBlock(power, watched, noise, self.count, self.seconds)
         return SpectrumBlock(
             power - before.power,
-            self._watched - before.watched,
+            watched - before.watched,
+            noise - before.noise,
             self.count - before.n_stretches,
             self.seconds - before.seconds,
         )
@@ -171,6 +177,15 @@ class SensorSpectrum:
     def power_of_noise(self, deviation: float) -> float:
         """Power of white noise of a deviation at each frequency of a stretch, of one axis."""
         return deviation**2 * float(np.square(self._window).sum())
+
+    def note_noise(self, deviation: float, watched: float) -> None:
+        """Note the noise in a step of the last stretch of both motions, standard deviations."""
+        self._noise += self.power_of_noise(deviation), self.power_of_noise(watched)
+
+    @property
+    def noise(self) -> float:
+        """Mean power of the noise of the new stretches at each frequency, of one axis."""
+        return (float(self._noise[0]) - self._taken[2]) / max(self.new_stretches, 1)
 
     @property
     def new_stretches(self) -> int:
@@ -185,7 +200,7 @@ class SensorSpectrum:
     def take_products(self) -> None:
         """Begin the products anew."""
         self._products[:] = 0.0
-        self._taken = self.count, self.seconds
+        self._taken = self.count, self.seconds, float(self._noise[0])
 
     @property
     def products(self) -> Waves:

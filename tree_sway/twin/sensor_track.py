@@ -26,6 +26,7 @@ from tree_sway.twin.alignment import (
     averaged,
     GRAVITY,
     LEAST_NOISE,
+    noise_of,
     TELLS_LITTLE,
 )
 from tree_sway.twin.late_wind import LONGEST_WAY
@@ -55,6 +56,9 @@ Time in [s] after which the mean difference from the model is found again: with 
 wind, or of a battery that was warmer, the tree would lean for an hour as it does not.
 """
 _KNOCKED = 5.0
+_AS_OFTEN = 1.05
+"""Time between samples over the one by which their noise is known, up to which it is followed."""
+
 _COMPARED, _LEAST_COMPARED = 8.0, 3.0
 """
 Time in [s], and periods of the first sway at least, over which motions are averaged to find a
@@ -194,8 +198,13 @@ def _mounting(
     windows: Windows,
     lags: LagRange,
     bend: Floats,
+    samples: tuple[Floats, float],
 ) -> FoundMounting:
-    """Find a mounting by samples (n, 9), rows of the model, (12, n), and its lean by loads."""
+    """
+    Find a mounting by motion (n, 9), rows of the model, (12, n), and its lean by loads.
+
+    ``samples`` are the last ones as they came, (m, 9), and the steps from one to the next.
+    """
     whole = sensed
     now, later = _lagging(-min(lags.of_wind, len(sensed) // 2), len(sensed))
     sensed, computed = sensed[now], computed[:, later]
@@ -203,7 +212,7 @@ def _mounting(
     known = sensor.reference, min(windows.compared, len(sensed) // 2), sensor.place.facing
     sway = Sway(bend, 1.0 / (windows.period * windows.dt), windows.dt)
     sign = 0.0
-    found = align(sensed, upright, free, *known, sway=sway)
+    found = align(sensed, upright, free, *known, 0.0, sway, *samples)
     lag = _lag(sensed, upright, free, windows.period, lags, has_gravity=found.has_gravity)
     left = SensorLag()
     if not lag and found.problem != TELLS_LITTLE:
@@ -212,7 +221,7 @@ def _mounting(
         if found.has_gravity and np.isfinite(sensed[:, :3]).all():
             # Of opposite sign, a lean is mirrored.
             rival_sign = -math.copysign(1.0, found.scale[0])
-            rival = align(sensed, upright, free, *known, rival_sign, sway)
+            rival = align(sensed, upright, free, *known, rival_sign, sway, *samples)
             other = _slow_lag(rival.motion(sensed), model, windows, lags)
             if other.evidence > left.evidence + _MIRRORED:
                 found, left, sign = rival, other, rival_sign
@@ -223,7 +232,7 @@ def _mounting(
     if lag:
         later, earlier = _lagging(lag, len(sensed))
         sensed, upright, free = sensed[later], upright[earlier], free[earlier]
-        found = align(sensed, upright, free, *known, sign, sway)
+        found = align(sensed, upright, free, *known, sign, sway, *samples)
     if found.problem:
         lag = 0
     bias = np.zeros(9)
@@ -400,6 +409,7 @@ class SensorTrack:
         self._windows = Windows(max(round(period / dt), 1), max(round(compared / dt), 1), dt)
         self._next_fit = round(_LEARNING / dt)
         self._next_mean = 0
+        self._noise_period = math.inf
         self._quantities = sensor.quantities
         self._left_for: float | None = None
         self.late = 0.0
@@ -413,13 +423,6 @@ class SensorTrack:
             is_awaited=1,
         )  # fmt: skip
         """Its state in the native core."""
-        self.fitted_noise = self.watched_noise = 0.0
-        """
-        Noise in each sample of this quantity, and of the acceleration, standard deviations.
-
-        Without an acceleration, the first of the others is watched. The acceleration tells more of
-        fast sway than the angular rate, which is less above its noise.
-        """
 
     def _uses(self) -> tuple[int, ...]:
         given = self._quantities
@@ -433,15 +436,36 @@ class SensorTrack:
 
     @property
     def noise(self) -> Floats:
-        """Standard deviation of the noise at each step, (3,)."""
-        known = LEAST_NOISE
-        if self.alignment is not None:
-            known = np.maximum(self.alignment.noise, LEAST_NOISE)
-        known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
+        """Standard deviation of the noise at each step, at least a usual or stated one, (3,)."""
+        stated = np.minimum(self.sensor.stated_noise, _CEILING)
+        return np.maximum(self._own_noise, np.maximum(stated, LEAST_NOISE) * math.sqrt(self._held))
+
+    @property
+    def _own_noise(self) -> Floats:
+        """Standard deviation of the noise that it has at each step, (3,)."""
+        known = np.zeros(3) if self.alignment is None else self.alignment.noise
+        return np.asarray(known * math.sqrt(self._held))
+
+    @property
+    def _held(self) -> float:
+        """Steps that have the same noise: samples are joined by lines, or averaged."""
         period = self.sensor.ring.period
-        # Samples that are joined by lines have the same noise in several steps.
-        held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
-        return known * math.sqrt(held)
+        return 1.0 if math.isnan(period) else period / self._dt
+
+    @property
+    def fitted_noise(self) -> float:
+        """Standard deviation of the noise at each step of the fitted quantity."""
+        return float(self._own_noise[self.fitted])
+
+    @property
+    def watched_noise(self) -> float:
+        """
+        Standard deviation of the noise at each step of the watched quantity, the acceleration.
+
+        Without one, the first of the others is watched. The acceleration tells more of fast sway
+        than the angular rate, which is less above its noise.
+        """
+        return float(self._own_noise[self.uses[0]])
 
     @property
     def in_use(self) -> bool:
@@ -494,7 +518,7 @@ class SensorTrack:
         native, counts = self.native, self.sensor.counts
         alignment = self.alignment
         if native.in_use and native.count >= self._next_mean and alignment is not None:
-            self._follow_mean(alignment)
+            self._follow(alignment)
         counts.silent = native.silences
         if native.disagreements != counts.disagreed:
             counts.disagreed = native.disagreements
@@ -511,8 +535,10 @@ class SensorTrack:
         self._next_fit = round(_LEARNING / self._dt)
         return True
 
-    def _follow_mean(self, alignment: Alignment) -> None:
-        """Let the mean difference from the model be that of the last minutes."""
+    def _follow(self, alignment: Alignment) -> None:
+        """Let the noise and the mean difference from the model be those of the last minutes."""
+        noise = noise_of(alignment.motion(self.sensor.ring.newest_samples()))
+        self.alignment = replace(alignment, noise=self._known_noise(noise))
         every = round(_MEAN_EVERY / self._dt)
         count = self.native.count
         self._next_mean = count + every
@@ -520,6 +546,19 @@ class SensorTrack:
         model = as_felt(self._computed[rows].T, has_gravity=alignment.has_gravity).T
         missed = (alignment.motion(self._sensed[rows]) - model).mean(axis=0) - self.bias
         self.bias += len(rows) / len(self._sensed) * missed
+
+    def _known_noise(self, found: Floats) -> Floats:
+        """
+        Return the noise of a sample as it is known with the newest samples, (3,).
+
+        The farther samples are apart, the more of the sway is between them, and taken for noise:
+        of fewer a second than before only less noise is believed.
+        """
+        period = self.sensor.ring.period
+        if self.alignment is not None and period > _AS_OFTEN * self._noise_period:
+            return np.minimum(found, self.alignment.noise)
+        self._noise_period = period
+        return found
 
     @property
     def is_due(self) -> bool:
@@ -532,7 +571,10 @@ class SensorTrack:
         sensed, computed = self._remembered()
         lags = lags._replace(left_for=self._left_for)
         model = computed.T.copy()
-        return partial(_mounting, sensed, model, self.sensor, self._windows, lags, self.bend)
+        samples = self.sensor.ring.newest_samples(), self._held
+        return partial(
+            _mounting, sensed, model, self.sensor, self._windows, lags, self.bend, samples
+        )
 
     @property
     def window(self) -> int:
@@ -601,7 +643,8 @@ class SensorTrack:
         is_kept = native.is_mounted and not native.is_refused and not is_left
         if is_kept and (found.problem or self._is_less_sure(found)):
             return
-        self.alignment = found
+        noise = self._known_noise(found.noise)
+        self.alignment = found if noise is found.noise else replace(found, noise=noise)
         native.is_awaited, native.is_mounted = 0, not found.problem
         native.in_use = native.is_mounted and not native.is_refused
         if found.problem:
@@ -611,8 +654,6 @@ class SensorTrack:
         written = self._mounting
         written[:9], written[9:11] = found.turn.ravel(), found.scale
         written[11] = GRAVITY if found.has_gravity else 0.0
-        self.fitted_noise = float(found.noise[self.fitted])
-        self.watched_noise = float(found.noise[self.uses[0]])
         self.bias[:] = mounting.bias
         self._next_mean = native.count + round(_MEAN_EVERY / self._dt)
 

@@ -11,7 +11,7 @@ before foretell for their wind, by a line over the logarithm of the mean wind wh
 roughly before anything is measured.
 
 A change is told until the tree sways as before again, as when wet leaves have dried: as surely
-otherwise than with the change as it was told. Blocks of a changed tree foretell nothing.
+otherwise than with the change when it was largest. Blocks of a changed tree foretell nothing.
 
 The loss of a small limb moves the middle by less than chance does. It changes the power in narrow
 bands, which `spectrum_change` compares.
@@ -148,6 +148,7 @@ class SwayWatch:
         self._blocks: list[_Middle] = []
         self._n_past = 0
         self._began = (0.0, 0.0, 0)
+        self._told = 1.0  # the largest ratio since a change is told
         self.change: SwayChange | None = None
         """The change that lasts, else the last comparison; None before any."""
 
@@ -156,7 +157,7 @@ class SwayWatch:
         """Whether a block ends, or bands are being compared."""
         return self._work is not None or self._spectrum.block_seconds >= BLOCK
 
-    def advance(self, winds: tuple[float, float, int], noise: float, watched_noise: float) -> None:
+    def advance(self, winds: tuple[float, float, int]) -> None:
         """
         End a block, or go on with comparing its bands.
 
@@ -164,8 +165,6 @@ class SwayWatch:
         ----------
         winds
             Sums of the winds so far to east and north [m/s], and their number.
-        noise, watched_noise
-            Noise of the sensor, and that of its watched motion.
 
         """
         if self._work is not None and (found := self._work.advance()) is not None:
@@ -177,7 +176,7 @@ class SwayWatch:
         east, north, count = (now - then for now, then in zip(winds, self._began, strict=True))
         wind = east / count, north / count
         self._began = winds
-        floor = 2.0 * block.n_stretches * self._spectrum.power_of_noise(noise)
+        floor = 2.0 * float(block.noise[0])
         power = np.maximum(block.power - floor, 0.0)
         if power.sum() > max(_LEAST_POWER * floor * len(power), 1e-300):
             frequency = power @ np.log(self._spectrum.circular / (2.0 * np.pi)) / power.sum()
@@ -186,7 +185,7 @@ class SwayWatch:
             find = partial(
                 self._bands.add,
                 block.watched / block.n_stretches,
-                self._spectrum.power_of_noise(watched_noise),
+                float(block.noise[1]) / block.n_stretches,
                 block.seconds,
                 wind,
             )
@@ -213,10 +212,12 @@ class SwayWatch:
         band = None if before is None else before.band
         now = SwayChange(math.exp(found - foretold), error, hours, band)
         if is_changed and before is not None and now.of_middle <= 1.0:
-            apart = abs(math.log(now.ratio / before.ratio))
+            apart = abs(math.log(now.ratio / self._told))
             if apart <= _CHANGED * error:  # in this wind the change would not be seen
                 return
             del self._blocks[self._n_past : -_RECENT]
+        if not is_changed or abs(math.log(now.ratio)) > abs(math.log(self._told)):
+            self._told = now.ratio
         self.change = now
 
 
