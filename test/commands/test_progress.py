@@ -38,6 +38,19 @@ def test_a_long_wait_without_a_terminal_shows_a_line(
     assert capsys.readouterr().err == 'working ...\n'
 
 
+def test_longer_work_without_a_terminal_tells_what_is_left(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = iter([0.0, 1.0, 20.0, 21.0, 40.0])
+    monkeypatch.setattr(progress.time, 'monotonic', lambda: next(now))
+    with progress.counting(50, 'working') as tell:
+        for done in (5, 10, 11, 20):
+            tell(done)
+    assert capsys.readouterr().err == (
+        'working: 10 of 50, about 80 s left\nworking: 20 of 50, about 60 s left\n'
+    )
+
+
 def test_a_long_wait_on_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip('tqdm')
     terminal = Terminal()

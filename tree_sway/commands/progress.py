@@ -4,7 +4,7 @@
 Progress of commands: a bar for counted work, a line for other work.
 
 All output goes to standard error. Bars are those of tqdm, only on terminals; without tqdm or
-terminal there is a line.
+terminal there is a line now and then, with the time that is left.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 import sys
 import threading
+import time
 from typing import Any, TypeVar
 
 from tree_sway.errors import shown
@@ -22,6 +23,9 @@ T = TypeVar('T')
 PATIENCE = 2.0
 """Shortest wait that is reported [s]."""
 
+_BETWEEN = 10.0
+"""Time between two lines of progress [s]."""
+
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
     """Yield the items, and show their progress under a label: "MuJoCo", "settling"."""
@@ -29,17 +33,29 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
     if counted is not None:
         yield from counted
         return
-    with waiting(what):
-        yield from items
+    with counting(len(items), what, is_bar=False) as tell:
+        for done, item in enumerate(items):
+            tell(done)
+            yield item
 
 
 @contextmanager
-def counting(total: int, what: str) -> Iterator[Callable[[int], object]]:
-    """Give a function that shows how many of a total are done."""
-    counted = _bar_on_terminal(what, total=total) if total > 1 else None
+def counting(total: int, what: str, *, is_bar: bool = True) -> Iterator[Callable[[int], object]]:
+    """Give a function that shows how many of a total are done, by a bar if there can be one."""
+    counted = _bar_on_terminal(what, total=total) if is_bar and total > 1 else None
     if counted is None:
+        began = told = time.monotonic()
+
+        def tell(done: int) -> None:
+            nonlocal told
+            now = time.monotonic()
+            if done and now - told > _BETWEEN:
+                told = now
+                left = (now - began) * (total - done) / done
+                _report(f'{what}: {done} of {total}, about {max(left, 1.0):.0f} s left')
+
         with waiting(what):
-            yield lambda done: None
+            yield tell
         return
     with counted:
         yield lambda done: counted.update(done - counted.n)

@@ -157,4 +157,3 @@ class GainDesign:
         felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
         uses = list(track.uses)
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
-

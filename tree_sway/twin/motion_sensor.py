@@ -221,11 +221,13 @@ class MotionSensor:
         self.quantities = tuple([name for name, is_there in pairs if is_there])
         if self.counts.accepted > _MANY:
             self.lost = tuple([name for name in before if name not in self.quantities])
-        self.unusable = tuple([
-            name
-            for name, is_sent in zip(_QUANTITIES, self._sent, strict=True)
-            if is_sent and name not in (*self.quantities, *self.lost)
-        ])
+        self.unusable = tuple(
+            [
+                name
+                for name, is_sent in zip(_QUANTITIES, self._sent, strict=True)
+                if is_sent and name not in (*self.quantities, *self.lost)
+            ]
+        )
         self.ring.ask_for(is_given)
         if is_given[2]:
             self.reference = None
