@@ -65,8 +65,8 @@ class Calibration:
 
 def calibrate(
     tree: Tree | GrownTree,
-    species: Species | None,
-    frequency: float,
+    species: Species | None = None,
+    frequency: float = math.nan,
     damping_ratio: float | None = None,
     settings: Settings | None = None,
     branch: str | None = None,
