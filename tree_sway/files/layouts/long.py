@@ -28,6 +28,7 @@ _COLUMNS = {
     'wetterdienst': ('date', 'parameter', 'value'),
     'openSenseMap': ('createdAt', 'phenomenon', 'value'),
     'DMI': ('observed', 'parameterId', 'value'),
+    'CHMI': ('DT', 'ELEMENT', 'VAL'),
 }
 """Columns of the time, the name and the value; one called ``unit`` may be beside them."""
 _STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')

@@ -291,10 +291,10 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
         )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
     stands = (steps == 0.0) & changes
-    if _are_most(stands, 0.5):
+    if _are_most(stands, 0.4):
         raise table.error(
             f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
-            cure='export times with fractions of a second',
+            cure='export times with fractions of a second, and one sensor alone',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
     name = '' if column is None else table.columns[column]
