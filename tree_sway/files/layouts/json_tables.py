@@ -55,8 +55,6 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
-    if not winds and (spread := spread_table(document, source)):
-        return spread
     if not tables:
         raise FormatError(
             'no table in the JSON',
@@ -112,13 +110,13 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         values = list(_series(node, '', own))
         if values:
             yield wide_table(values, source, 'time', own)
-        if columns := _columns(node, units, source):
-            yield columns
         if rows := list(_rows(node, own)):
             yield _records(rows, own, source)
         for name, each in node.items():
             own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
             yield from _tables(each, own_units, source, depth + 1)
+        if columns := spread_table(node, units, source):  # after those of a part of it
+            yield columns
 
 
 def _metrics(node: list[Any]) -> dict[str, Any]:
@@ -173,21 +171,6 @@ def _said_units(node: dict[str, Any]) -> Cells:
     channel = object_of(node.get('channel'))  # ThingSpeak's names of its fields
     titles = {f'#{name}': title for name, title in channel.items() if isinstance(title, str)}
     return {'*': system} if isinstance(system, str) else titles
-
-
-def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
-    """Return the table of the lists in a node, if they are columns."""
-    names = [name for name, each in node.items() if isinstance(each, list)]
-    columns = [node[name] for name in names]
-    lengths = set(map(len, columns))
-    if len(columns) < 2 or len(lengths) != 1 or 0 in lengths:
-        return None
-    if any(isinstance(column[0], dict | list) for column in columns):
-        return None
-    cells = [map(text_of, column) for column in columns]
-    rows = list(zip(*cells, strict=True))
-    units_of_columns = [_unit(units.get(name)) for name in names]
-    return table_of_cells(names, rows, source, units=units_of_columns)
 
 
 def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
