@@ -29,7 +29,7 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
+from tree_sway.files.layouts.long import Value, wide_table, widened
 from tree_sway.files.layouts.spread_columns import spread_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
@@ -214,15 +214,10 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         empty |= dict.fromkeys(record, '')
     names = list(empty)
     rows = [list((empty | record).values()) for record in records]
-    short = [name.rpartition('.')[2] for name in names]
-    wanted = long_columns(short)
-    if wanted is not None:
-        named = (dict(zip(short, row, strict=True)) for row in rows)
-        return long_table(enumerate(named, start=1), wanted, source)
     beside = [unit_beside(records[0], name) or units.get(name) for name in names]
     units_of_columns = [_unit(each) for each in beside]
     titles = [units.get(f'#{name}', name) for name in names]
-    return table_of_cells(titles, rows, source, units=units_of_columns)
+    return widened(table_of_cells(titles, rows, source, units=units_of_columns))
 
 
 def _series(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
