@@ -81,7 +81,7 @@ def flat(
                 elif lists or len(each) == 1:
                     yield from flat(item, f'{whole}.', depth + 1, lists=lists)
         else:
-            yield whole, text_of(each)
+            yield whole, text_of(each) or cell_of(each)
 
 
 def unit_beside(record: Mapping[str, str], name: str) -> str | None:
