@@ -60,18 +60,13 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
 
     Raises a `ParameterError` for several moments in one file, or a file that exists.
     """
-    if len(_NUMBER.findall(pattern)) != 1:
-        if count > 1:
-            raise ParameterError(
-                f'{count} moments in one file',
-                where=pattern,
-                cure='name files with a number in their names, such as scene_%03d.obj',
-            )
-        names = [pattern]
-    else:
-        before, after = _NUMBER.split(pattern)
-        (form,) = _NUMBER.findall(pattern)
-        names = [f'{before}{form % k}{after}' for k in range(count)]
+    names = [_NUMBER.sub(lambda form, k=k: form[0] % k, pattern) for k in range(count)]
+    if len({*names}) < count:
+        raise ParameterError(
+            f'{count} moments in one file',
+            where=pattern,
+            cure='name files with a number in their names, such as scene_%03d.obj',
+        )
     for name in names:
         if not may_overwrite:
             refuse_overwriting(name, '--output')
