@@ -41,12 +41,12 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
             return places, form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
-    if not clocks:  # as an index without a name
-        columns = range(len(table.columns))
-        clocks = [each for each in columns if _are_dates(table.cells(each, first))][:1]
+    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
+    if not clocks or not _run_on(table.cells(clocks[0], first)):
+        columns = range(len(table.columns))  # of any name, or without one as an index
+        clocks = [each for each in columns if _are_dates(table.cells(each, first))][:1] or clocks
     if not clocks:
         return None
-    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
     if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')

@@ -60,7 +60,11 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
 
     Raises a `ParameterError` for several moments in one file, or a file that exists.
     """
-    names = [_NUMBER.sub(lambda form, k=k: form[0] % k, pattern) for k in range(count)]
+
+    def named(number: int) -> str:
+        return _NUMBER.sub(lambda form: str(form[0] % number), pattern)
+
+    names = [*map(named, range(count))]
     if len({*names}) < count:
         raise ParameterError(
             f'{count} moments in one file',
