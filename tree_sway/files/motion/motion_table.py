@@ -291,7 +291,7 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
         )
     changes = (np.diff(values[rows], axis=0) != 0.0).any(axis=1)
     stands = (steps == 0.0) & changes
-    if _are_most(stands, 0.4):
+    if _are_most(stands, 0.5):
         raise table.error(
             f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
             cure='export times with fractions of a second, and one sensor alone',
