@@ -89,9 +89,20 @@ ICELAND = [
         {'windSpeed': telemetry(SPEEDS), 'windDirection': telemetry(DIRECTIONS)},
         {'RESPONSE': {'RESULT': [{'WeatherObservation': [*map(trafikverket, DATES, SPEEDS)]}]}},
         {'data': {'header': 'STATION,ELEMENT,DT,VAL', 'values': ROWS}},
+        {
+            'units': {'windspeed': 'kmh', 'winddirection': 'degree'},
+            'data_1h': {
+                'time': DATES,
+                'windspeed': [3.6 * speed for speed in SPEEDS],
+                'winddirection': DIRECTIONS,
+            },
+        },
         ICELAND,
     ],
-    ids=['Prometheus', 'weather.gov', 'ThingsBoard', 'Trafikverket', 'CHMI', 'Iceland'],
+    ids=[
+        *('Prometheus', 'weather.gov', 'ThingsBoard', 'Trafikverket', 'CHMI', 'meteoblue'),
+        'Iceland',
+    ],
 )
 def test_series_are_read_at_their_times(tmp_path: Path, content: Any) -> None:
     record = read_wind(written(tmp_path, content), turbulence=False)

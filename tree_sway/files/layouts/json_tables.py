@@ -113,7 +113,8 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
         if rows := list(_rows(node, own)):
             yield _records(rows, own, source)
         for name, each in node.items():
-            own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
+            beside = object_of(node.get('units')) or _said_units(node) or units
+            own_units = object_of(node.get(f'{name}_units', beside))
             yield from _tables(each, own_units, source, depth + 1)
         if columns := spread_table(node, units, source):  # after those of a part of it
             yield columns
