@@ -52,6 +52,10 @@ _IN_BRACKETS = re.compile(r'[\[(]([xyzXYZ])[\])]')
 _AXIS_FIRST = re.compile(r'^([XYZxyz])(?:-axis)?[ _-]([A-Za-z]{3,}.*)')
 _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
+_VALUE = re.compile(r'\.value$', re.IGNORECASE)
+"""Last name of a value that has others beside it, as its unit."""
+_YEAR = re.compile(r'(?<=[^\W\d])[_ .-]?((?:19|20)\d\d)(?!\d)')
+"""Year of a measurement behind the name of what was measured."""
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
 _SHAPEFILE_NAME = 10
@@ -88,12 +92,10 @@ SENDERS = tuple(map(folded, _KNOWN['senders']))
 """Names of what tells an instrument from another, folded."""
 
 _NAMES = {
-    quantity: tuple(
-        # Names of one letter last, as t may be a time and a temperature.
-        sorted(dict.fromkeys(map(folded, known['names'])), key=lambda name: len(name) == 1)
-    )
+    quantity: tuple(dict.fromkeys(map(folded, known['names'])))
     for quantity, known in COLUMNS.items()
 }
+"""Names of each quantity, best first: those of one letter last, as t may be a temperature."""
 
 _PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns'].items()}
 """Names that vary, as with the number of an instrument in them, folded."""
@@ -144,11 +146,13 @@ def rank_of(column: str, quantity: str) -> int | None:
     """
     Place of a column's name among the names of a quantity; None if it is not one of them.
 
-    Of a name within groups, as ``metric.windSpeed.value``, the last part counts alone.
+    Of a name within groups, as ``metric.windSpeed.value``, the last part counts alone; a year in
+    it, as in ``DBH_2019``, does not count.
     """
     kind = COLUMNS[quantity]['unit']
+    column = _YEAR.sub('', column) or column
     name, _ = name_and_unit(column, kind)
-    inner = name.removesuffix('.value').rpartition('.')[2]
+    inner = _VALUE.sub('', name).rpartition('.')[2]
     found = (folded(name), folded(column), folded(inner), _without_unit(inner, kind)[0])
     for rank, known in enumerate(_NAMES[quantity]):
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
@@ -156,6 +160,12 @@ def rank_of(column: str, quantity: str) -> int | None:
     pattern = _PATTERNS.get(quantity)
     is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, found)))
     return len(_NAMES[quantity]) if is_like else None
+
+
+def year_of(column: str) -> int:
+    """Return the year in a column's name; 0 without one."""
+    year = _YEAR.search(column)
+    return int(year[1]) if year else 0
 
 
 @lru_cache(4096)

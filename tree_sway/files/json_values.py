@@ -64,7 +64,7 @@ def flat(
     Yield name and text of each value in an object, with the names of its groups before it.
 
     Three or four numbers in a list are those of axes. Objects in a list have values beside their
-    names, as in Frost; with ``lists`` others count as well.
+    names, as in Frost; one alone counts too, and with ``lists`` all do.
     """
     for name, each in node.items():
         whole = f'{before}{name}'
@@ -78,10 +78,10 @@ def flat(
                 if 'value' in item:
                     inside = f'{next(iter(item.values()))}.'
                     yield from flat(item, inside, depth + 1, lists=lists)
-                elif lists:
-                    yield from flat(item, f'{whole}.', depth + 1, lists=True)
+                elif lists or len(each) == 1:
+                    yield from flat(item, f'{whole}.', depth + 1, lists=lists)
         else:
-            yield whole, text_of(each)
+            yield whole, text_of(each) or cell_of(each)
 
 
 def unit_beside(record: Mapping[str, str], name: str) -> str | None:

@@ -16,31 +16,24 @@ from tree_sway.files.yaml_document import begins_with_key
 
 _ROWS = 60
 """Lines at the beginning of a table that are looked at."""
-_TREE = 'tree'
-_SCENE = 'scene'
-_WIND = 'wind'
-_MOTION = 'motion'
-_SWAY = 'sway'
-_STUDY = 'study'
-_RECORD = 'record'
 _KEYS = {
-    'tree_sway_record': _RECORD,
-    'winds': _STUDY,
-    'trees': _SCENE,
-    'stand': _SCENE,
-    'branches': _TREE,
+    'tree_sway_record': 'record',
+    'winds': 'study',
+    'trees': 'scene',
+    'stand': 'scene',
+    'branches': 'tree',
 }
 """Outermost keys of YAML that tell a kind, those of a study first as it has trees too."""
 
 _KINDS = {
-    _TREE: ('a tree', 'give it as TREE, as in tree-sway info {0}'),
-    _SCENE: ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
+    'tree': ('a tree', 'give it as TREE, as in tree-sway info {0}'),
+    'scene': ('a list of trees', 'give it as TREE, as in tree-sway info {0}'),
     'inventory': ('an inventory of trees', 'give it to tree-sway risk, or as TREE to info'),
-    _WIND: ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
-    _MOTION: ('a record of motion', 'give it behind --motion of tree-sway simulate, with --at'),
-    _SWAY: ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
-    _STUDY: ('a study', 'run it by tree-sway study {0}'),
-    _RECORD: ('the sheet of a record', 'give its folder to tree-sway lab twin'),
+    'wind': ('a record of wind', 'give it behind --wind, as in tree-sway plot --wind {0}'),
+    'motion': ('a record of motion', 'give it behind --motion of tree-sway simulate, with --at'),
+    'sway': ('a table that `tree-sway simulate` wrote', 'give the tree that was simulated'),
+    'study': ('a study', 'run it by tree-sway study {0}'),
+    'record': ('the sheet of a record', 'give its folder to tree-sway lab twin'),
 }
 """What a kind of files is called, and what takes it."""
 
@@ -73,14 +66,14 @@ def kind_of(path: Path) -> str:
             if begins_with_key(path, head, key):
                 return kind
         if head.startswith('time [s],wind_x [m/s],'):
-            return _SWAY
+            return 'sway'
         if is_stand_table(head, path):
             return 'inventory'
         sure = (each for each in WIND_FORMATS if each.name not in ('sonic', 'csv'))
         if any(each.recognise(head) for each in sure):
-            return _WIND
+            return 'wind'
         names = {each.name for each in TREE_FORMATS if each.recognise(head)} - {'treegraph'}
-        return _TREE if names else _kind_of_table(head)
+        return 'tree' if names else _kind_of_table(head)
     return ''
 
 
@@ -88,13 +81,13 @@ def _kind_of_table(head: str) -> str:
     """Return whether the columns of a table over time are a wind or a motion."""
     with suppress(FormatError):
         if head.lstrip()[:1] in ('{', '['):  # its end may be missing
-            return _WIND if looks_like_wind(head) else ''
+            return 'wind' if looks_like_wind(head) else ''
         table = table_of(head.splitlines()[:_ROWS], '')
         if not table.find_all('time'):
             return ''
         if any(found[2] for found in map(motion_of, table.columns) if found):
-            return _MOTION
+            return 'motion'
         components = {folded(table.columns[index]) for index in table.find_all('wind_x')}
         has_wind = table.find_all('wind_speed') or components - {'x', 'east'}
-        return _WIND if has_wind else ''
+        return 'wind' if has_wind else ''
     return ''

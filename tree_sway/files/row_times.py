@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
-from tree_sway.files.column_names import folded, name_and_unit, TIME_PARTS
+from tree_sway.files.column_names import folded, name_and_unit, rank_of, TIME_PARTS
 from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
@@ -41,11 +41,12 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
             return places, form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     clocks = table.find_all('time')
-    if not clocks and names[0] == '' and _are_dates(table.cells(0, first)):
-        clocks = [0]  # an index without a name
+    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
+    if not clocks or not _run_on(table.cells(clocks[0], first)):
+        columns = range(len(table.columns))  # of any name, or without one as an index
+        clocks = [each for each in columns if _are_dates(table.cells(each, first))][:1] or clocks
     if not clocks:
         return None
-    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
     if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
@@ -104,6 +105,9 @@ def row_times(
         note = _doubt(table, columns[0], times)
         times = replace(times, note=note)
     names = [table.columns[column] for column in columns]
+    if not form and names[0] and rank_of(names[0], 'time') is None:
+        said = f'{names[0]} is taken as the time, by its dates'
+        times = replace(times, note='; '.join(filter(None, (said, times.note))))
     zone = _ZONE.search(' '.join(names))
     if zone is None or not is_dated:
         return times
@@ -148,6 +152,12 @@ def _doubt(table: TextTable, column: int, times: Times) -> str:
     step = float(np.median(np.abs(steps)))
     if step < 1.0 or step % 1.0:
         return ''
+    last = float(times.seconds[known].max())
+    if (steps % 100.0 == 0.0).all() and last < 2400.0:
+        raise table.error(
+            f'{name} goes by {step:g} up to {last:g}: hours and minutes, or seconds',
+            cure=f'write 01:00 for 100, with the date, or call it {name} [s]',
+        )
     return f'no unit of {name} in the header: taken in s; call it time [h] or time [days] if it is'
 
 

@@ -31,6 +31,7 @@ from tree_sway.files.column_names import (
     unit_in_name,
     unit_known,
     UNITS,
+    year_of,
 )
 from tree_sway.files.text_file import finite, why_no_number
 
@@ -108,9 +109,13 @@ class TextTable:
         return Column(found[0], self.factor_of(found[0], quantity)) if found else None
 
     def find_all(self, quantity: str) -> list[int]:
-        """Places of a quantity's columns in the order of their names, empty ones last."""
-        ranks = [(rank_of(column, quantity), index) for index, column in enumerate(self.columns)]
-        found = [index for _, index in sorted(each for each in ranks if each[0] is not None)]
+        """Places of a quantity's columns in the order of their names, empty and old ones last."""
+        ranks = [
+            (rank, -year_of(column), index)
+            for index, column in enumerate(self.columns)
+            if (rank := rank_of(column, quantity)) is not None
+        ]
+        found = [index for _, _, index in sorted(ranks)]
         first = range(min(len(self.texts), _LOOKED_AT))
         is_chosen = len(found) > 1
         return sorted(found, key=lambda each: is_chosen and not any(self.cells(each, first)))

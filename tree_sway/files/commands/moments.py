@@ -60,18 +60,17 @@ def numbered_paths(pattern: str, count: int, *, may_overwrite: bool) -> list[Pat
 
     Raises a `ParameterError` for several moments in one file, or a file that exists.
     """
-    if len(_NUMBER.findall(pattern)) != 1:
-        if count > 1:
-            raise ParameterError(
-                f'{count} moments in one file',
-                where=pattern,
-                cure='name files with a number in their names, such as scene_%03d.obj',
-            )
-        names = [pattern]
-    else:
-        before, after = _NUMBER.split(pattern)
-        (form,) = _NUMBER.findall(pattern)
-        names = [f'{before}{form % k}{after}' for k in range(count)]
+
+    def named(number: int) -> str:
+        return _NUMBER.sub(lambda form: str(form[0] % number), pattern)
+
+    names = [*map(named, range(count))]
+    if len({*names}) < count:
+        raise ParameterError(
+            f'{count} moments in one file',
+            where=pattern,
+            cure='name files with a number in their names, such as scene_%03d.obj',
+        )
     for name in names:
         if not may_overwrite:
             refuse_overwriting(name, '--output')

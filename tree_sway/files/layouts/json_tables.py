@@ -29,7 +29,7 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import long_columns, long_table, Value, wide_table
+from tree_sway.files.layouts.long import Value, wide_table, widened
 from tree_sway.files.layouts.spread_columns import spread_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
@@ -41,6 +41,8 @@ from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
 
 _BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
+_CLOCK = re.compile(r'\d{9}|\d{4}-\d\d-\d\d')
+"""Begin of a time since 1970, or of a date."""
 Cells = dict[str, str]
 
 
@@ -53,8 +55,6 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
-    if not winds and (spread := spread_table(document, source)):
-        return spread
     if not tables:
         raise FormatError(
             'no table in the JSON',
@@ -98,23 +98,45 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     """Yield all tables of a document."""
     if depth > DEEPEST:
         return
-    if isinstance(node, dict):
-        own: Cells = {}
-        values = list(_values_by_time(node, '', own))
-        if values:
-            yield wide_table(values, source, 'time', own)
-        for table in (_columns(node, units, source), _rows(node, source)):
-            if table is not None:
-                yield table
-        for name, each in node.items():
-            own_units = object_of(node.get(f'{name}_units', _said_units(node) or units))
-            yield from _tables(each, own_units, source, depth + 1)
-    elif isinstance(node, list):
-        node = list(_samples(node)) or list(_states(node)) or node
+    if isinstance(node, list):
+        node = _metrics(node) or list(_samples(node)) or list(_states(node)) or node
+    if isinstance(node, list):
         if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
         for each in node:
             yield from _tables(each, units, source, depth + 1)
+    elif isinstance(node, dict):
+        own: Cells = {}
+        values = list(_series(node, '', own))
+        if values:
+            yield wide_table(values, source, 'time', own)
+        if rows := list(_rows(node, own)):
+            yield _records(rows, own, source)
+        for name, each in node.items():
+            beside = object_of(node.get('units')) or _said_units(node) or units
+            own_units = object_of(node.get(f'{name}_units', beside))
+            yield from _tables(each, own_units, source, depth + 1)
+        if columns := spread_table(node, units, source):  # after those of a part of it
+            yield columns
+
+
+def _metrics(node: list[Any]) -> dict[str, Any]:
+    """
+    Return the values of Prometheus by their names; empty for any other list.
+
+    Raises a `FormatError` for one name of several instruments.
+    """
+    found: dict[str, Any] = {}
+    for each in map(object_of, node):
+        name = object_of(each.get('metric')).get('__name__')
+        if name in found:
+            raise FormatError(
+                f'rows of several instruments: {name} occurs twice',
+                cure='ask for one, as {instance="mast"}',
+            )
+        if isinstance(name, str):
+            found[name] = each.get('values')
+    return found
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -152,31 +174,32 @@ def _said_units(node: dict[str, Any]) -> Cells:
     return {'*': system} if isinstance(system, str) else titles
 
 
-def _columns(node: dict[str, Any], units: Cells, source: str) -> TextTable | None:
-    """Return the table of the lists in a node, if they are columns."""
-    names = [name for name, each in node.items() if isinstance(each, list)]
-    columns = [node[name] for name in names]
-    lengths = set(map(len, columns))
-    if len(columns) < 2 or len(lengths) != 1 or 0 in lengths:
-        return None
-    if any(isinstance(column[0], dict | list) for column in columns):
-        return None
-    cells = [map(text_of, column) for column in columns]
-    rows = list(zip(*cells, strict=True))
-    units_of_columns = [_unit(units.get(name)) for name in names]
-    return table_of_cells(names, rows, source, units=units_of_columns)
+def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
+    """
+    Yield records of a list of rows beside a list of its names, and note the units beside these.
 
-
-def _rows(node: dict[str, Any], source: str) -> TextTable | None:
-    """Return the table of a list of rows, beside a list of its names and maybe one of units."""
-    lists = [each for each in node.values() if isinstance(each, list) and each]
-    for rows in (each for each in lists if isinstance(each[0], list)):
+    Names are a text with commas as well, or sensors of Edge Impulse, whose rows are at even times.
+    """
+    lists = [_words(each) for each in node.values()]
+    step = finite(cell_of(node.get('interval_ms')))
+    for rows in (each for each in lists if each and isinstance(each[0], list)):
         heads = [[*map(text_of, each)] for each in lists if len(each) == len(rows[0])]
-        if any(map(any, heads)):
-            cells = [[*map(text_of, list_of(row))] for row in rows]
-            known = [each for each in heads[1:] if any(unit_known('speed', unit) for unit in each)]
-            return table_of_cells(heads[0], cells, source, units=[*known, []][0])
-    return None
+        sensors = [*map(object_of, list_of(node.get('sensors')))]
+        if step is not None and sensors:
+            heads = [[text_of(each.get(word)) for each in sensors] for word in ('name', 'units')]
+        if not any(map(any, heads)):
+            continue
+        for row in heads[1:]:
+            if any(unit_known(kind, unit) for unit in row for kind in ('speed', 'acceleration')):
+                units |= dict(zip(heads[0], row, strict=False))
+        for number, row in enumerate(rows):
+            clock = {} if step is None else {'time [ms]': number * step}
+            yield clock | dict(zip(heads[0], list_of(row), strict=False))
+
+
+def _words(value: Any) -> list[Any]:
+    """Return a list, or the names in a text between commas."""
+    return value.split(',') if isinstance(value, str) and ',' in value else list_of(value)
 
 
 def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable:
@@ -192,27 +215,44 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         empty |= dict.fromkeys(record, '')
     names = list(empty)
     rows = [list((empty | record).values()) for record in records]
-    short = [name.rpartition('.')[2] for name in names]
-    wanted = long_columns(short)
-    if wanted is not None:
-        named = (dict(zip(short, row, strict=True)) for row in rows)
-        return long_table(enumerate(named, start=1), wanted, source)
-    units_of_columns = [_unit(unit_beside(records[0], name)) for name in names]
+    beside = [unit_beside(records[0], name) or units.get(name) for name in names]
+    units_of_columns = [_unit(each) for each in beside]
     titles = [units.get(f'#{name}', name) for name in names]
-    return table_of_cells(titles, rows, source, units=units_of_columns)
+    return widened(table_of_cells(titles, rows, source, units=units_of_columns))
 
 
-def _values_by_time(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
-    """Yield the values of Ecowitt's quantities, and note their units."""
+def _series(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
+    """
+    Yield the values of quantities that are lists of a time and a value, and note their units.
+
+    They are within groups at Ecowitt, and in ``values`` at api.weather.gov.
+    """
     for own, each in node.items():
         inside = object_of(each)
         name = f'{before}{own}'
-        if 'list' in inside:
-            units[name] = text_of(inside.get('unit', ''))
-            for time, value in object_of(inside['list']).items():
-                yield 0, time, name, text_of(value)
+        pairs = _pairs(inside.get('list', inside.get('values', each)))
+        for time, value in pairs:
+            yield 0, time, name, text_of(value)
+        if pairs:
+            units[name] = text_of(inside.get('unit', inside.get('uom', '')))
         else:
-            yield from _values_by_time(inside, f'{own}_', units)
+            yield from _series(inside, f'{own}_', units)
+
+
+def _pairs(listed: Any) -> list[tuple[str, Any]]:
+    """Return times and values: by time, in lists of two, or in records of two; empty without."""
+    cells = [*listed.items()] if isinstance(listed, dict) else list_of(listed)
+    found = []
+    for each in cells:
+        if isinstance(each, list | tuple) and len(each) == 2:
+            each = dict(zip(('time', 'value'), each, strict=True))
+        own = dict(object_of(each))
+        value = own.pop('value', None)
+        clock = cell_of(next(iter(own.values()), None))
+        if len(own) != 1 or not _CLOCK.match(clock):
+            return []
+        found.append((clock.partition('/P')[0], value))
+    return found
 
 
 def _states(node: list[Any]) -> Iterator[dict[str, Any]]:

@@ -15,7 +15,7 @@ from tree_sway.files.layouts.jma import JMA
 from tree_sway.files.layouts.json_tables import JSON
 from tree_sway.files.layouts.layout import Layout
 from tree_sway.files.layouts.lines import LINES
-from tree_sway.files.layouts.long import LONG
+from tree_sway.files.layouts.long import widened
 from tree_sway.files.layouts.monitor import MONITOR
 from tree_sway.files.layouts.plain import PLAIN
 from tree_sway.files.layouts.weatherlink_text import WEATHERLINK_TEXT
@@ -24,7 +24,6 @@ from tree_sway.files.table_file import TextTable
 _LAYOUTS = (
     *(JSON, WEATHERLINK_TEXT, BADC_CSV, CSIRO, JMA, MONITOR),
     *LINES,
-    *LONG,
     PLAIN,
 )
 
@@ -42,7 +41,7 @@ def table_of(lines: list[str], source: str) -> TextTable:
         what, cure = foreign_file(Path(source), '\n'.join(lines[:3]) or ' ')
         if what:
             raise FormatError(what, cure=cure)
-        return (_layout_of(lines[:_HEAD]) or PLAIN).read(lines, source)
+        return widened((_layout_of(lines[:_HEAD]) or PLAIN).read(lines, source))
 
 
 def looks_like_wind(head: str) -> bool:

@@ -11,25 +11,25 @@ the next of its name, as Home Assistant stores changes alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache, partial
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import folded, SENDERS
-from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.table_file import split_row, TextTable
+from tree_sway.files.table_file import TextTable
 
-_COLUMNS = {
-    'influxdb': ('_time', '_field', '_value'),
-    'home assistant': ('last_changed', 'entity_id', 'state'),
-    'wetterdienst': ('date', 'parameter', 'value'),
-    'openSenseMap': ('createdAt', 'phenomenon', 'value'),
-    'DMI': ('observed', 'parameterId', 'value'),
-}
+_COLUMNS = (
+    ('_time', '_field', '_value'),
+    ('last_changed', 'entity_id', 'state'),
+    ('date', 'parameter', 'value'),
+    ('createdAt', 'phenomenon', 'value'),
+    ('observed', 'parameterId', 'value'),
+    ('DT', 'ELEMENT', 'VAL'),
+)
 """Columns of the time, the name and the value; one called ``unit`` may be beside them."""
+LONG_NAMES = frozenset(chain.from_iterable(_COLUMNS))
 _STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
 _NO_STATE = ('unavailable', 'unknown', '')
 Value = tuple[int, str, str, str]
@@ -64,71 +64,38 @@ def wide_table(
     return table_of_cells([clock, *columns], rows, source, numbers, ['', *units])
 
 
-def long_table(
-    records: Iterable[tuple[int, Mapping[str, str]]], wanted: Sequence[str], source: str
-) -> TextTable:
-    """Return the wide table of numbered records; a `FormatError` for several instruments."""
+def widened(table: TextTable) -> TextTable:
+    """Return the wide table of a long one, which may be of one instrument only; others stay."""
+    names = [name.rpartition('.')[2] for name in table.columns]
+    wanted = next((each for each in _COLUMNS if {*each} <= {*names}), None)
+    if wanted is None:
+        return table
     units: dict[str, str] = {}
-    return wide_table(_values(records, wanted, source, units), source, wanted[0], units)
+    values = _values(table, names, wanted, units)
+    return wide_table(values, table.source, wanted[0], units)
 
 
 def _values(
-    records: Iterable[tuple[int, Mapping[str, str]]],
-    wanted: Sequence[str],
-    source: str,
-    units: dict[str, str],
+    table: TextTable, names: list[str], wanted: tuple[str, ...], units: dict[str, str]
 ) -> Iterator[Value]:
-    """Yield the values of records, and note the units of their names."""
+    """Yield the values of a long table, and note the units of their names."""
+    senders = [name for name in names if folded(name) in SENDERS[:-1]]
     sender_of: dict[str, str] = {}
-    for line, record in records:
+    for line, text in zip(table.numbers, table.texts, strict=True):
+        cells = table.split(text)
+        # There is a header above each of several tables.
+        if len(cells) < len(names) or {*wanted} <= {*cells} or text.startswith('#'):
+            continue
+        record = dict(zip(names, cells, strict=False))
         time, name, value = (record[each] for each in wanted)
-        sender = ' '.join(each for key, each in record.items() if _is_sender(key))
+        sender = ' '.join(record[each] for each in senders)
         first = sender_of.setdefault(name, sender)
         if sender != first:
             raise FormatError(
                 f'rows of 2 instruments: {first}, {sender}',
-                where=f'{source}:{line}',
+                where=f'{table.source}:{line}',
                 cure='write a table for each',
             )
         if value not in _NO_STATE:
             units.setdefault(name, record.get('unit', record.get('unit_of_measurement', '')))
             yield line, time, name, value
-
-
-@lru_cache(256)
-def _is_sender(name: str) -> bool:
-    return folded(name) in SENDERS[:-1]
-
-
-def long_columns(names: Iterable[str]) -> tuple[str, ...] | None:
-    """Columns of the time, the name and the value of a long table; None for another one."""
-    there = set(names)
-    return next((wanted for wanted in _COLUMNS.values() if there >= set(wanted)), None)
-
-
-def _records(lines: list[str], wanted: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
-    header: Sequence[str] = ()
-    for number, line in enumerate(lines, start=1):
-        cells = split_row(line, ',')
-        if _is_header(line, wanted):  # there is one above each of several tables
-            header = cells
-        elif header and not line.startswith('#') and len(cells) >= len(header):
-            yield number, dict(zip(header, cells, strict=False))
-
-
-def _read(lines: list[str], source: str, wanted: Sequence[str]) -> TextTable:
-    return long_table(_records(lines, wanted), wanted, source)
-
-
-def _is_header(line: str, wanted: Sequence[str]) -> bool:
-    return not line.startswith('#') and set(wanted) <= set(split_row(line, ','))
-
-
-def _is_long(lines: Sequence[str], wanted: Sequence[str]) -> bool:
-    return any(_is_header(line, wanted) for line in lines[:10])
-
-
-LONG = tuple(
-    Layout(name, partial(_is_long, wanted=wanted), partial(_read, wanted=wanted))
-    for name, wanted in _COLUMNS.items()
-)

@@ -22,6 +22,7 @@ from tree_sway.files.column_names import (
     unit_known,
 )
 from tree_sway.files.layouts.layout import Layout
+from tree_sway.files.layouts.long import LONG_NAMES
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
@@ -84,7 +85,8 @@ def is_known(cell: str) -> bool:
         return cell.lower() in _PARTS
     motion = motion_of(cell)
     is_axis = motion is not None and motion[2] != ''
-    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
+    is_long = cell in LONG_NAMES
+    return is_axis or is_long or any(rank_of(cell, each) is not None for each in _KNOWN)
 
 
 def _is_table(lines: Sequence[str]) -> bool:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Columns of JSON that are lists far from each other, as in CoverageJSON and at GeoSphere Austria.
+Columns of JSON that are lists, beside or far from each other as in CoverageJSON.
 
 Lists called ``data`` or ``values`` are those of the quantity that they are in; its ``unit`` is a
 text, or has it as the ``symbol``, maybe in another part of the document.
@@ -9,7 +9,7 @@ text, or has it as the ``symbol``, maybe in another part of the document.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tree_sway.files.cell_table import table_of_cells
@@ -20,26 +20,29 @@ from tree_sway.files.table_file import TextTable
 _OF_QUANTITY = ('data', 'values')
 
 
-def spread_table(document: Any, source: str) -> TextTable | None:
-    """Return the columns as long as that of the time, wherever they are; None without two."""
-    units: dict[str, str] = {}
-    columns = dict(_lists(document, '', units))
+def spread_table(node: Any, units: Mapping[str, Any], source: str) -> TextTable | None:
+    """
+    Return the columns as long as that of the time, wherever they are in a node; None without two.
+
+    ``units`` are those that a part of the document beside it tells.
+    """
+    own: dict[str, str] = {}
+    columns = dict(_lists(node, '', own))
     clock = next((name for name in columns if rank_of(name, 'time') is not None), None)
     if clock is None:
         return None
-    size = len(columns[clock])
-    names = [name for name, values in columns.items() if len(values) == size]
+    names = [name for name, values in columns.items() if len(values) == len(columns[clock])]
     if len(names) < 2:
         return None
-    cells = (map(text_of, columns[name]) for name in names)
-    rows = list(zip(*cells, strict=True))
-    return table_of_cells(names, rows, source, units=[units.get(name, '') for name in names])
+    rows = zip(*(map(text_of, columns[name]) for name in names), strict=True)
+    told = {name: unit for name, unit in units.items() if isinstance(unit, str)} | own
+    return table_of_cells(names, list(rows), source, units=[told.get(name, '') for name in names])
 
 
 def _lists(
     node: Any, quantity: str, units: dict[str, str], depth: int = 0
 ) -> Iterator[tuple[str, list[Any]]]:
-    """Yield name and values of the lists in a document, and note the units of quantities."""
+    """Yield name and values of the lists of cells, and note the units of quantities."""
     if len(list_of(node)) == 1:
         node = node[0]
     if depth > DEEPEST:
@@ -48,7 +51,8 @@ def _lists(
         if name == 'unit':
             units.setdefault(quantity, _unit_of(each))
         elif len(list_of(each)) > 1:
-            yield (quantity if name in _OF_QUANTITY else name), each
+            if not isinstance(each[0], dict | list):
+                yield (quantity if name in _OF_QUANTITY else name), each
         else:
             yield from _lists(each, name, units, depth + 1)
 

@@ -294,7 +294,7 @@ def _checked_times(table: TextTable, times: Times, values: Floats, column: int |
     if _are_most(stands, 0.5):
         raise table.error(
             f'{np.count_nonzero(stands)} of {len(rows)} rows have the time of the row before',
-            cure='export times with fractions of a second',
+            cure='export times with fractions of a second, and one sensor alone',
         )
     step = float(np.median(steps)) if len(steps) else 0.0
     name = '' if column is None else table.columns[column]

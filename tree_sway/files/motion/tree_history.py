@@ -22,11 +22,18 @@ from tree_sway.twin import ObservedTree, sensor_reports
 PERIOD = 600.0
 """Time of a row in [s]."""
 
-_OF_TREE = (
-    'time', 'wind [m/s]', 'explained [-]', 'band from [m]', 'band to [m]',
-    'first frequency [Hz]', 'stiffness [-]', 'damping [-]', 'drag [-]', 'learned from [h]',
-)  # fmt: skip
-_OF_SENSOR = ('in use [-]', 'residual [-]', 'refused', 'frequencies over those before [-]')
+_MEANS = ('wind [m/s]', 'explained [-]', 'band from [m]', 'band to [m]')
+_LEARNED = {
+    'first frequency [Hz]': 'frequency',
+    'stiffness [-]': 'stiffness',
+    'damping [-]': 'damping',
+    'drag [-]': 'drag',
+    'learned from [h]': 'hours',
+}
+"""Columns of what was learned, and the attributes of a `LearnedTree`."""
+_IN_USE, _RESIDUAL, _REFUSED, _CHANGE = _OF_SENSOR = (
+    *('in use [-]', 'residual [-]', 'refused', 'frequencies over those before [-]'),
+)
 
 
 def refuse_no_history(path: str, names: Sequence[str]) -> None:
@@ -65,17 +72,9 @@ def _line_of(cells: Sequence[str]) -> str:
     return text.getvalue()
 
 
-def _is_cut_off(path: Path) -> bool:
-    """Whether the last row of a table has no end, as a full disk or a loss of power leaves it."""
-    if not path.is_file() or path.stat().st_size == 0:
-        return False
-    with path.open('rb') as file:
-        file.seek(-1, os.SEEK_END)
-        return file.read(1) != b'\n'
-
-
 def _columns(names: Sequence[str]) -> list[str]:
-    return [*_OF_TREE, *(f'{name}: {each}' for name in names for each in _OF_SENSOR)]
+    of_sensors = [f'{name}: {each}' for name in names for each in _OF_SENSOR]
+    return ['time', *_MEANS, *_LEARNED, *of_sensors]
 
 
 class TreeHistory:
@@ -103,7 +102,7 @@ class TreeHistory:
         self._path: Path = path_of(path)
         self._names = list(names)
         self._began: float | None = None
-        self._noted: list[list[float]] = []
+        self._noted: list[dict[str, float]] = []
 
     def note(self, twin: ObservedTree, now: float) -> bool:
         """
@@ -128,38 +127,38 @@ class TreeHistory:
         if self._began is None:
             self._began = now
         band = twin.sway_band().tolist() if twin.members is not None else [np.nan, np.nan]
-        row = [twin.observer.mean_wind, twin.explained, *band]
+        present = (twin.observer.mean_wind, twin.explained, *band)
+        row = dict(zip(_MEANS, present, strict=True))
         for each in reports:
-            row += [float(each.in_use), each.residual]
+            row[f'{each.name}: {_IN_USE}'] = float(each.in_use)
+            row[f'{each.name}: {_RESIDUAL}'] = each.residual
         self._noted.append(row)
         if now - self._began < PERIOD:
             return False
-        means = np.mean(self._noted, axis=0).tolist()
+        means = {name: float(np.mean([each[name] for each in self._noted])) for name in row}
         self._began = now
         self._noted = []
         self._write(twin, means)
         return True
 
-    def _write(self, twin: ObservedTree, means: list[float]) -> None:
-        learned = twin.learned
-        values: list[float | None] = [*means[:4], *5 * [None]]
-        if learned is not None:
-            values[4:] = [
-                learned.frequency, learned.stiffness, learned.damping, learned.drag, learned.hours,
-            ]  # fmt: skip
-        for k, each in enumerate(sensor_reports(twin)):
-            ratio = None if each.change is None else each.change.ratio
-            values += [*means[4 + 2 * k : 6 + 2 * k], each.refused, ratio]
+    def _write(self, twin: ObservedTree, means: dict[str, float]) -> None:
+        values: dict[str, float | None] = {**means}
+        values |= {column: getattr(twin.learned, each, None) for column, each in _LEARNED.items()}
+        for each in sensor_reports(twin):
+            values[f'{each.name}: {_REFUSED}'] = each.refused
+            values[f'{each.name}: {_CHANGE}'] = getattr(each.change, 'ratio', None)
         date = datetime.now(timezone.utc).isoformat(timespec='seconds').replace('+00:00', 'Z')
-        cells = ['' if value is None else f'{value:.6g}' for value in values]
+        columns = _columns(self._names)
+        known = [values[column] for column in columns[1:]]
+        line = _line_of([date, *('' if each is None else f'{each:.6g}' for each in known)])
         try:
-            is_cut_off = _is_cut_off(self._path)
-            with self._path.open('a', encoding='utf-8', newline='') as file:
-                if is_cut_off:
-                    file.write('\n')
-                if file.tell() == 0:
-                    file.write(_line_of(_columns(self._names)))
-                file.write(_line_of([date, *cells]))
+            with self._path.open('a+b') as file:
+                begin = '' if file.tell() else _line_of(columns)
+                if file.tell():
+                    file.seek(-1, os.SEEK_END)
+                    # A full disk or a loss of power leaves the last row without its end.
+                    begin = '' if file.read(1) == b'\n' else '\n'
+                file.write((begin + line).encode())
         except OSError as error:
             raise FormatError(
                 f'cannot be written: {error.strerror or error}',

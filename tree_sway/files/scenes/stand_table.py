@@ -67,71 +67,27 @@ def read_stand_table(
     given = dict(kinds or {})
     table = inventory_table(path, read_head(path) if head is None else head)
     inventory = inventory_of(table, given)
-    growing = _Growing(inventory, given, seed, list(inventory.notes), exact)
-    random_yaw = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, len(inventory.species))
+    notes = list(inventory.notes)
+    wood = inventory.wood
+    keys = [wood[each].key if each in wood else each for each in inventory.species]
+    sizes = inventory.height, inventory.diameter
+    classes = own_kinds(*sizes) if exact else kind_classes(keys, *sizes)
+    heights, slenderness = classes.height.tolist(), classes.slenderness.tolist()
+    grown: dict[tuple[str, float, float], GrownTree] = {}
+    random_yaw = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, len(keys))
     yaw = np.where(np.isnan(inventory.yaw), random_yaw, inventory.yaw)
     trees = []
-    for row, key in enumerate(growing.keys):
+    for row, (key, name) in enumerate(zip(keys, inventory.species, strict=True)):
+        own_class = key, heights[row], slenderness[row]
         try:
-            trees.append(_placed(inventory, row, growing.tree_of(row), key, float(yaw[row])))
+            kind = given.get(name) or grown.get(own_class)
+            if kind is None:
+                kind = grown[own_class] = _grown_kind(wood[name], *own_class[1:], seed, notes)
+            trees.append(_placed(inventory, row, kind, key, float(yaw[row])))
         except TreeSwayError as error:
             raise error.at(inventory.where(row)) from None
-    scene_fields = {'name': path.stem, 'source': str(path), 'notes': tuple(growing.notes)}
+    scene_fields = {'name': path.stem, 'source': str(path), 'notes': tuple(notes)}
     return Scene(trees, **scene_fields | fields)
-
-
-class _Growing:
-    """
-    Trees of the rows of an inventory: given ones, else one grown for each class of trees.
-
-    Parameters
-    ----------
-    inventory
-        The rows.
-    given
-        Trees of species that need not be grown.
-    seed
-        Seed of all grown trees.
-    notes
-        Notes on the stand, to which is added what was changed to grow a tree.
-    exact
-        Whether each tree is a class by itself.
-
-    """
-
-    def __init__(
-        self,
-        inventory: Inventory,
-        given: Mapping[str, GrownTree],
-        seed: int,
-        notes: list[str],
-        exact: bool,
-    ) -> None:
-        """Sort the rows into classes."""
-        self._inventory = inventory
-        self._given = given
-        self._seed = seed
-        self.notes = notes
-        wood = inventory.wood
-        self.keys = [wood[each].key if each in wood else each for each in inventory.species]
-        """Key of the species of each row."""
-        sizes = inventory.height, inventory.diameter
-        self._classes = own_kinds(*sizes) if exact else kind_classes(self.keys, *sizes)
-        self._grown: dict[tuple[str, float, float], GrownTree] = {}
-
-    def tree_of(self, row: int) -> GrownTree:
-        """Return the tree of a row, grown for the first row of its class."""
-        name = self._inventory.species[row]
-        if name in self._given:
-            return self._given[name]
-        height = float(self._classes.height[row])
-        slenderness = float(self._classes.slenderness[row])
-        own_class = self.keys[row], height, slenderness
-        if own_class not in self._grown:
-            species = self._inventory.wood[name]
-            tree = _grown_kind(species, height, slenderness, self._seed, self.notes)
-            self._grown[own_class] = tree
-        return self._grown[own_class]
 
 
 def _placed(inventory: Inventory, row: int, kind: GrownTree, key: str, yaw: float) -> PlacedTree:

@@ -39,7 +39,7 @@ from tree_sway.files.zipped import tables_in
 _COMPONENTS = ('wind_x', 'wind_y', 'wind_z')
 _HEAD = 200
 _HEIGHT = re.compile(
-    r'(?:^|(?<=[ _@]))\W?(?:at )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
+    r'(?:^|(?<=[ _@]))\W?(?:at? )?(\d+(?:\.\d+)?) ?m(?:[\])](?: |$)|_|(?: |$))|'
     r'(?<=[a-z])(\d+)m[NESW]{0,2}(?=$| ?[\[(])'
 )
 """Height before, in or behind a name: ``40m Wind Speed``, ``Wind Speed (m/s) at 39m``, Spd80mN."""
@@ -210,8 +210,8 @@ def _fill(
     rows.number = array('q', [table.numbers[row] for row in stored.tolist()])
     rows.velocity = array('d', winds.velocity[stored].ravel())
     rows.time = array('d', seconds)
-    gust = table.find('gust')
-    if gust is not None:
-        factor, _ = speed_factor(table, gust.index, 'gust', unit)
-        values = table.values([gust.index])[stored, 0] * factor
+    speeds = table.find_all('wind_speed')[:1]
+    for gust in [each for each in table.find_all('gust') if each not in speeds][:1]:
+        factor, _ = speed_factor(table, gust, 'gust', unit)
+        values = table.values([gust])[stored, 0] * factor
         rows.gust = np.where((values >= 0.0) & (values <= 150.0), values, np.nan)

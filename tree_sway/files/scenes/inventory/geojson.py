@@ -18,7 +18,7 @@ from typing import Any
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.json_values import cell_of, document_of, list_of, object_of
+from tree_sway.files.json_values import document_of, flat, list_of, object_of
 from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import read_lines
@@ -76,27 +76,19 @@ def read_geojson(path: Path) -> TextTable:
 def _cells(record: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the names and cells of a record, its place last."""
     own = next((name for name in _PROPERTIES if object_of(record.get(name))), '')
-    before = 'tags.' if own == 'tags' else ''
     geometry = object_of(record.get('geometry'))
     place = geometry.get('coordinates', [geometry.get('x'), geometry.get('y')])
     corners = json.dumps({'coordinates': place})
     is_placed = point_of_cell(corners) is not None
     taken = PLACES if is_placed else ()
-    for name, each in _flat(object_of(record[own]) if own else record).items():
+    if own == 'tags':  # those of OpenStreetMap keep their group
+        cells = {name: record.get(name) for name in ('tags', 'lat', 'lon')}
+    else:
+        cells = object_of(record[own]) if own else record
+    found: dict[str, str] = {}
+    for name, cell in flat(cells, lists=True):
         if name.lower() not in taken:
-            inside = each if isinstance(each, dict) else {'': each}
-            for last, cell in inside.items():
-                yield f'{before}{name}.{last}'.removesuffix('.'), cell_of(cell)
-    if own == 'tags':
-        yield from ((name, cell_of(record[name])) for name in ('lat', 'lon') if name in record)
+            found[name] = found.get(name) or cell  # the first of several records
+    yield from found.items()
     if is_placed:
         yield _GEOMETRY, corners
-
-
-def _flat(properties: dict[str, Any]) -> dict[str, Any]:
-    """Properties, and those of the records in a list among them, of which the first with one."""
-    inside: dict[str, Any] = {}
-    for each in properties.values():
-        for record in reversed(list(map(object_of, list_of(each)))):
-            inside |= {name: cell for name, cell in record.items() if cell is not None}
-    return inside | properties

@@ -70,10 +70,11 @@ def places_of(columns: InventoryColumns) -> Places | None:
         columns.note('all trees have one latitude and longitude: placed by x and y')
     if by_metres is not None:
         return _of_map(columns, by_metres[0], by_metres[1])
-    by_geometry = columns.table.find('place')
-    if by_geometry is not None:
-        return _of_geometries(columns, by_geometry.index)
-    return None
+    by_geometry = columns.table.find_all('place')
+    if not by_geometry:
+        return None
+    placed = (each for each in by_geometry if any(map(point_of_cell, columns.texts(each))))
+    return _of_geometries(columns, next(placed, by_geometry[0]))
 
 
 def _degrees(columns: InventoryColumns, index: int) -> Floats:
