@@ -217,7 +217,7 @@ def test_the_filter_is_the_least_squares_of_points_and_prior() -> None:
     eta = 0.01 * rng.normal(size=n)
     found.see(slopes, slopes @ eta)
     rows = slopes.reshape(-1, n)
-    weight = found.weights.ravel() / (4.0 * 0.5**2)
+    weight = found.weights.ravel() / (6.0 * 0.5**2)
     inverse = np.linalg.inv(prior[:n, :n])
     wanted = np.linalg.solve(inverse + (rows.T * weight) @ rows, (rows.T * weight) @ rows @ eta)
     np.testing.assert_allclose(found.state[0], wanted, rtol=1e-9)

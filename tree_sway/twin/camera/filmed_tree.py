@@ -37,7 +37,7 @@ _USUAL_WIND = 6.0
 
 _OWN = 0.3
 """
-Variance of an unknown force of each coordinate alone, over that of the gusts of limbs [-].
+Variance of an unknown force of each coordinate alone, over that of all gusts, told or not [-].
 
 Gusts of a few limbs push few ways; real wood differs from the model's in every coordinate.
 """
@@ -48,8 +48,11 @@ _SLOWEST, _OTHER_WIND = 2.0, 1.6
 _LAW_EVERY = 300
 """Steps after which the mean wind is looked at."""
 
-_UNTOLD = 0.7
-"""Standard deviation of the unknown wind of the whole crown over the mean wind [-]."""
+_UNTOLD, _UNTOLD_BY_WIND = 0.7, 0.3
+"""
+Standard deviation of the unknown wind of the whole crown over the mean wind, without an anemometer
+and with one [-].
+"""
 
 _LASTS = 0.5
 """
@@ -58,8 +61,8 @@ Time in [s] after which an unknown force has decayed to 1/e.
 That of a wood which is softer than the model's changes as fast as the tree sways.
 """
 
-_NEARER = 0.4
-"""Share of the way to the estimate that the tree goes in a step."""
+_CALM = 8.0 * np.pi
+"""Angular frequency in [rad/s] of the spring by which the tree follows the estimate."""
 
 _FADE = 0.5
 """Time constant in [s] with which the correction fades without pictures."""
@@ -118,7 +121,8 @@ class FilmedTree(ObservedTree):
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
         """The camera; pictures are refused while it is None."""
-        self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
+        self._speed, self._has_wind = _USUAL_WIND, False
+        self._is_outdated, self._steps = False, 0
         n = self._n = min(_MOST_COORDINATES, self.banks[0].oscillators.shapes.shape[1])
         self._filmed = np.zeros((2, n))
         self._past: deque[tuple[float, Floats]] = deque()
@@ -142,10 +146,11 @@ class FilmedTree(ObservedTree):
         """Return the law of what the model lacks, in the present mean wind."""
         n = self._n
         found = disturbance(self, self._speed, n)
-        covariance = found.covariance
-        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
-        covariance = covariance + whole.T @ whole
-        covariance = covariance + _OWN * np.diag(np.diag(covariance))
+        whole = self._speed * crown_slope(self, self._speed, n)[:2]
+        together = whole.T @ whole
+        untold = _UNTOLD_BY_WIND if self._has_wind else _UNTOLD
+        all_gusts = np.diag(found.covariance + np.square(_UNTOLD) * together)
+        covariance = found.covariance + np.square(untold) * together + _OWN * np.diag(all_gusts)
         unknown = self.observer.unknown
         damping = unknown.all_damping[:n] + found.air_damping
         return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
@@ -184,7 +189,8 @@ class FilmedTree(ObservedTree):
         self._past.append((self.now, eta - self._added[0]))
         while self._past[0][0] < self.now - _KEPT:
             self._past.popleft()
-        while self._waiting and self._waiting[0][0] <= self.now:
+        # A picture of the end of this step is not to wait for the next one by its rounding.
+        while self._waiting and self._waiting[0][0] <= self.now + 0.5 * TICK:
             self._look(*self._waiting.popleft())
         if self.sees:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
@@ -197,10 +203,19 @@ class FilmedTree(ObservedTree):
         return status
 
     def _calm(self, correction: Floats, dt: float, estimate: Floats) -> Floats:
-        """Move a correction on by its law, and nearer to the estimate: so noise is averaged."""
+        """
+        Move a correction on by its law, and nearer to the estimate.
+
+        A spring with critical damping pulls it there, for noise must not make the tree jump: what
+        is faster than the spring is left out, and the rate changes as smoothly as a force does it.
+        """
         state = np.stack([*correction, self.filter.state[2]])
         moved = self.filter.moved(state, round(dt / TICK))
-        return moved + _NEARER * (estimate - moved)
+        apart = estimate - moved
+        turned = _CALM * dt
+        left = np.exp(-turned)
+        added = (1.0 - left * left) * apart[1] + _CALM * turned * left * apart[0]
+        return moved + np.stack([dt * added, added])
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
@@ -215,7 +230,10 @@ class FilmedTree(ObservedTree):
     def _follow_wind(self) -> None:
         """Take the law of the present mean wind and of the present tree."""
         measured = self.observer.mean_wind
-        speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
+        has_wind = measured > 0.0
+        speed = max(measured, _SLOWEST) if has_wind else _USUAL_WIND
+        self._is_outdated |= has_wind != self._has_wind
+        self._has_wind = has_wind
         if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
             self._speed, self._is_outdated = speed, False
             self.filter.set_law(self._law())
@@ -241,7 +259,7 @@ class FilmedTree(ObservedTree):
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
             self.refused += 1
             return
-        self._rate += 0.1 * (1.0 / (time - self._seen_at) - self._rate)
+        self._picture_rate += 0.1 * (1.0 / (time - self._seen_at) - self._picture_rate)
         self._seen_at = time
         self._note_behind(image[self._behind] - self._behind_at)
         moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
@@ -303,7 +321,7 @@ class FilmedTree(ObservedTree):
         self._waiting.clear()
         self._square, self._n_seen = 0.0, 0
         self._seen_at, self._reference = -np.inf, -1
-        self._n_begun, self._rate = 0, 0.0
+        self._n_begun, self._picture_rate = 0, 0.0
         self._shifts = deque[tuple[float, float, float]](maxlen=_SHAKEN_IN)
         self.shake = 0.0
         law = self._law()
@@ -353,8 +371,10 @@ class FilmedTree(ObservedTree):
                 f'; what is behind the tree moves by {self.shake:.1f} px: the camera shakes, and '
                 'that is taken for sway: use a tripod'
             )
-        if self._rate < _FEW * float(self.frequencies(1)[0]):
-            told += f'; {self._rate:.0f} pictures a second are few: its sway is told roughly'
+        if self._picture_rate < _FEW * float(self.frequencies(1)[0]):
+            told += (
+                f'; {self._picture_rate:.0f} pictures a second are few: its sway is told roughly'
+            )
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '
