@@ -63,6 +63,8 @@ That of a wood which is softer than the model's changes as fast as the tree sway
 
 _CALM = 8.0 * np.pi
 """Angular frequency in [rad/s] of the spring by which the tree follows the estimate."""
+_MOST_TURNED = 1.5
+"""Largest angle in [rad] by which it turns in a step: half of the way is gone in a longer one."""
 
 _FADE = 0.5
 """Time constant in [s] with which the correction fades without pictures."""
@@ -80,7 +82,12 @@ _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
 
 _SHAKEN = 0.3
-"""Motion in [px] of all that is behind the tree from which the camera shakes."""
+"""Motion in [px] of all that is still from which the camera shakes."""
+_STILL, _FEWEST_STILL = 0.02, 3
+"""
+Motion of points at the foot of the stem over that of the fastest one, below which they are still
+where too few are behind the tree, and the least number of them that tell a shake.
+"""
 _SHAKEN_IN, _LOOKED = 45, 15
 """Pictures in which it is looked for, and after which it is looked for again."""
 _REMEMBERED = 0.99
@@ -206,16 +213,16 @@ class FilmedTree(ObservedTree):
         """
         Move a correction on by its law, and nearer to the estimate.
 
-        A spring with critical damping pulls it there, for noise must not make the tree jump: what
-        is faster than the spring is left out, and the rate changes as smoothly as a force does it.
+        As a spring with critical damping does, the distance to the estimate changes the rate, and
+        this rate the place: the noise of a picture makes the tree speed up, not jump.
         """
         state = np.stack([*correction, self.filter.state[2]])
         moved = self.filter.moved(state, round(dt / TICK))
-        apart = estimate - moved
-        turned = _CALM * dt
+        place, rate = estimate - moved
+        turned = min(_CALM * dt, _MOST_TURNED)
         left = np.exp(-turned)
-        added = (1.0 - left * left) * apart[1] + _CALM * turned * left * apart[0]
-        return moved + np.stack([dt * added, added])
+        nearer = turned * turned * left * place + (1.0 - left * left) * dt * rate
+        return moved + np.stack([nearer, nearer / dt])
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
@@ -268,9 +275,9 @@ class FilmedTree(ObservedTree):
         self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
 
     def _note_behind(self, moved: Floats) -> None:
-        """Note how far points behind the tree are from where they were found, (k, 2)."""
+        """Note how far points that should be still are from where they were found, (k, 2)."""
         moved = moved[np.isfinite(moved).all(axis=1)]
-        if len(moved) < _FEWEST:
+        if len(moved) < _FEWEST_STILL:
             return
         shift = np.median(moved, axis=0)
         self._shifts.append((*shift, np.median(np.abs(moved - shift))))
@@ -289,8 +296,6 @@ class FilmedTree(ObservedTree):
         self._reference = reference
         self._n_begun += 1
         self._shifts.clear()
-        self._behind = points_behind(self.tree, poses, camera, image)
-        self._behind_at = image[self._behind]
         found = matched_points(self.tree, poses, camera, image)
         self.points = found
         at = found.at(poses)
@@ -302,7 +307,16 @@ class FilmedTree(ObservedTree):
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
         self._axes = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=1)
         self._slopes = self._axes @ seen @ found.slopes(self)[:, :, : self._n]
+        still = found.row[self._usual_motion() < _STILL * self._usual_motion().max(initial=0.0)]
+        behind = points_behind(self.tree, poses, camera, image)
+        self._behind = behind if len(behind) >= _FEWEST else still
+        self._behind_at = image[self._behind]
         self.filter.begin(len(found.row))
+
+    def _usual_motion(self) -> Floats:
+        """Return how far each point moves in usual gusts, root mean square [px], (p,)."""
+        moves = self._usual_covariance[: self._n, : self._n]
+        return np.sqrt(np.einsum('pij,jk,pik->p', self._slopes, moves, self._slopes))
 
     def _computed(self, time: float) -> Floats:
         """Coordinates of the model at a time in [s], without the camera's correction, (m,)."""
@@ -325,7 +339,8 @@ class FilmedTree(ObservedTree):
         self._shifts = deque[tuple[float, float, float]](maxlen=_SHAKEN_IN)
         self.shake = 0.0
         law = self._law()
-        self.filter = MotionFilter(law, stationary_covariance(law))
+        self._usual_covariance = stationary_covariance(law)
+        self.filter = MotionFilter(law, self._usual_covariance)
 
     @property
     def sees(self) -> bool:
@@ -368,7 +383,7 @@ class FilmedTree(ObservedTree):
             told += '; points were found anew: check that the camera stands where it stood'
         if self.shake > _SHAKEN:
             told += (
-                f'; what is behind the tree moves by {self.shake:.1f} px: the camera shakes, and '
+                f'; what is still moves by {self.shake:.1f} px: the camera shakes, and '
                 'that is taken for sway: use a tripod'
             )
         if self._picture_rate < _FEW * float(self.frequencies(1)[0]):
