@@ -84,6 +84,30 @@ def test_without_wind_it_follows_lean_and_sway(
     assert filmed.refused == 0
 
 
+def test_a_picture_of_the_end_of_a_step_moves_that_step(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    """Sums of steps are rounded: none of two pictures waits for the step after."""
+    filmed = FilmedTree(tree, camera=CAMERA)
+    filmed.film(0.0, 0, film[1][0])
+    for k in range(1, 240):
+        filmed.film(k / RATE, 0, film[1][k])
+        filmed.step(CALM, 1.0 / RATE)
+        assert filmed._seen_at == k / RATE
+
+
+def test_noise_of_the_points_does_not_make_it_tremble(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray]
+) -> None:
+    true, points = film
+    noisy = points + 0.3 * np.random.default_rng(7).normal(size=points.shape)
+    found = followed(FilmedTree(tree, camera=CAMERA), noisy)
+    half = len(true) // 2
+    rough = [np.square(np.diff(each[half:], 2, axis=0)).sum() for each in (found, true)]
+    # Without gusts the true motion is smooth. Half of the way to each picture makes it 31.
+    assert np.sqrt(rough[0] / rough[1]) < 20.0
+
+
 def test_motion_of_less_than_a_pixel_is_said(
     tree: Tree, film: tuple[np.ndarray, np.ndarray]
 ) -> None:
@@ -174,6 +198,18 @@ def test_a_shake_of_all_that_is_behind_the_tree_is_said(
     assert filmed.shake == pytest.approx(0.67, abs=0.1)
 
 
+@pytest.mark.parametrize('shaken', [0.0, 0.8])
+def test_a_shake_of_the_foot_is_said_where_nothing_is_behind_the_tree(
+    tree: Tree, film: tuple[np.ndarray, np.ndarray], shaken: float
+) -> None:
+    """A page sends points of the wood alone."""
+    shake = shaken * np.sin(11.0 * np.arange(len(film[1])) / RATE)
+    filmed = FilmedTree(tree, camera=CAMERA)
+    points = film[1] + np.stack([shake, 0.5 * shake], axis=1)[:, None]
+    followed(filmed, points[: 5 * RATE])
+    assert ('camera shakes' in filmed.said) == (shaken > 0.0)
+
+
 def test_few_pictures_and_points_found_anew_are_said(
     tree: Tree, film: tuple[np.ndarray, np.ndarray]
 ) -> None:
@@ -217,7 +253,7 @@ def test_the_filter_is_the_least_squares_of_points_and_prior() -> None:
     eta = 0.01 * rng.normal(size=n)
     found.see(slopes, slopes @ eta)
     rows = slopes.reshape(-1, n)
-    weight = found.weights.ravel() / (4.0 * 0.5**2)
+    weight = found.weights.ravel() / (6.0 * 0.5**2)
     inverse = np.linalg.inv(prior[:n, :n])
     wanted = np.linalg.solve(inverse + (rows.T * weight) @ rows, (rows.T * weight) @ rows @ eta)
     np.testing.assert_allclose(found.state[0], wanted, rtol=1e-9)

@@ -37,7 +37,7 @@ _USUAL_WIND = 6.0
 
 _OWN = 0.3
 """
-Variance of an unknown force of each coordinate alone, over that of the gusts of limbs [-].
+Variance of an unknown force of each coordinate alone, over that of all gusts, told or not [-].
 
 Gusts of a few limbs push few ways; real wood differs from the model's in every coordinate.
 """
@@ -48,8 +48,11 @@ _SLOWEST, _OTHER_WIND = 2.0, 1.6
 _LAW_EVERY = 300
 """Steps after which the mean wind is looked at."""
 
-_UNTOLD = 0.7
-"""Standard deviation of the unknown wind of the whole crown over the mean wind [-]."""
+_UNTOLD, _UNTOLD_BY_WIND = 0.7, 0.3
+"""
+Standard deviation of the unknown wind of the whole crown over the mean wind, without an anemometer
+and with one [-].
+"""
 
 _LASTS = 0.5
 """
@@ -58,8 +61,10 @@ Time in [s] after which an unknown force has decayed to 1/e.
 That of a wood which is softer than the model's changes as fast as the tree sways.
 """
 
-_NEARER = 0.4
-"""Share of the way to the estimate that the tree goes in a step."""
+_CALM = 8.0 * np.pi
+"""Angular frequency in [rad/s] of the spring by which the tree follows the estimate."""
+_MOST_TURNED = 1.5
+"""Largest angle in [rad] by which it turns in a step: half of the way is gone in a longer one."""
 
 _FADE = 0.5
 """Time constant in [s] with which the correction fades without pictures."""
@@ -77,7 +82,12 @@ _LEAST_MOTION = 1.0
 """Motion in the picture below which noise tells more than the tree [px]."""
 
 _SHAKEN = 0.3
-"""Motion in [px] of all that is behind the tree from which the camera shakes."""
+"""Motion in [px] of all that is still from which the camera shakes."""
+_STILL, _FEWEST_STILL = 0.02, 3
+"""
+Motion of points at the foot of the stem over that of the fastest one, below which they are still
+where too few are behind the tree, and the least number of them that tell a shake.
+"""
 _SHAKEN_IN, _LOOKED = 45, 15
 """Pictures in which it is looked for, and after which it is looked for again."""
 _REMEMBERED = 0.99
@@ -118,7 +128,8 @@ class FilmedTree(ObservedTree):
         super().__init__(*arguments, at=at or {}, **options)
         self.camera = camera
         """The camera; pictures are refused while it is None."""
-        self._speed, self._is_outdated, self._steps = _USUAL_WIND, False, 0
+        self._speed, self._has_wind = _USUAL_WIND, False
+        self._is_outdated, self._steps = False, 0
         n = self._n = min(_MOST_COORDINATES, self.banks[0].oscillators.shapes.shape[1])
         self._filmed = np.zeros((2, n))
         self._past: deque[tuple[float, Floats]] = deque()
@@ -142,10 +153,11 @@ class FilmedTree(ObservedTree):
         """Return the law of what the model lacks, in the present mean wind."""
         n = self._n
         found = disturbance(self, self._speed, n)
-        covariance = found.covariance
-        whole = _UNTOLD * self._speed * crown_slope(self, self._speed, n)[:2]
-        covariance = covariance + whole.T @ whole
-        covariance = covariance + _OWN * np.diag(np.diag(covariance))
+        whole = self._speed * crown_slope(self, self._speed, n)[:2]
+        together = whole.T @ whole
+        untold = _UNTOLD_BY_WIND if self._has_wind else _UNTOLD
+        all_gusts = np.diag(found.covariance + np.square(_UNTOLD) * together)
+        covariance = found.covariance + np.square(untold) * together + _OWN * np.diag(all_gusts)
         unknown = self.observer.unknown
         damping = unknown.all_damping[:n] + found.air_damping
         return sway_law(unknown.all_stiffness[:n], damping, covariance, _LASTS, TICK)
@@ -184,7 +196,8 @@ class FilmedTree(ObservedTree):
         self._past.append((self.now, eta - self._added[0]))
         while self._past[0][0] < self.now - _KEPT:
             self._past.popleft()
-        while self._waiting and self._waiting[0][0] <= self.now:
+        # A picture of the end of this step is not to wait for the next one by its rounding.
+        while self._waiting and self._waiting[0][0] <= self.now + 0.5 * TICK:
             self._look(*self._waiting.popleft())
         if self.sees:
             ticks = max(round((self.now - self._filter_time) / TICK), 0)
@@ -197,10 +210,19 @@ class FilmedTree(ObservedTree):
         return status
 
     def _calm(self, correction: Floats, dt: float, estimate: Floats) -> Floats:
-        """Move a correction on by its law, and nearer to the estimate: so noise is averaged."""
+        """
+        Move a correction on by its law, and nearer to the estimate.
+
+        As a spring with critical damping does, the distance to the estimate changes the rate, and
+        this rate the place: the noise of a picture makes the tree speed up, not jump.
+        """
         state = np.stack([*correction, self.filter.state[2]])
         moved = self.filter.moved(state, round(dt / TICK))
-        return moved + _NEARER * (estimate - moved)
+        place, rate = estimate - moved
+        turned = min(_CALM * dt, _MOST_TURNED)
+        left = np.exp(-turned)
+        nearer = turned * turned * left * place + (1.0 - left * left) * dt * rate
+        return moved + np.stack([nearer, nearer / dt])
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
@@ -215,7 +237,10 @@ class FilmedTree(ObservedTree):
     def _follow_wind(self) -> None:
         """Take the law of the present mean wind and of the present tree."""
         measured = self.observer.mean_wind
-        speed = max(measured, _SLOWEST) if measured > 0.0 else _USUAL_WIND
+        has_wind = measured > 0.0
+        speed = max(measured, _SLOWEST) if has_wind else _USUAL_WIND
+        self._is_outdated |= has_wind != self._has_wind
+        self._has_wind = has_wind
         if self._is_outdated or not 1.0 / _OTHER_WIND < speed / self._speed < _OTHER_WIND:
             self._speed, self._is_outdated = speed, False
             self.filter.set_law(self._law())
@@ -241,7 +266,7 @@ class FilmedTree(ObservedTree):
         if np.isfinite(missed).all(axis=1).sum() < _FEWEST:
             self.refused += 1
             return
-        self._rate += 0.1 * (1.0 / (time - self._seen_at) - self._rate)
+        self._picture_rate += 0.1 * (1.0 / (time - self._seen_at) - self._picture_rate)
         self._seen_at = time
         self._note_behind(image[self._behind] - self._behind_at)
         moved = np.square(image[self.points.row] - self._begun_at).sum(axis=1)
@@ -250,9 +275,9 @@ class FilmedTree(ObservedTree):
         self.filter.see(self._slopes, np.einsum('pij,pj->pi', self._axes, missed))
 
     def _note_behind(self, moved: Floats) -> None:
-        """Note how far points behind the tree are from where they were found, (k, 2)."""
+        """Note how far points that should be still are from where they were found, (k, 2)."""
         moved = moved[np.isfinite(moved).all(axis=1)]
-        if len(moved) < _FEWEST:
+        if len(moved) < _FEWEST_STILL:
             return
         shift = np.median(moved, axis=0)
         self._shifts.append((*shift, np.median(np.abs(moved - shift))))
@@ -271,8 +296,6 @@ class FilmedTree(ObservedTree):
         self._reference = reference
         self._n_begun += 1
         self._shifts.clear()
-        self._behind = points_behind(self.tree, poses, camera, image)
-        self._behind_at = image[self._behind]
         found = matched_points(self.tree, poses, camera, image)
         self.points = found
         at = found.at(poses)
@@ -284,7 +307,16 @@ class FilmedTree(ObservedTree):
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
         self._axes = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=1)
         self._slopes = self._axes @ seen @ found.slopes(self)[:, :, : self._n]
+        still = found.row[self._usual_motion() < _STILL * self._usual_motion().max(initial=0.0)]
+        behind = points_behind(self.tree, poses, camera, image)
+        self._behind = behind if len(behind) >= _FEWEST else still
+        self._behind_at = image[self._behind]
         self.filter.begin(len(found.row))
+
+    def _usual_motion(self) -> Floats:
+        """Return how far each point moves in usual gusts, root mean square [px], (p,)."""
+        moves = self._usual_covariance[: self._n, : self._n]
+        return np.sqrt(np.einsum('pij,jk,pik->p', self._slopes, moves, self._slopes))
 
     def _computed(self, time: float) -> Floats:
         """Coordinates of the model at a time in [s], without the camera's correction, (m,)."""
@@ -303,11 +335,12 @@ class FilmedTree(ObservedTree):
         self._waiting.clear()
         self._square, self._n_seen = 0.0, 0
         self._seen_at, self._reference = -np.inf, -1
-        self._n_begun, self._rate = 0, 0.0
+        self._n_begun, self._picture_rate = 0, 0.0
         self._shifts = deque[tuple[float, float, float]](maxlen=_SHAKEN_IN)
         self.shake = 0.0
         law = self._law()
-        self.filter = MotionFilter(law, stationary_covariance(law))
+        self._usual_covariance = stationary_covariance(law)
+        self.filter = MotionFilter(law, self._usual_covariance)
 
     @property
     def sees(self) -> bool:
@@ -350,11 +383,13 @@ class FilmedTree(ObservedTree):
             told += '; points were found anew: check that the camera stands where it stood'
         if self.shake > _SHAKEN:
             told += (
-                f'; what is behind the tree moves by {self.shake:.1f} px: the camera shakes, and '
+                f'; what is still moves by {self.shake:.1f} px: the camera shakes, and '
                 'that is taken for sway: use a tripod'
             )
-        if self._rate < _FEW * float(self.frequencies(1)[0]):
-            told += f'; {self._rate:.0f} pictures a second are few: its sway is told roughly'
+        if self._picture_rate < _FEW * float(self.frequencies(1)[0]):
+            told += (
+                f'; {self._picture_rate:.0f} pictures a second are few: its sway is told roughly'
+            )
         if self.motion < _LEAST_MOTION:
             told += (
                 f'; they moved by {self.motion:.1f} px, and less than a pixel tells little: film '

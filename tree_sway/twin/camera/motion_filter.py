@@ -33,7 +33,7 @@ _MOST_TICKS = 60
 _NOISE = 0.03
 """Least error of a point in pixels."""
 _FIRST_NOISE = 0.5
-_JOINED = 4.0
+_JOINED = 6.0
 """
 How many times the square of its error a point's variance is taken to be: its error is that of a
 shape that the model lacks, which lasts for several pictures.
@@ -141,28 +141,45 @@ class MotionFilter:
         expected = np.square(self.errors[seen]).ravel()
         with one_thread():
             moves = self.covariance[:n, :n]
-            left, allowed = apart, expected + np.einsum('ij,ij->i', rows @ moves, rows)
+            left = apart
+            allowed = expected + np.einsum('ij,ij->i', rows @ moves, rows)
             for _ in range(1 + _ROUNDS):
                 squares = np.square(left)
-                shares = 1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed))
+                shares = _shares(squares, allowed)
                 weighted = rows * (shares / (_JOINED * expected))[:, None]
-                told, towards = rows.T @ weighted, weighted.T @ apart
+                told = rows.T @ weighted
+                towards = weighted.T @ apart
                 inner = np.linalg.solve(np.eye(n) + told @ moves, np.column_stack([towards, told]))
-                left, allowed = apart - rows @ (moves @ inner[:, 0]), 2.0 * expected
+                left = apart - rows @ (moves @ inner[:, 0])
+                allowed = 2.0 * expected
             across = self.covariance[:, :n]
             self.state += (across @ inner[:, 0]).reshape(3, n)
             self.covariance -= across @ inner[:, 1:] @ across.T
         self.covariance = 0.5 * (self.covariance + self.covariance.T)
-        forces = np.square(self.state[2]) + np.diag(self.covariance)[2 * n :]
-        self.strength += _STRENGTHENED * (float((forces / self._usual).mean()) - self.strength)
-        self.strength = min(self.strength, _STRONGEST)
+        self._follow_strength()
         self.weights[:] = 0.0
+        self.weights[seen] = shares.reshape(-1, 2)
         self.residuals[:] = np.nan
-        self.weights[seen], self.residuals[seen] = shares.reshape(-1, 2), left.reshape(-1, 2)
-        # A far outlier does not make a point's error its own.
-        residual = np.minimum(squares, 100.0 * expected)
-        expected += _FOLLOWED * (residual - expected)
-        self.errors[seen] = np.maximum(np.sqrt(expected), _NOISE).reshape(-1, 2)
+        self.residuals[seen] = left.reshape(-1, 2)
+        followed = _followed(expected, squares)
+        self.errors[seen] = np.maximum(np.sqrt(followed), _NOISE).reshape(-1, 2)
+
+    def _follow_strength(self) -> None:
+        """Follow how strong the unknown forces are found to be."""
+        variance = np.diag(self.covariance)[2 * self.count :]
+        found = (np.square(self.state[2]) + variance) / self._usual
+        self.strength += _STRENGTHENED * (float(found.mean()) - self.strength)
+        self.strength = min(self.strength, _STRONGEST)
+
+
+def _shares(squares: Floats, allowed: Floats) -> Floats:
+    """Weights of measurements by the squares of their residuals over those that are allowed."""
+    return np.asarray(1.0 / np.square(1.0 + squares / (_OUTLIER * _OUTLIER * allowed)))
+
+
+def _followed(expected: Floats, squares: Floats) -> Floats:
+    """Variances that follow the squares of residuals; a far outlier is not a usual error."""
+    return expected + _FOLLOWED * (np.minimum(squares, 100.0 * expected) - expected)
 
 
 def _moved(step: Floats, blocks: Floats) -> Floats:
