@@ -40,6 +40,9 @@ _LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.2, 600.0
+_SOON = 4.0
+"""Motion in [s] after which a sensor is looked at again whose times may be wrong."""
+
 _LESS_SURE = 1.5
 """
 Error of the azimuth over that before, from which the mounting before is kept. One of other units
@@ -177,7 +180,7 @@ class FoundMounting(NamedTuple):
 
     ``lag`` is by how many steps the tree moves later than the model, ``left_for`` the lag
     [s] for which the sensor is not to be followed, 0 if it is that of another wind, and None if it
-    is right. ``late`` is its likeliest lag [s].
+    is right. ``late`` is its likeliest lag [s], ``is_suspect`` whether to look again soon.
     """
 
     alignment: Alignment
@@ -185,6 +188,7 @@ class FoundMounting(NamedTuple):
     lag: int = 0
     left_for: float | None = None
     late: float = 0.0
+    is_suspect: bool = False
 
 
 def _mounting(
@@ -241,7 +245,7 @@ def _mounting(
         left_for, said = apart
     elif left.is_by_chance:
         left_for, said = 0.0 if sensor.place.facing is None else None, _ALIEN
-    elif _is_off(left, lags) and (left.is_enough or lags.left_for is not None):
+    elif left.is_clear or (_is_off(left, lags) and (left.is_long or lags.left_for is not None)):
         left_for = _lag_left_for(left, lags) if lags.is_told else None
         said = left.said_of('the tree in this wind')
     elif lags.left_for is not None and not found.problem:
@@ -250,7 +254,8 @@ def _mounting(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    return FoundMounting(found, bias, lag, left_for, left.seconds)
+    is_suspect = left.is_suspect and left_for is None
+    return FoundMounting(found, bias, lag, left_for, left.seconds, is_suspect)
 
 
 def _is_off(found: SensorLag, lags: LagRange) -> bool:
@@ -597,6 +602,8 @@ class SensorTrack:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
         self._left_for, self.late = mounting.left_for, mounting.late
+        if mounting.is_suspect:
+            self._next_fit = min(self._next_fit, native.count + round(_SOON / self._dt))
         is_left = mounting.left_for is not None
         is_kept = native.is_mounted and not native.is_refused and not is_left
         if is_kept and (found.problem or self._is_less_sure(found)):
