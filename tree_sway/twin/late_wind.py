@@ -33,6 +33,12 @@ _SLOWEST = 1.0
 _TOLD_LATE = 1.5
 """Time in [s] from which it is told that the wind is known so late."""
 
+_SETTLED = 30.0
+"""
+Time in [s] after which a model that an anemometer moves again leans as the wind has it: after 5 s,
+its slow gusts were those of the silence, and of three right sensors two were left for a lag.
+"""
+
 _CAPACITY = 1024
 """Number of past winds that are kept."""
 
@@ -63,6 +69,9 @@ class LateWind:
         self._measured = np.zeros(3)
         self.known_late = 0.0
         """Time in [s] by which the wind that is pushed is older than what sensors are read for."""
+        self.is_silent = False
+        """Whether the anemometer has fallen silent, and what is pushed is no wind."""
+        self._known_for = math.inf
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -72,7 +81,9 @@ class LateWind:
         is that of the delay found, ``delay speed``, at the present mean speed.
         """
         way = self._way
-        follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
+        self._known_for = 0.0 if self.is_silent else self._known_for + dt
+        if not self.is_silent:
+            follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
         speed = max(float(self._mean[0]), _SLOWEST)
         if way[1] > 0.0:
             way[0] = self._delay[0] * speed
@@ -89,9 +100,19 @@ class LateWind:
         return float(self._delay[0])
 
     @property
+    def moves_model(self) -> bool:
+        """Whether the model sways in the wind of the tree, for sensors to be compared with it."""
+        return self._known_for > _SETTLED + self.delay
+
+    @property
     def later(self) -> Callable[[Floats], Complexes] | None:
         """Gusts that crown and anemometer share in the present wind (`FarWind.later`)."""
-        return None if self._far is None else partial(self._far.later, mean=self._far.mean)
+        if self._far is None:
+            return None
+        # Its mean wind counts a silence as a calm.
+        east, north = self._far.mean
+        more = max(float(self._mean[0]), _SLOWEST) / max(math.hypot(east, north), 1e-9)
+        return partial(self._far.later, mean=(more * east, more * north))
 
     def lag_at(self, reach: tuple[float, float]) -> tuple[float, float]:
         """
