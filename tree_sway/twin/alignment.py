@@ -256,8 +256,8 @@ def _is_against(moved: Floats) -> bool:
     """
     Whether an angular rate turns against the lean that the acceleration tells, (n, 9).
 
-    Turned by theta, a sensor feels ``g z x theta``. What fast sway adds to it has the other sign on
-    a twig that hangs, so that motion is to be averaged.
+    Turned by theta, a sensor feels ``g z x theta``. What fast sway adds to it has the other sign
+    on a twig that hangs, so that motion is to be averaged.
     """
     change = np.gradient(moved[:, :2], axis=0)
     rate = moved[:, 3:5] - moved[:, 3:5].mean(axis=0)

@@ -33,10 +33,11 @@ _SLOWEST = 1.0
 _TOLD_LATE = 1.5
 """Time in [s] from which it is told that the wind is known so late."""
 
-_SETTLED = 30.0
+_RECALLED, _SETTLED = 5.0, 30.0
 """
-Time in [s] after which a model that an anemometer moves again leans as the wind has it: after 5 s,
-its slow gusts were those of the silence, and of three right sensors two were left for a lag.
+Time constant in [s] with which the mean wind is that before a silence again, for twice as long,
+and time after which a model leans as the wind has it: without both, its slow gusts are late, as
+those of less wind, and a right sensor seemed to be early.
 """
 
 _CAPACITY = 1024
@@ -71,7 +72,7 @@ class LateWind:
         """Time in [s] by which the wind that is pushed is older than what sensors are read for."""
         self.is_silent = False
         """Whether the anemometer has fallen silent, and what is pushed is no wind."""
-        self._known_for = math.inf
+        self._known_for, self._before = math.inf, np.zeros(0)
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -81,7 +82,7 @@ class LateWind:
         is that of the delay found, ``delay speed``, at the present mean speed.
         """
         way = self._way
-        self._known_for = 0.0 if self.is_silent else self._known_for + dt
+        self._note_silence(dt)
         if not self.is_silent:
             follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
         speed = max(float(self._mean[0]), _SLOWEST)
@@ -93,6 +94,16 @@ class LateWind:
         self._history.add(self._measured, dt, self._wanted, self._delay, self._wind)
         east, north, up = self._wind[0].tolist()
         return east, north, up
+
+    def _note_silence(self, dt: float) -> None:
+        """Note whether the wind of a step is one, and recall its means after a silence."""
+        if self._far is not None:
+            if self.is_silent and self._known_for:
+                (before,) = self._far.memory()
+                self._before = before.copy()
+            elif not self.is_silent and self._known_for < 2.0 * _RECALLED:
+                self._far.recall(self._before, min(dt / _RECALLED, 1.0))
+        self._known_for = 0.0 if self.is_silent else self._known_for + dt
 
     @property
     def delay(self) -> float:
@@ -107,12 +118,7 @@ class LateWind:
     @property
     def later(self) -> Callable[[Floats], Complexes] | None:
         """Gusts that crown and anemometer share in the present wind (`FarWind.later`)."""
-        if self._far is None:
-            return None
-        # Its mean wind counts a silence as a calm.
-        east, north = self._far.mean
-        more = max(float(self._mean[0]), _SLOWEST) / max(math.hypot(east, north), 1e-9)
-        return partial(self._far.later, mean=(more * east, more * north))
+        return None if self._far is None else partial(self._far.later, mean=self._far.mean)
 
     def lag_at(self, reach: tuple[float, float]) -> tuple[float, float]:
         """

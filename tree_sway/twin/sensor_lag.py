@@ -71,9 +71,10 @@ anemometer, two had 2.1 and 2.6 after 100 s.
 
 _CLEAR, _COMMON, _AWAY = 10.0, 20.0, 1.5
 """
-Logarithm of the likelihood of a lag over that of none, its evidence, and its size over its standard
-deviation from which it is clear, however short the motion: of eleven right sensors one had more
-than 8 of the first, 9.1, and of right motions 12 m aside of the wind 1 in 200 has more than all.
+Logarithm of the likelihood of a lag over that of none, its evidence, and its size over its
+standard deviation from which it is clear, however short the motion: of right sensors on eleven
+drawn trees one had more than 8 of the first, 9.1; of right motions 12 m aside of the wind 1 in 200
+has more than all.
 """
 
 _CAN_BE_CLEAR = 1.0
