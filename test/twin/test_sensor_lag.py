@@ -183,6 +183,17 @@ def test_a_lag_is_clear_where_nothing_speaks_against_it(
     assert found._replace(**changes).is_clear == is_clear
 
 
+@pytest.mark.parametrize('is_whole', [True, False])
+def test_a_clear_lag_is_told_at_once_where_no_wind_is_missing(
+    is_whole: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = SensorLag(2.2, 1.0, evidence=25.6, over_none=13.8, n_lines=32, can_differ=1.9)
+    monkeypatch.setattr(sensor_track, 'sensor_lag', lambda *_, **__: found)
+    track = seeing(*noise(80.0, np.random.default_rng(12), 4.0))
+    track.take(track.search(NO_LAG._replace(is_told=True, is_whole=is_whole))())
+    assert track.in_use != is_whole
+
+
 @pytest.mark.parametrize(('over_none', 'after'), [(2.0, 16.0), (4.0, 4.0)])
 def test_a_sensor_whose_times_are_in_doubt_is_looked_at_again_soon(
     over_none: float, after: float, monkeypatch: pytest.MonkeyPatch

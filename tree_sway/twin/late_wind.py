@@ -116,6 +116,11 @@ class LateWind:
         return self._known_for > _SETTLED + self.delay
 
     @property
+    def is_whole(self) -> bool:
+        """Whether the anemometer was never silent."""
+        return math.isinf(self._known_for)
+
+    @property
     def later(self) -> Callable[[Floats], Complexes] | None:
         """Gusts that crown and anemometer share in the present wind (`FarWind.later`)."""
         return None if self._far is None else partial(self._far.later, mean=self._far.mean)

@@ -162,7 +162,7 @@ class SensorReadings:
         )
         way = LagRange(
             0, 0, 1, about, none, self._wind.is_told, later=self._wind.later, others=others,
-            of_wind=round(self._wind.known_late / self._dt),
+            of_wind=round(self._wind.known_late / self._dt), is_whole=self._wind.is_whole,
         )  # fmt: skip
         if way.is_told or self._told_lag not in (None, track):
             return way

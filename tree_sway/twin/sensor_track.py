@@ -147,7 +147,8 @@ class LagRange(NamedTuple):
     is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
     last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the gusts
     that it shares with its model (`sensor_lag`), ``others`` are further sensors of the tree.
-    ``of_wind`` is by how many steps the wind of the model is known to be late.
+    ``of_wind`` is by how many steps the wind of the model is known to be late, ``is_whole``
+    whether it was never silent: beyond a silence the lean of a model seems late for minutes.
     """
 
     earliest: int
@@ -160,6 +161,7 @@ class LagRange(NamedTuple):
     later: Callable[[Floats], Complexes] | None = None
     others: tuple[OtherSensor, ...] = ()
     of_wind: int = 0
+    is_whole: bool = True
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -245,7 +247,9 @@ def _mounting(
         left_for, said = apart
     elif left.is_by_chance:
         left_for, said = 0.0 if sensor.place.facing is None else None, _ALIEN
-    elif left.is_clear or (_is_off(left, lags) and (left.is_long or lags.left_for is not None)):
+    elif (left.is_clear and lags.is_whole) or (
+        _is_off(left, lags) and (left.is_long or lags.left_for is not None)
+    ):
         left_for = _lag_left_for(left, lags) if lags.is_told else None
         said = left.said_of('the tree in this wind')
     elif lags.left_for is not None and not found.problem:
