@@ -41,7 +41,7 @@ constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN =
 // on Automatic Control 17, 693-698): a limb has more modes than the filter, and its rate is mostly
 // theirs. A sensor begins with the most that right ones have, and is followed up and down with time
 // constants [s].
-constexpr double MOST_USUAL = 6.0, USUAL_UP = 60.0, USUAL_DOWN = 5.0;
+constexpr double MOST_USUAL = 16.0, USUAL_UP = 160.0, USUAL_DOWN = 5.0;
 
 // Largest square that counts: one spike in a hundred samples is no reason to disagree, and after a
 // knock a sensor is to be followed again in half a minute.

@@ -290,6 +290,20 @@ def test_a_sensor_that_is_told_which_way_it_faces_needs_no_likeness(mount: Rotat
     assert np.degrees(error.magnitude()) < 2.0
 
 
+def test_a_twig_that_hangs_has_a_rate_of_its_own_sign() -> None:
+    """Its fast sway, of which it feels the acceleration, leans it the other way."""
+    tree, _ = beside_a_mast(1, 60.0)
+    values = measured_there(tree, MOUNTS[0])
+    time = np.arange(len(values)) / 60.0
+    turning = 2.0 * np.pi * 1.5
+    sway = np.zeros_like(values)
+    sway[:, 0], sway[:, 4] = 3.0 * np.sin(turning * time), 0.3 * np.cos(turning * time)
+    for first in (0, 3):
+        sway[:, first : first + 3] = MOUNTS[0].inv().apply(sway[:, first : first + 3])
+    note = 'angular rate of the opposite sign'
+    assert note not in align(values + sway, tree, tree, window=SLOW).notes
+
+
 @pytest.mark.parametrize('mount', MOUNTS)
 def test_a_rate_tells_its_sign_whatever_the_wind(mount: Rotation) -> None:
     tree, _ = beside_a_mast(1, 60.0)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.arrays import Complexes, Floats
+from tree_sway.twin import sensor_track
 from tree_sway.twin.alignment import Alignment, GRAVITY
 from tree_sway.twin.motion_sensor import MotionSensor
 from tree_sway.twin.sensor_lag import sensor_lag, SensorLag
@@ -162,6 +163,46 @@ def test_a_lag_that_is_no_chance_is_told_before_three_minutes() -> None:
 
     assert sum(is_left(2.0, seed) for seed in range(20)) > 10
     assert not any(is_left(0.0, seed) for seed in range(20))
+
+
+@pytest.mark.parametrize(
+    ('changes', 'is_clear'),
+    [
+        ({}, True),
+        ({'over_none': 9.0}, False),
+        ({'evidence': 19.0}, False),
+        ({'seconds': 1.2}, False),
+        ({'can_differ': 0.9}, False),
+    ],
+)
+def test_a_lag_is_clear_where_nothing_speaks_against_it(
+    changes: dict[str, float], is_clear: bool
+) -> None:
+    """The values are those of a sensor 2 s late, a minute after it was switched on."""
+    found = SensorLag(2.2, 1.0, evidence=25.6, over_none=13.8, n_lines=32, can_differ=1.9)
+    assert found._replace(**changes).is_clear == is_clear
+
+
+@pytest.mark.parametrize('is_whole', [True, False])
+def test_a_clear_lag_is_told_at_once_where_no_wind_is_missing(
+    is_whole: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = SensorLag(2.2, 1.0, evidence=25.6, over_none=13.8, n_lines=32, can_differ=1.9)
+    monkeypatch.setattr(sensor_track, 'sensor_lag', lambda *_, **__: found)
+    track = seeing(*noise(80.0, np.random.default_rng(12), 4.0))
+    track.take(track.search(NO_LAG._replace(is_told=True, is_whole=is_whole))())
+    assert track.in_use != is_whole
+
+
+@pytest.mark.parametrize(('over_none', 'after'), [(2.0, 16.0), (4.0, 4.0)])
+def test_a_sensor_whose_times_are_in_doubt_is_looked_at_again_soon(
+    over_none: float, after: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = SensorLag(1.0, 1.0, evidence=15.0, over_none=over_none, motion=80.0, n_lines=46)
+    monkeypatch.setattr(sensor_track, 'sensor_lag', lambda *_, **__: found)
+    track = seeing(*noise(80.0, np.random.default_rng(12), 4.0))
+    assert said(track, is_told=True) == ()
+    assert (track._next_fit - track.native.count) * DT == pytest.approx(after, abs=0.1)
 
 
 def test_a_sensor_is_left_when_its_motion_has_nothing_of_the_wind() -> None:

@@ -249,6 +249,44 @@ def test_a_limb_of_more_modes_than_the_filter_is_no_disagreement_and_a_later_fau
     assert not track.in_use
 
 
+def test_gusty_sway_of_a_twig_that_no_model_has_is_no_disagreement() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.is_mounted = track.native.in_use = 1
+    for step in range(7200):
+        track.judge(70.0 + 65.0 * np.sin(2.0 * np.pi * step * DT / 12.0))
+    assert track.excess < 120.0
+    assert track.in_use
+    for _ in range(180):
+        track.judge(1e6)
+    assert not track.in_use
+
+
+def test_nothing_is_compared_with_a_model_whose_anemometer_is_silent() -> None:
+    of, *_ = readings(1)
+    track, wind = track_of(of), of._wind
+
+    def run(first: float, seconds: float) -> int:
+        """Read some seconds, and return how many samples were remembered."""
+        before = track.native.count
+        for step in range(round(first / DT), round((first + seconds) / DT)):
+            time = step * DT
+            wind.push(5.0, 0.0, 0.0, DT)
+            acceleration = (0.1 * (step % 2), 0.0, GRAVITY)
+            track.sensor.offer(time, acceleration=acceleration)
+            of.read(time, step, -1)
+        return int(track.native.count) - before
+
+    assert run(0.0, 10.0) == 600
+    wind.is_silent = True
+    assert run(10.0, 20.0) == 0
+    assert track.alignment is None
+    assert not track.is_silent
+    wind.is_silent = False
+    assert 890 < run(30.0, 45.0) < 910
+    assert track.alignment is not None
+
+
 def test_steps_before_a_knock_are_none_of_its_whole_motion() -> None:
     of, *_ = readings(1)
     track = track_of(of)

@@ -364,6 +364,7 @@ class Session:
             def begin(end: float, late: float) -> None:
                 twin.set_time(end)
                 twin.late_wind.known_late = late
+                twin.late_wind.is_silent = run.is_wind_silent
 
             run = Run(simulator, RATE, intake=intake, starting=begin)
         return scene, run

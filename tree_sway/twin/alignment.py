@@ -57,6 +57,12 @@ Logarithm of the likelihoods from which an acceleration is believed to be of opp
 of few gusts resemble their mirror images by chance.
 """
 
+_AGAINST = 0.2
+"""
+Correlation of an angular rate with the change of the lean from which it is believed to be of
+opposite sign: on right twigs it was down to -0.04, on limbs and stems it is 0.4 and more.
+"""
+
 _SIGNS = {
     (-1.0, 1.0): 'acceleration of the opposite sign',
     (1.0, -1.0): 'angular rate of the opposite sign',
@@ -198,7 +204,7 @@ def align(
         ratio = (1.0 - found.likeness**2) / max(1.0 - opposite.likeness**2, 1e-12)
         if count * math.log(max(ratio, 1e-12)) > _OPPOSITE:
             signs, found = (-1.0, 1.0), opposite
-    if given[:2].all() and _is_against(found.motion(raw)):
+    if given[:2].all() and _is_against(found.motion(sensed)):
         signs = signs[0], -1.0
         found = mounted(model, signs)
     if signs in _SIGNS:
@@ -259,11 +265,13 @@ def _is_against(moved: Floats) -> bool:
     """
     Whether an angular rate turns against the lean that the acceleration tells, (n, 9).
 
-    Turned by theta, a sensor feels ``g z x theta``, and the sway of a tree, which leans the way
-    that it is bent, adds to it.
+    Turned by theta, a sensor feels ``g z x theta``. What fast sway adds to it has the other sign
+    on a twig that hangs, so that motion is to be averaged.
     """
     change = np.gradient(moved[:, :2], axis=0)
-    return float((change[:, 1] * moved[:, 3] - change[:, 0] * moved[:, 4]).sum()) < 0.0
+    rate = moved[:, 3:5] - moved[:, 3:5].mean(axis=0)
+    likeness = float((change[:, 1] * rate[:, 0] - change[:, 0] * rate[:, 1]).sum())
+    return likeness < -_AGAINST * float(np.linalg.norm(change) * np.linalg.norm(rate))
 
 
 def _mounted(

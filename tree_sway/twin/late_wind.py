@@ -33,6 +33,13 @@ _SLOWEST = 1.0
 _TOLD_LATE = 1.5
 """Time in [s] from which it is told that the wind is known so late."""
 
+_RECALLED, _SETTLED = 5.0, 30.0
+"""
+Time constant in [s] with which the mean wind is that before a silence again, for twice as long,
+and time after which a model leans as the wind has it: without both, its slow gusts are late, as
+those of less wind, and a right sensor seemed to be early.
+"""
+
 _CAPACITY = 1024
 """Number of past winds that are kept."""
 
@@ -63,6 +70,9 @@ class LateWind:
         self._measured = np.zeros(3)
         self.known_late = 0.0
         """Time in [s] by which the wind that is pushed is older than what sensors are read for."""
+        self.is_silent = False
+        """Whether the anemometer has fallen silent, and what is pushed is no wind."""
+        self._known_for, self._before = math.inf, np.zeros(0)
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -72,7 +82,9 @@ class LateWind:
         is that of the delay found, ``delay speed``, at the present mean speed.
         """
         way = self._way
-        follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
+        self._note_silence(dt)
+        if not self.is_silent:
+            follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
         speed = max(float(self._mean[0]), _SLOWEST)
         if way[1] > 0.0:
             way[0] = self._delay[0] * speed
@@ -83,10 +95,30 @@ class LateWind:
         east, north, up = self._wind[0].tolist()
         return east, north, up
 
+    def _note_silence(self, dt: float) -> None:
+        """Note whether the wind of a step is one, and recall its means after a silence."""
+        if self._far is not None:
+            if self.is_silent and self._known_for:
+                (before,) = self._far.memory()
+                self._before = before.copy()
+            elif not self.is_silent and self._known_for < 2.0 * _RECALLED:
+                self._far.recall(self._before, min(dt / _RECALLED, 1.0))
+        self._known_for = 0.0 if self.is_silent else self._known_for + dt
+
     @property
     def delay(self) -> float:
         """Time in [s] by which gusts are later than at the anemometer."""
         return float(self._delay[0])
+
+    @property
+    def moves_model(self) -> bool:
+        """Whether the model sways in the wind of the tree, for sensors to be compared with it."""
+        return self._known_for > _SETTLED + self.delay
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the anemometer was never silent."""
+        return math.isinf(self._known_for)
 
     @property
     def later(self) -> Callable[[Floats], Complexes] | None:

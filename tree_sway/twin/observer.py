@@ -82,7 +82,7 @@ class Observer:
         self.tracks, self._dt = list(tracks), dt
         oscillators: Any = simulator.banks[0].oscillators
         swing = oscillators.swing
-        wind = wind or LateWind()
+        self._wind = wind = wind or LateWind()
         n = self.count = min(MOST_COORDINATES, oscillators.shapes.shape[1])
         """Number of coordinates that are corrected."""
         places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
@@ -192,9 +192,12 @@ class Observer:
 
         """
         self._step += 1
-        self.unknown.note_wind(*wind)
+        if self._wind.moves_model:
+            self.unknown.note_wind(*wind)
         at = self._readings.read(time, self._step, self._done)
-        if at >= 0:
+        if not self._wind.moves_model:
+            self._fit.skip()
+        elif at >= 0:
             self._fit.note(wind[0], wind[1])
         gains = self._design.advance()
         if gains is not None:

@@ -108,6 +108,11 @@ class RunningFit:
             elif track.is_silent:
                 self._spectra[k].skip()
 
+    def skip(self) -> None:
+        """Leave out a step of which the wind is not known."""
+        for each in self._spectra:
+            each.skip()
+
     def _note_air(self, which: int) -> None:
         """
         Note by which air a stretch was damped, and which forces moved it.

@@ -69,11 +69,16 @@ Least size of a lag over its standard deviation: of four right sensors on a tree
 anemometer, two had 2.1 and 2.6 after 100 s.
 """
 
-_CLEAR = 10.0
+_CLEAR, _COMMON, _AWAY = 10.0, 20.0, 1.5
 """
-Logarithm of the likelihood of a lag over that of none from which it is believed before `_LONG`:
-right sensors on nine drawn trees had 1.5 at most, those that were 2 s late 8 to 21.
+Logarithm of the likelihood of a lag over that of none, its evidence, and its size over its
+standard deviation from which it is clear, however short the motion: of right sensors on eleven
+drawn trees one had more than 8 of the first, 9.1; of right motions 12 m aside of the wind 1 in 200
+has more than all.
 """
+
+_CAN_BE_CLEAR = 1.0
+"""Least ``can_differ`` of a lag that is clear."""
 
 _DOUBTED = 0.5
 """Logarithm of the likelihood of a lag over that of none above which a sensor stays left."""
@@ -130,9 +135,16 @@ class SensorLag(NamedTuple):
         return self.motion >= _LONG
 
     @property
-    def is_enough(self) -> bool:
-        """Whether a sensor may be left for it: after long motion, or where it is clear."""
-        return self.is_long or self.over_none > _CLEAR
+    def is_clear(self) -> bool:
+        """Whether a sensor is left for it, however short the motion that was compared."""
+        is_no_chance = self.over_none > _CLEAR and self.evidence > _COMMON
+        is_away = abs(self.seconds) > _AWAY * self.error and self.can_differ > _CAN_BE_CLEAR
+        return is_no_chance and is_away
+
+    @property
+    def is_suspect(self) -> bool:
+        """Whether it is likelier than none by enough to be looked at again soon."""
+        return self.over_none > _SURE and not self.is_long
 
     @property
     def is_by_chance(self) -> bool:

@@ -119,8 +119,14 @@ class SensorReadings:
         for track in self._tracks:
             if track.heed() and self._search is not None and self._search[0] is track:
                 self._search = None  # it looks at what the sensor measured before
-        self._find_mounting(step)
-        return int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
+        if self._wind.moves_model:
+            self._find_mounting(step)
+            return int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
+        counts = [each.native.count for each in self._tracks]
+        found = int(LIBRARY.sway_read_sensors(self.native.at, step, done, time))
+        for track, count in zip(self._tracks, counts, strict=True):
+            track.native.count = count  # it remembers nothing of a model without wind
+        return found
 
     def _find_mounting(self, step: int) -> None:
         """Go on with finding a mounting, or begin with that of the next sensor that is due."""
@@ -156,7 +162,7 @@ class SensorReadings:
         )
         way = LagRange(
             0, 0, 1, about, none, self._wind.is_told, later=self._wind.later, others=others,
-            of_wind=round(self._wind.known_late / self._dt),
+            of_wind=round(self._wind.known_late / self._dt), is_whole=self._wind.is_whole,
         )  # fmt: skip
         if way.is_told or self._told_lag not in (None, track):
             return way

@@ -41,6 +41,9 @@ _LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
 
 _LATER, _MEMORY = 1.2, 600.0
+_SOON = 4.0
+"""Motion in [s] after which a sensor is looked at again whose times may be wrong."""
+
 _LESS_SURE = 1.5
 """
 Error of the azimuth over that before, from which the mounting before is kept. One of other units
@@ -148,7 +151,8 @@ class LagRange(NamedTuple):
     is late then is the sensor. ``left_for`` is the lag for which it was left when it was looked at
     last [s], 0 if it was that of another wind, None if it was followed; ``later`` gives the gusts
     that it shares with its model (`sensor_lag`), ``others`` are further sensors of the tree.
-    ``of_wind`` is by how many steps the wind of the model is known to be late.
+    ``of_wind`` is by how many steps the wind of the model is known to be late, ``is_whole``
+    whether it was never silent: beyond a silence the lean of a model seems late for minutes.
     """
 
     earliest: int
@@ -161,6 +165,7 @@ class LagRange(NamedTuple):
     later: Callable[[Floats], Complexes] | None = None
     others: tuple[OtherSensor, ...] = ()
     of_wind: int = 0
+    is_whole: bool = True
 
 
 NO_LAG = LagRange(0, 0, 1)
@@ -181,7 +186,7 @@ class FoundMounting(NamedTuple):
 
     ``lag`` is by how many steps the tree moves later than the model, ``left_for`` the lag
     [s] for which the sensor is not to be followed, 0 if it is that of another wind, and None if it
-    is right. ``late`` is its likeliest lag [s].
+    is right. ``late`` is its likeliest lag [s], ``is_suspect`` whether to look again soon.
     """
 
     alignment: Alignment
@@ -189,6 +194,7 @@ class FoundMounting(NamedTuple):
     lag: int = 0
     left_for: float | None = None
     late: float = 0.0
+    is_suspect: bool = False
 
 
 def _mounting(
@@ -250,7 +256,9 @@ def _mounting(
         left_for, said = apart
     elif left.is_by_chance:
         left_for, said = 0.0 if sensor.place.facing is None else None, _ALIEN
-    elif _is_off(left, lags) and (left.is_enough or lags.left_for is not None):
+    elif (left.is_clear and lags.is_whole) or (
+        _is_off(left, lags) and (left.is_long or lags.left_for is not None)
+    ):
         left_for = _lag_left_for(left, lags) if lags.is_told else None
         said = left.said_of('the tree in this wind')
     elif lags.left_for is not None and not found.problem:
@@ -259,7 +267,8 @@ def _mounting(
         found = replace(found, problem=found.problem or said)
     elif said:
         found = replace(found, notes=(*found.notes, said))
-    return FoundMounting(found, bias, lag, left_for, left.seconds)
+    is_suspect = left.is_suspect and left_for is None
+    return FoundMounting(found, bias, lag, left_for, left.seconds, is_suspect)
 
 
 def _is_off(found: SensorLag, lags: LagRange) -> bool:
@@ -639,6 +648,8 @@ class SensorTrack:
         """Read the sensor by another mounting from now on, unless the one before is surer."""
         found, native = mounting.alignment, self.native
         self._left_for, self.late = mounting.left_for, mounting.late
+        if mounting.is_suspect:
+            self._next_fit = min(self._next_fit, native.count + round(_SOON / self._dt))
         is_left = mounting.left_for is not None
         is_kept = native.is_mounted and not native.is_refused and not is_left
         if is_kept and (found.problem or self._is_less_sure(found)):

@@ -62,6 +62,7 @@ class ImuIntake(SolverAnnex):
         """Note the time at which sensors are read, and by how much the wind is later."""
         self.twin.set_time(end)
         self.twin.late_wind.known_late = late
+        self.twin.late_wind.is_silent = self._run.is_wind_silent
 
     def _callback_of(self, topic: str) -> Any:
         followed = self._followed[topic]

@@ -114,7 +114,12 @@ class Run:
     @property
     def is_wind_lost(self) -> bool:
         """Whether no sample is in use: none yet, or the last one is older than its time-out."""
-        return self.wind_state in ('none', 'decaying', 'stale')
+        return self.wind_state == 'none' or self.is_wind_silent
+
+    @property
+    def is_wind_silent(self) -> bool:
+        """Whether there was wind, and its last sample is older than its time-out."""
+        return self.wind_state in ('decaying', 'stale')
 
     @property
     def time(self) -> int | None:

@@ -265,6 +265,13 @@ class FarWind:
             ]
         )
 
+    def recall(self, before: Floats, share: float) -> None:
+        """Let the wind come nearer by a share to the means of a memory before, without gusts."""
+        stages, known = len(LENGTHS), len(LENGTHS) + 3
+        wanted = before[:known].copy()
+        wanted[:stages] = before[stages]
+        self._memory[:known] += share * (wanted - self._memory[:known])
+
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
         return (self._memory,)
