@@ -3,7 +3,7 @@
 """
 Launch a tree that sways: a source of wind, the wind node, the solver, and RViz if asked for.
 
-    ros2 launch tree_sway_ros sway.launch.py tree:=benjamina wind_source:=player wind_file:=wind.csv
+    ros2 launch tree_sway_ros sway.launch.py tree:=oak.yaml wind_source:=player wind_file:=wind.csv
 
 ``params_file`` sets any parameter of any node; the other arguments are for the values that change
 from start to start, and override it. Every name is relative: two launches with different
