@@ -589,7 +589,7 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float shone = max(0.0, 0.2 + 0.7 * dot(normalize(n), light) + 0.8 * (fine - 0.5) + 2.2 * relief);
     vec3 own = mix(isPointed ? vec3(0.12, 0.19, 0.1) : vec3(0.17, 0.24, 0.1), vec3(0.27, 0.31, 0.12), one * one * (isPointed ? 0.2 : 1.0));
     vec3 lit = own * toned(sky * (0.3 + 0.4 * smoothstep(-0.9, 0.9, z) + 0.8 * (rough - 0.5)) + 1.3 * sun * shone);
-    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.88, edge));
+    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.97, edge));
   }
   // Bushes and nettles hide the stems.
   float hedge = wooded * (0.8 + 3.2 * rough) - 0.6 + 0.6 * fine;

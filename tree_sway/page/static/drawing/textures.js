@@ -239,7 +239,7 @@ class Brush {
       // One half lies in the shade of the other; the midrib is light.
       context.fillStyle = "rgb(0 0 0 / 14%)";
       context.fill(this.blades[1]);
-      this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
+      this.line(0.9, 0.02, "rgb(255 255 220 / 15%)");
     };
     this.at(0, 0, 0, long, () => {
       if (look.form in IN_LEAFLETS) this.leaflets(blade, this.color(light, 0));
