@@ -15,7 +15,7 @@ const LARGEST_CARDS = 2.5;
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [4, 1.5, 4];
+const [SHOOT, DENSE, FEW_LEAVES] = [4, 2, 4];
 /** Most tufts over the number of other small cards, as sky is seen between them. */
 const SPARSE = 0.7;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
