@@ -254,8 +254,8 @@ void main() {
   float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
   vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.1, 0.35) * (1.5 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.08 + 2.5 * max(0.85 * across + 0.15, 0.0) + through);
+  vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
+  vec3 direct = sun * sunny * (0.08 + 2.3 * max(0.85 * across + 0.15, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
