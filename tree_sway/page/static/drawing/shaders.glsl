@@ -237,14 +237,16 @@ void main() {
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
-  // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.8 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
 #ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
+  float own = 0.3;
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
+  float own = 0.8;
 #endif
+  // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
+  vec3 n = normalize(own * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
   float across = dot(n, light);
   float open = flutter.z;
