@@ -195,7 +195,7 @@ async def look(url: str, view: View, path: Path) -> None:
             await browser.run(_BARE)
         if view.script:
             await browser.run(view.script)
-        await browser.until('treeSway.traces.wind._points.length > 6')
+        await browser.until('treeSway.traces.wind._points.length > 6', DRAWN)
         if view.is_full:
             await browser.run('treeSway.scene.leavesShown = true')
             await browser.call(
@@ -228,14 +228,14 @@ async def settled(browser: Browser) -> None:
 async def film(browser: Browser, path: Path) -> None:
     """Look back over the last seconds, a picture at a time."""
     oldest = 'treeSway.playout._frames[0].stamp'
-    await browser.until(f'treeSway.playout.newest > {oldest} + {1e3 * FILM}')
+    await browser.until(f'treeSway.playout.newest > {oldest} + {1e3 * FILM}', DRAWN)
     pictures: list[Image.Image] = []
     count = round(FILM / EVERY)
     for number in range(count):
         slide = f"s.value = {number * EVERY - FILM}; s.dispatchEvent(new Event('input'))"
         await browser.run(f"{{const s = document.getElementById('time'); {slide};}}")
         drawn = await browser.run('treeSway.scene._frame')
-        await browser.until(f'treeSway.scene._frame > {drawn} + 1')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 1', DRAWN)
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
         pictures.append(image)
         print(f'\r{path}: {len(pictures)} of {count}', end='', file=sys.stderr, flush=True)

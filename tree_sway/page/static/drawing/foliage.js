@@ -15,11 +15,11 @@ const LARGEST_CARDS = 2.5;
 const LEAST_CARD = 0.08;
 /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
  * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [6, 3.2, 4];
+const [SHOOT, DENSE, FEW_LEAVES] = [4, 2, 4];
 /** Most tufts over the number of other small cards, as sky is seen between them. */
 const SPARSE = 0.7;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
-const [FULLNESS, FILLED] = [3.8, 0.55];
+const [FULLNESS, FILLED] = [2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 2;
 /** Largest size of a cluster over the mean one, as its leaves are larger with it. */
@@ -40,6 +40,8 @@ const [STUB, LONG] = [1.2, 1.6];
 /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
  * shoots hide the boughs. */
 const [WEEPS, CURTAIN] = [0.8, 14];
+/** Whether a tree weeps. @param {Look} look */
+const weeps = ({ droop = 0 }) => droop > WEEPS;
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
 /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the twigs below are at
@@ -131,7 +133,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
  * @param {Look} look @param {number} foot height of the foot of the tree @param {number} top */
 function lowestLeaves(look, foot, top) {
   if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
-  const browsed = (look.droop ?? 0) > WEEPS ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
+  const browsed = weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
   return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
 }
 
@@ -150,10 +152,13 @@ function leafyShoot(kind, rest, i) {
   const { leaf_segment: carrier, leaf_orientation: orientation, leaf_size: sizes, leaf_phase: phases,
     leaf_frequency: frequencies } = kind.arrays;
   const [w, x, y, z] = orientation.subarray(4 * i, 4 * i + 4);
-  const frame = [0, 0, 0, 1];
-  multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, frame);
+  const own = [0, 0, 0, 1];
+  multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, own);
   const at = leafPlace(kind, rest, i);
-  return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
+  const isWeeping = weeps(lookOf(kind));
+  // Twigs of a weeping tree hang straight down from where they grow.
+  if (isWeeping) turned(own, [1, 0, 0]).forEach((each, c) => (at[c] -= 0.5 * sizes[i] * (each + Number(c > 1))));
+  return { segment: carrier[i], at, frame: isWeeping ? DOWN : own, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
 }
 
 /** Segments of a conifer's dead stubs, which bear no needles: limbs on the stem below the longest one and much shorter, with
@@ -186,8 +191,8 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   /** @type {Shoot[]} */
   const shoots = [];
   const droop = look.droop ?? 0;
-  const weeps = droop > WEEPS;
-  const size = weeps ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const isWeeping = weeps(look);
+  const size = isWeeping ? mean : Math.min(BARE_SIZE * mean, LARGEST_BARE);
   const leafiest = thickest * (THIN + CURTAIN * Math.max(0, droop));
   const share = (size / mean) ** 2;
   /** @param {number} segment @param {number} along [m] */
@@ -195,7 +200,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     const o = STRIDE * segment;
     const own = Array.from(rest.subarray(o + 4, o + 8));
     // Some shoots of a weeping bough clothe its back.
-    const frame = weeps && shoots.length % 2 ? DOWN : own;
+    const frame = isWeeping && shoots.length % 2 ? DOWN : own;
     const at = turned(own, [along, 0, 0]).map((each, c) => each + rest[o + c] - (frame === DOWN && c > 1 ? 0.5 * size : 0));
     shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
   };
@@ -206,7 +211,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
     for (let segment = first[branch]; segment <= end; segment++) {
       // A cluster clothes no long shoot from its foot on.
       if (look.form === "tufts" || radius[2 * segment] > leafiest || (leafy.has(segment) ? length[segment] < LONG * size : segment === end)) continue;
-      const count = Math.ceil(length[segment] / ((weeps ? 0.45 : 1.5) * size));
+      const count = Math.ceil(length[segment] / ((isWeeping ? 0.45 : 1.5) * size));
       for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
@@ -232,7 +237,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 2 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 1.7 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
@@ -270,7 +275,7 @@ function leafyTwig(look, { length, width }, random) {
   const along = end.map((each, c) => each - foot[c]);
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + ((1 - bare) * (i + random())) / ON_TWIG;
-    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 0.2 : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
+    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
     const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
     const beside = cross(upright, away);
     const roll = 1.9 * deep * some();

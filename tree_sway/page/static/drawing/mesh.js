@@ -20,7 +20,7 @@ const RIBBON = 2;
 /** Heights of the rings at the foot of a stem, over its radius. */
 const FOOT_RINGS = [0, 0.6, 1.4, 2.6, 4.5];
 /** How far the rings of wood lie beside its axis, and how much they differ, over their radius. */
-const CROOKED = 0.14;
+const CROOKED = 0.4;
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
 /** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
@@ -122,8 +122,8 @@ function addTube({ values, indices }, { kind: { arrays }, placer, rest, shade },
       const above = climbed / baseRadius + up;
       const low = Math.exp(-0.7 * above);
       const flare = isStem ? low : 0;
-      const [beside, behind, swollen] = [0.37, 0.59, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
-      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.5 * swollen);
+      const [beside, behind, swollen] = [0.19, 0.31, 0.83].map((often) => (isTip ? 0 : CROOKED * (1 - low)) * Math.sin(often * above + branch));
+      const ringRadius = Math.max(isTip ? thin * radius[2 * segment + 1] : atJoint, LEAST_RADIUS * pixel) * (1 + 0.8 * flare + 0.2 * swollen);
       for (let k = 0; k < corners; k++) {
         const angle = (2 * Math.PI * k) / sides - twist;
         // At the foot of a stem rings bulge into roots.

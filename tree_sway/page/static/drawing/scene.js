@@ -22,7 +22,7 @@ import { feet, hangs, lookOf } from "./looks.js";
 import { barkPicture, leafPicture } from "./textures.js";
 
 /** Frames from one shadow to the next without a graphics unit; and the share of the leaves that cast it, with one and without. */
-const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.4]];
+const [SHADOW_EVERY, SHADOW_LEAVES] = [8, [0.22, 0.25]];
 /** Number of trees above which a scene counts as a crowd. */
 const CROWD = 50;
 /** Cost of a card over that of a segment, which the processor places for each frame. */
@@ -174,7 +174,7 @@ export class Scene {
     const { place: root } = trees[0];
     this._potSize = trees.length === 1 && lookOf(kinds[0]).is_potted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
-    const [kind, haze] = this._potSize ? [0, 1 / (30 * this.height)] : [1, 1 / Math.max(1500, 30 * this._extent)];
+    const [kind, haze] = this._potSize ? [0, 1 / (350 * this.height)] : [1, 1 / Math.max(1500, 30 * this._extent)];
     this._under = { kind, ground: this.ground, haze, stem: [root[0], root[1], 2 / wide, 1 / (0.02 * tall + 0.4 * this._potSize)] };
     if (!isSame) {
       this.picked = -1;
@@ -557,7 +557,7 @@ export class Scene {
     const { gl, _shadow: { texture } } = this;
     use(gl, this._programs.shadow, {
       camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
-      softness: (0.015 * this.height) / this._shadowArea[2], depth: 0.65, shadow: [1, texture], ...this._under,
+      softness: (0.005 * this.height) / this._shadowArea[2], depth: 0.65, shadow: [1, texture], ...this._under,
     });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

@@ -162,7 +162,7 @@ void main() {
     // Ridges of thick wood have a bright and a dark side, and an upper and a lower one.
     float slope = rough.r - texture(relief, (at + vec2(0.03, 0.0)) * vec2(1.0, 0.5)).r;
     float rise = rough.r - texture(relief, (at + vec2(0.0, 0.03)) * vec2(1.0, 0.5)).r;
-    n = normalize(n + tone.x * (1.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
+    n = normalize(n + tone.x * (2.5 * slope * normalize(vec3(-n.y, n.x, 1e-3)) + vec3(0.0, 0.0, rise)));
   }
 #endif
   vec3 own = barkColor;
@@ -237,14 +237,16 @@ void main() {
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 flat_ = turned(q, facing);
-  // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
-  vec3 n = normalize(0.3 * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   vec3 back = normalize(eye - p);
 #ifdef PLAIN
   edge = min(1.0, 4.0 * abs(dot(flat_, back)));
+  float own = 0.3;
 #else
   edge = min(1.0, 2.2 * abs(dot(flat_, back)));
+  float own = 0.8;
 #endif
+  // Leaves are lit by the normal of the crown more than by their own, so that the crown looks round.
+  vec3 n = normalize(own * flat_ * sign(dot(flat_, outward) + 1e-6) + outward);
   float side = dot(flat_, back) < 0.0 ? -1.0 : 1.0;
   float across = dot(n, light);
   float open = flutter.z;
@@ -254,8 +256,8 @@ void main() {
   float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
   vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
   // Light through a leaf is yellow.
-  vec3 through = vec3(1.0, 1.05, 0.5) * (0.9 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.08 + 2.1 * max(0.85 * across + 0.15, 0.0) + through);
+  vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
+  vec3 direct = sun * sunny * (0.08 + 2.3 * max(0.85 * across + 0.15, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
@@ -519,27 +521,25 @@ vec3 heaven(vec3 way) {
   c = mix(c, mix(horizon * 1.12, mix(horizon, zenith, 0.5), shaded), 0.9 * thick);
   float glow = max(dot(way, light), 0.0);
   c += sun * (0.1 * pow(glow, 6.0) + 0.16 * pow(glow, 60.0)) * dimmed;
-  if (kind > 0.5) {
-    // Hills, the nearer ones darker.
-    float turn = 3.0 * atan(way.y, way.x);
-    float far = 0.03 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
-    float near = 0.012 + 0.03 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.003 * noise(vec2(turn * 40.0, 5.0));
-    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.34) * dimmed, 0.6);
-    if (way.z < far) c = mix(horizon, blue, 0.3);
-    if (way.z < near) c = mix(horizon, blue, 0.55);
-    // Edges of woods, the nearer ones higher: crowns lit from above, with shade between them.
-    for (float row = 0.0; row < 2.0; row++) {
-      vec2 along = vec2(turn * (46.0 - 14.0 * row) + 31.0 * row, row);
-      float wood = (1.0 + 0.9 * row) * (0.002 + 0.012 * noise(along * vec2(0.09, 1.0))
-        + 0.006 * noise(along) * noise(along * 0.5) + 0.0035 * noise(along * vec2(3.1, 1.0)) + 0.0016 * noise(along * vec2(9.0, 1.0)));
-      wood -= 0.016 * row * smoothstep(0.3, 0.7, noise(along * vec2(0.13, 1.0) + 5.0));
-      if (way.z > wood) continue;
-      vec2 leaf = vec2(along.x, 900.0 * way.z);
-      float lit = 0.45 * noise(leaf * vec2(1.6, 0.2)) + 0.35 * noise(leaf * vec2(5.0, 0.6)) + 0.25 * noise(leaf * vec2(14.0, 1.6));
-      lit *= 0.35 + 0.65 * smoothstep(0.0, 1.0, way.z / wood);
-      vec3 leafy = dimmed * mix(vec3(0.15, 0.21, 0.14), mix(vec3(0.46, 0.52, 0.26), vec3(0.3, 0.42, 0.25), noise(along)), lit);
-      c = mix(leafy, horizon, 0.4 - 0.2 * row);
-    }
+  // Hills, the nearer ones darker.
+  float turn = 3.0 * atan(way.y, way.x);
+  float far = 0.03 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
+  float near = 0.012 + 0.03 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.003 * noise(vec2(turn * 40.0, 5.0));
+  vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.34) * dimmed, 0.6);
+  if (way.z < far) c = mix(horizon, blue, 0.3);
+  if (way.z < near) c = mix(horizon, blue, 0.55);
+  // Edges of woods, the nearer ones higher: crowns lit from above, with shade between them.
+  for (float row = 0.0; row < 2.0; row++) {
+    vec2 along = vec2(turn * (46.0 - 14.0 * row) + 31.0 * row, row);
+    float wood = (1.0 + 0.9 * row) * (0.002 + 0.012 * noise(along * vec2(0.09, 1.0))
+      + 0.006 * noise(along) * noise(along * 0.5) + 0.0035 * noise(along * vec2(3.1, 1.0)) + 0.0016 * noise(along * vec2(9.0, 1.0)));
+    wood -= 0.016 * row * smoothstep(0.3, 0.7, noise(along * vec2(0.13, 1.0) + 5.0));
+    if (way.z > wood) continue;
+    vec2 leaf = vec2(along.x, 900.0 * way.z);
+    float lit = 0.45 * noise(leaf * vec2(1.6, 0.2)) + 0.35 * noise(leaf * vec2(5.0, 0.6)) + 0.25 * noise(leaf * vec2(14.0, 1.6));
+    lit *= 0.35 + 0.65 * smoothstep(0.0, 1.0, way.z / wood);
+    vec3 leafy = dimmed * mix(vec3(0.15, 0.21, 0.14), mix(vec3(0.46, 0.52, 0.26), vec3(0.3, 0.42, 0.25), noise(along)), lit);
+    c = mix(leafy, horizon, 0.4 - 0.2 * row);
   }
   return c;
 }
@@ -591,7 +591,7 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float shone = max(0.0, 0.2 + 0.7 * dot(normalize(n), light) + 0.8 * (fine - 0.5) + 2.2 * relief);
     vec3 own = mix(isPointed ? vec3(0.12, 0.19, 0.1) : vec3(0.17, 0.24, 0.1), vec3(0.27, 0.31, 0.12), one * one * (isPointed ? 0.2 : 1.0));
     vec3 lit = own * toned(sky * (0.3 + 0.4 * smoothstep(-0.9, 0.9, z) + 0.8 * (rough - 0.5)) + 1.3 * sun * shone);
-    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.88, edge));
+    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.97, edge));
   }
   // Bushes and nettles hide the stems.
   float hedge = wooded * (0.8 + 3.2 * rough) - 0.6 + 0.6 * fine;
@@ -627,7 +627,8 @@ void main() {
     vec2 p = eye.xy + far * way.xy;
     float pixel = far * length(fwidth(ray)) / max(-way.z, 0.05) * 0.5;
     vec3 soil;
-    if (kind < 0.5) {
+    if (kind < 0.5 && max(abs(p.x - stem.x), abs(p.y - stem.y)) < 0.009 / haze) {
+      // A terrace.
       vec2 slab = p / 0.6;
       slab.x += 0.5 * mod(floor(slab.y), 2.0);
       vec2 edge = abs(fract(slab) - 0.5);
@@ -646,15 +647,13 @@ void main() {
     }
     soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
-    c = mix(horizon, soil, max(0.6 * kind, exp(-haze * far)));
+    c = mix(horizon, soil, max(0.6, exp(-haze * far)));
   }
 #ifndef PLAIN
-  if (kind > 0.5) {
-    // Rows of trees stand on it, the far one first.
-    for (float row = 3.0; row > 0.0; row--) {
-      vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
-      c = mix(c, mix(dimmed * trees.rgb, horizon, 0.06 + 0.13 * row), trees.a);
-    }
+  // Rows of trees stand on it, the far one first.
+  for (float row = 3.0; row > 0.0; row--) {
+    vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, 0.06 + 0.13 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);

@@ -54,7 +54,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
-  else brush.spray(1 / along, isSpread ? 0.6 : 0.75);
+  else brush.spray(1 / along, isSpread ? 0.4 : 0.75);
   return brush.context.canvas;
 }
 
@@ -233,17 +233,16 @@ class Brush {
   /** One leaf from its stalk on. @param {number} long @param {number} light */
   leaf(long, light) {
     const { context, look } = this;
-    const color = this.color(light, 0);
     const blade = () => {
-      context.fillStyle = color;
+      context.fillStyle = this.color(light, 0);
       context.fill(this.blades[0]);
       // One half lies in the shade of the other; the midrib is light.
       context.fillStyle = "rgb(0 0 0 / 14%)";
       context.fill(this.blades[1]);
-      this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
+      this.line(0.9, 0.02, "rgb(255 255 220 / 15%)");
     };
     this.at(0, 0, 0, long, () => {
-      if (look.form in IN_LEAFLETS) this.leaflets(blade, color);
+      if (look.form in IN_LEAFLETS) this.leaflets(blade, this.color(light, 0));
       else blade();
     });
   }
