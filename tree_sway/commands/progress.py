@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from functools import partial
 import sys
 import threading
 import time
@@ -44,18 +45,8 @@ def counting(total: int, what: str, *, is_bar: bool = True) -> Iterator[Callable
     """Give a function that shows how many of a total are done, by a bar if there can be one."""
     counted = _bar_on_terminal(what, total=total) if is_bar and total > 1 else None
     if counted is None:
-        began = told = time.monotonic()
-
-        def tell(done: int) -> None:
-            nonlocal told
-            now = time.monotonic()
-            if done and now - told > _BETWEEN:
-                told = now
-                left = (now - began) * (total - done) / done
-                _report(f'{what}: {done} of {total}, about {max(left, 1.0):.0f} s left')
-
         with waiting(what):
-            yield tell
+            yield partial(_tell, what, total, [time.monotonic()])
         return
     with counted:
         yield lambda done: counted.update(done - counted.n)
@@ -83,6 +74,15 @@ def waiting(what: str) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+
+
+def _tell(what: str, total: int, times: list[float], done: int) -> None:
+    """Print how many are done, now and then; times are those of the begin and of each line."""
+    now = time.monotonic()
+    if done and now - times[-1] > _BETWEEN:
+        left = (now - times[0]) * (total - done) / done
+        times.append(now)
+        _report(f'{what}: {done} of {total}, about {max(left, 1.0):.0f} s left')
 
 
 def _report(text: str) -> None:

@@ -73,6 +73,7 @@ class LateWind:
         self.is_silent = False
         """Whether the anemometer has fallen silent, and what is pushed is no wind."""
         self._known_for, self._before = math.inf, np.zeros(0)
+        self._heard_for = 0.0
 
     def push(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -82,8 +83,7 @@ class LateWind:
         is that of the delay found, ``delay speed``, at the present mean speed.
         """
         way = self._way
-        self._note_silence(dt)
-        if not self.is_silent:
+        if not self._note_silence(dt):
             follow_mean(self._mean, math.hypot(x, y), 0.0, dt, _AVERAGED)
         speed = max(float(self._mean[0]), _SLOWEST)
         if way[1] > 0.0:
@@ -95,15 +95,22 @@ class LateWind:
         east, north, up = self._wind[0].tolist()
         return east, north, up
 
-    def _note_silence(self, dt: float) -> None:
-        """Note whether the wind of a step is one, and recall its means after a silence."""
+    def _note_silence(self, dt: float) -> bool:
+        """
+        Return whether the wind of a step is none, and recall its means after a silence.
+
+        At first nobody knows how often an anemometer sends, and a slow one seems silent.
+        """
+        self._heard_for += 0.0 if self.is_silent else dt
+        is_silent = self.is_silent and self._heard_for > _SETTLED
         if self._far is not None:
-            if self.is_silent and self._known_for:
+            if is_silent and self._known_for:
                 (before,) = self._far.memory()
                 self._before = before.copy()
-            elif not self.is_silent and self._known_for < 2.0 * _RECALLED:
+            elif not is_silent and self._known_for < 2.0 * _RECALLED:
                 self._far.recall(self._before, min(dt / _RECALLED, 1.0))
-        self._known_for = 0.0 if self.is_silent else self._known_for + dt
+        self._known_for = 0.0 if is_silent else self._known_for + dt
+        return is_silent
 
     @property
     def delay(self) -> float:
@@ -167,6 +174,7 @@ class LateWind:
 
     def reset(self) -> None:
         """Forget the wind; where the anemometer stands stays."""
+        self._known_for, self._heard_for = math.inf, 0.0
         self._history.reset()
         self._mean[:] = 0.0
         self._delay[:] = 0.0

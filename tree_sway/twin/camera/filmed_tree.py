@@ -214,15 +214,16 @@ class FilmedTree(ObservedTree):
         Move a correction on by its law, and nearer to the estimate.
 
         As a spring with critical damping does, the distance to the estimate changes the rate, and
-        this rate the place: the noise of a picture makes the tree speed up, not jump.
+        the law then the place: the noise of a picture makes the tree speed up, not jump. Were the
+        place of a fast coordinate changed as well, by its rate, it would grow.
         """
         state = np.stack([*correction, self.filter.state[2]])
         moved = self.filter.moved(state, round(dt / TICK))
         place, rate = estimate - moved
         turned = min(_CALM * dt, _MOST_TURNED)
         left = np.exp(-turned)
-        nearer = turned * turned * left * place + (1.0 - left * left) * dt * rate
-        return moved + np.stack([nearer, nearer / dt])
+        moved[1] += turned * turned / dt * left * place + (1.0 - left * left) * rate
+        return moved
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
