@@ -221,6 +221,7 @@ typedef struct sway_sensor {
   double excess; /* squared innovations over those expected, a running mean */
   double usual; /* that of the last minute of use, at least 1 */
   double agreed; /* time for which a refused sensor agrees [s] */
+  double thrown; /* time for which each innovation is far beyond the usual ones [s] */
   double heard, came; /* time of the newest sample that was heard of, and of the step then */
   double lag; /* age of its newest sample before another comes, at its worst [s] */
 } sway_sensor;

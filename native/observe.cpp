@@ -43,6 +43,10 @@ constexpr double AVERAGED = 2.0, DISAGREES = 16.0, AGREES = 4.0, TRUSTED_AGAIN =
 // constants [s].
 constexpr double MOST_USUAL = 16.0, USUAL_UP = 160.0, USUAL_DOWN = 5.0;
 
+// Squares of innovations over the usual ones, and for how long in a row [s], as of a sensor that has
+// fallen off its belt, and of no sway of a twig: on one of many modes their mean tells it seconds later.
+constexpr double THROWN = 100.0, THROWN_FOR = 0.1;
+
 // Largest square that counts: one spike in a hundred samples is no reason to disagree, and after a
 // knock a sensor is to be followed again in half a minute.
 constexpr double LARGEST = 400.0;
@@ -198,10 +202,11 @@ void sway_judge(sway_sensor *judged, double size) {
   sway_sensor &sensor = *judged;
   sensor.usual = fmin(sensor.usual, MOST_USUAL);
   sensor.excess += sensor.dt / AVERAGED * (fmin(size, LARGEST) - sensor.excess);
+  sensor.thrown = size > THROWN * sensor.usual ? sensor.thrown + sensor.dt : 0.0;
   if (sensor.is_refused) {
     sensor.agreed = sensor.excess < AGREES * sensor.usual ? sensor.agreed + sensor.dt : 0.0;
     if (sensor.agreed > TRUSTED_AGAIN) sensor.is_refused = 0;
-  } else if (sensor.excess > DISAGREES * sensor.usual) {
+  } else if (sensor.excess > DISAGREES * sensor.usual || sensor.thrown > THROWN_FOR) {
     sensor.is_refused = 1;
     sensor.in_use = 0;
     sensor.agreed = 0.0;

@@ -262,6 +262,18 @@ def test_gusty_sway_of_a_twig_that_no_model_has_is_no_disagreement() -> None:
     assert not track.in_use
 
 
+def test_a_twig_whose_sensor_falls_is_left_at_once_and_not_for_its_own_swings() -> None:
+    of, *_ = readings(1)
+    track = track_of(of)
+    track.native.is_mounted = track.native.in_use = 1
+    for step in range(7200):
+        track.judge(1200.0 if step % 600 == 0 else 16.0)
+    assert track.in_use
+    for _ in range(9):
+        track.judge(5000.0)
+    assert not track.in_use
+
+
 def test_nothing_is_compared_with_a_model_whose_anemometer_is_silent() -> None:
     of, *_ = readings(1)
     track, wind = track_of(of), of._wind

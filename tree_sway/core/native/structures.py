@@ -65,7 +65,7 @@ class NativeSensor(Structure):
     _fields_ = _fields(
         'ring mounting kept computed moved series rows count is_mounted is_awaited in_use'
         ' is_refused silences disagreements',
-        'dt absent unheard newest apart excess usual agreed heard came lag',
+        'dt absent unheard newest apart excess usual agreed thrown heard came lag',
     )
 
 

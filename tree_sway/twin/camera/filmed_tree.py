@@ -214,16 +214,19 @@ class FilmedTree(ObservedTree):
         Move a correction on by its law, and nearer to the estimate.
 
         As a spring with critical damping does, the distance to the estimate changes the rate, and
-        the law then the place: the noise of a picture makes the tree speed up, not jump. Were the
-        place of a fast coordinate changed as well, by its rate, it would grow.
+        this rate the place: the noise of a picture makes the tree speed up, not jump. Fast
+        coordinates go less far by it, as in an implicit step, or they would grow.
         """
         state = np.stack([*correction, self.filter.state[2]])
         moved = self.filter.moved(state, round(dt / TICK))
         place, rate = estimate - moved
         turned = min(_CALM * dt, _MOST_TURNED)
         left = np.exp(-turned)
-        moved[1] += turned * turned / dt * left * place + (1.0 - left * left) * rate
-        return moved
+        faster = turned * turned / dt * left * place + (1.0 - left * left) * rate
+        nearer = (
+            dt * faster / (1.0 + np.square(dt) * self.observer.unknown.all_stiffness[: self._n])
+        )
+        return moved + np.stack([nearer, faster])
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
