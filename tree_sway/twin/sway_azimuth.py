@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Complexes, Floats
+from tree_sway.core.arrays import Complexes, Floats, Ints
 
 _EDGES = (0.0, 0.06, 0.12, 0.25, 0.45, 0.75, 1.4)
 """Edges of the bands, over the first frequency [-]."""
@@ -56,6 +56,9 @@ that counts: on 17 trees of the laboratory it is 0.4, with a deviation of 0.5 ov
 """
 
 _ANGLES = np.radians(np.arange(-180.0, 180.0, 4.0))
+_TURNS = np.array([[np.cos(_ANGLES), -np.sin(_ANGLES)], [np.sin(_ANGLES), np.cos(_ANGLES)]])
+"""Turns by these angles, (2, 2, a)."""
+
 _TAPERED, _WIDTH, _LEAST_WIDTH = 0.1, 0.3, 4
 _MOST_NOISE, _LEAST_NOISE = 0.95, 0.01
 _LEAST_ERROR = 0.03
@@ -82,37 +85,79 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
     Motions are leans to east and north, of the sensor and of the model from its rest, (n, 2);
     ``noise`` is the deviation of that of the sensor.
     """
-    count, frequency = len(moved), sway.frequency
+    found = _by_bands(_spectra(moved, model, noise, sway), _ellipse(sway.bend, model.mean(axis=0)))
+    ways = np.einsum('ija,i->ja', _TURNS, model.mean(axis=0))
+    found += _SKEWED * _skewness(moved, ways, sway)
+    weights = np.array(list(_GAINS.values()))
+    chance = np.einsum('ija,j->a', np.exp(found - found.max()), weights)
+    chance /= chance.sum()
+    best = float(_ANGLES[np.argmax(chance)])
+    away = _between(_ANGLES, best)
+    near = chance * (np.abs(away) < 0.5 * np.pi)
+    best += float(near @ away / near.sum())
+    variance = float(chance @ np.square(_between(_ANGLES, best)))
+    return best, math.hypot(_LEAST_ERROR, math.sqrt(variance))
+
+
+class _Spectra(NamedTuple):
+    """
+    Lines of the spectra of two motions, over the deviation of the sensor's near each.
+
+    ``hertz`` is (n,), lines of the sensor and of the model are (n, 2); ``noisy`` is the share of
+    noise in the power of the sensor, (n,), and ``edges`` the number of lines below each edge.
+    """
+
+    hertz: Floats
+    sensor: Complexes
+    model: Complexes
+    noisy: Floats
+    edges: Ints
+
+
+def _spectra(moved: Floats, model: Floats, noise: float, sway: Sway) -> _Spectra:
+    count = len(moved)
+    seconds = count * sway.dt
     fade = np.minimum((np.arange(count) + 0.5) / (_TAPERED * count), 1.0)[:, None]
     fade = 0.5 - 0.5 * np.cos(np.pi * np.minimum(fade, fade[::-1]))
-    seconds = count * sway.dt
-    lines = np.arange(1, min(int(_EDGES[-1] * frequency * seconds), count // 2) + 1)
+    most = int(_EDGES[-1] * sway.frequency * seconds)
+    lines = np.arange(1, min(most, count // 2) + 1)
     y, x = (
         np.fft.rfft(fade * (each - each.mean(axis=0)), axis=0)[lines] for each in (moved, model)
     )
-    sums = np.concatenate([[0.0], np.cumsum(np.square(np.abs(y)).sum(axis=1))])
+    power = _smoothed(np.square(np.abs(y)).sum(axis=1), lines)
+    share = 2.0 * noise**2 * np.square(fade).sum() / power
+    size = np.sqrt(power)[:, None]
+    edges = np.searchsorted(lines, np.array(_EDGES) * sway.frequency * seconds, 'right')
+    noisy = np.clip(share, _LEAST_NOISE, _MOST_NOISE)
+    return _Spectra(lines / seconds, y / size, x / size, noisy, edges)
+
+
+def _smoothed(power: Floats, lines: Ints) -> Floats:
+    """Mean power of the lines near each, (n,)."""
+    sums = np.concatenate([[0.0], np.cumsum(power)])
     width = np.maximum(_LEAST_WIDTH, _WIDTH * lines).astype(int)
-    first, last = np.maximum(lines - 1 - width, 0), np.minimum(lines + width, len(lines))
-    power = np.maximum((sums[last] - sums[first]) / (last - first), 1e-300)
-    noisy = np.clip(2.0 * noise**2 * np.square(fade).sum() / power, _LEAST_NOISE, _MOST_NOISE)
-    y, x = (each / np.sqrt(power)[:, None] for each in (y, x))
-    ellipse = _ellipse(sway.bend, model.mean(axis=0))
-    turn = np.array([[np.cos(_ANGLES), -np.sin(_ANGLES)], [np.sin(_ANGLES), np.cos(_ANGLES)]])
+    first = np.maximum(lines - 1 - width, 0)
+    last = np.minimum(lines + width, len(lines))
+    return np.maximum((sums[last] - sums[first]) / (last - first), 1e-300)
+
+
+def _by_bands(spectra: _Spectra, ellipse: Floats) -> Floats:
+    """Logarithm of the likelihood by a, b and the angle, (losses, gains, a), of all bands."""
     found = np.zeros((len(_LOSSES), len(_GAINS), len(_ANGLES)))
-    for low, high in pairwise(_EDGES):
-        inside = slice(
-            *(np.searchsorted(lines, [e * frequency * seconds for e in (low, high)], 'right'))
-        )
-        n = len(lines[inside])
+    for first, last in pairwise(spectra.edges.tolist()):
+        n = last - first
         if not n:
             continue
-        share = float(noisy[inside].mean())
+        y = spectra.sensor[first:last]
+        x = spectra.model[first:last]
+        hertz = spectra.hertz[first:last, None]
+        share = float(spectra.noisy[first:last].mean())
         whitened = np.linalg.inv((1.0 - share) * ellipse + 0.5 * share * np.eye(2))
-        own = np.einsum('ija,jk,lka->ila', turn, _products(y[inside], y[inside]), turn)
+        own = np.einsum('ija,jk,lka->ila', _TURNS, _products(y, y), _TURNS)
         own += _LEAST_NOISE**2 * n * np.eye(2)[..., None]
         for i, loss in enumerate(_LOSSES):
-            told = x[inside] * np.exp(-loss / seconds * lines[inside, None])
-            shared = np.einsum('ija,jk->ika', turn, _products(y[inside], told))
+            told = x * np.exp(-loss * hertz)
+            shared = np.einsum('ija,jk->ika', _TURNS, _products(y, told))
             shared = shared + shared.swapaxes(0, 1)
             alone = _products(told, told)[..., None]
             for j, gain in enumerate(_GAINS):
@@ -120,16 +165,12 @@ def sway_azimuth(moved: Floats, model: Floats, noise: float, sway: Sway) -> tupl
                 trace = np.einsum('ij,ija->a', whitened, left)
                 size = left[0, 0] * left[1, 1] - left[0, 1] ** 2
                 found[i, j] += _of_any_size(trace, size * np.linalg.det(whitened), n)
-    found += _SKEWED * _skewness(moved, np.einsum('ija,i->ja', turn, model.mean(axis=0)), sway)
-    weights = np.array(list(_GAINS.values()))
-    chance = np.einsum('ija,j->a', np.exp(found - found.max()), weights)
-    chance /= chance.sum()
-    best = float(_ANGLES[np.argmax(chance)])
-    away = np.angle(np.exp(1j * (_ANGLES - best)))
-    near = chance * (np.abs(away) < 0.5 * np.pi)
-    best += float(near @ away / near.sum())
-    away = np.angle(np.exp(1j * (_ANGLES - best)))
-    return best, math.hypot(_LEAST_ERROR, math.sqrt(float(chance @ np.square(away))))
+    return found
+
+
+def _between(angles: Floats, angle: float) -> Floats:
+    """Angles from another one, between -pi and pi [rad]."""
+    return np.asarray(np.angle(np.exp(1j * (angles - angle))))
 
 
 def _ellipse(bend: Floats, lean: Floats) -> Floats:
@@ -160,7 +201,8 @@ def _of_any_size(trace: Floats, det: Floats, n: int) -> Floats:
 
     It is ``2 k ln s - (n + k) ln (s^2 + s trace + det)`` at the likeliest size s, k = `_KNOWN`.
     """
-    det, less = np.maximum(det, 1e-9 * np.square(trace)), (n - _KNOWN) * trace
+    det = np.maximum(det, 1e-9 * np.square(trace))
+    less = (n - _KNOWN) * trace
     size = (np.sqrt(np.square(less) + 16.0 * _KNOWN * n * det) - less) / (4.0 * n)
     square = np.square(size) + size * trace + det
     return np.asarray(2.0 * _KNOWN * np.log(size) - (n + _KNOWN) * np.log(square))
