@@ -60,6 +60,7 @@ def test_other_places_are_refused_with_a_cure(where: str, what: str) -> None:
 def test_the_bearing_to_which_a_sensor_faces_may_follow() -> None:
     place = place_on(TREE, 'segment:7 facing 120')
     assert place[:3] == (7, 0.5, pytest.approx(np.radians(-30.0)))
+    assert place_on(TREE, 'segment:7 facing W') == place_on(TREE, 'segment:7 facing 270')
     for bearing in ('north', '1000', ''):
         with pytest.raises(ParameterError, match='facing'):
             place_on(TREE, f'segment:7 facing {bearing}')

@@ -72,7 +72,8 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
         The tree.
     where
         Height above the root node on the stem in [m], ``BRANCH:SHARE`` or ``segment:NUMBER``, with
-        the bearing to which the sensor faces behind it if that is known: ``3.2 facing 120``.
+        the bearing to which the sensor faces behind it if that is known: ``3.2 facing 120``, or
+        ``3.2 facing SE``.
 
     Raises
     ------
@@ -82,7 +83,8 @@ def place_on(tree: Tree, where: str | float) -> SensorPlace:
     """
     text, is_told, bearing = str(where).strip().partition(' facing')
     if is_told:
-        bearing_to = within('facing', _number(bearing), -360.0, 360.0, 'degrees')
+        degrees = _POINTS.get(bearing.strip().upper(), _number(bearing))
+        bearing_to = within('facing', degrees, -360.0, 360.0, 'degrees')
         return place_on(tree, text)._replace(facing=math.radians(90.0 - bearing_to))
     if text.endswith(' strain'):
         at = place_on(tree, text.removesuffix(' strain'))._replace(is_strain=True)
@@ -119,6 +121,10 @@ def reach_of(tree: Tree, place: SensorPlace) -> tuple[float, float]:
     start, end = tree.start[place.segment], tree.end[place.segment]
     east, north, _ = (start + place.along * (end - start) - middle).tolist()
     return east, north
+
+
+_POINTS = {name: 45.0 * number for number, name in enumerate('N NE E SE S SW W NW'.split())}
+"""Degrees of the points of the compass."""
 
 
 def _number(text: str) -> float:
