@@ -36,7 +36,7 @@ Shares of the variance of a coordinate that the sensors take away below and abov
 correction is not applied, and applied whole.
 """
 
-_SWAYS, _STREAMS = 0.25, 0.5
+_SWAYS, _STREAMS = 0.15, 0.3
 """Damping ratios in the mean wind below and above which a coordinate leans, and streams [-]."""
 
 _LATER = 1.4

@@ -120,7 +120,7 @@ def test_one_sensor_takes_away_most_of_the_error(capsys: pytest.CaptureFixture[s
     assert main([*words, 'spruce 4 6']) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     errors = {row['sensors']: float(row['error']) for row in rows}
-    assert list(errors) == ['U^2', 'model', '1']
+    assert list(errors) == ['U^2', 'model', '1 linear', '1']
     assert errors['1'] < 0.6 * min(errors['model'], errors['U^2'])
 
 
