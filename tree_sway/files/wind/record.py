@@ -170,7 +170,7 @@ class WindRows:
         time = time[rows]
         velocity = np.ascontiguousarray(velocity[rows])
         gust = None if self.gust is None else self.gust[rows]
-        doubts = (*gaps_of(time - time[0]), *_slower_gusts(gust, speed[rows]))
+        doubts = (*_gaps(time - time[0]), *_slower_gusts(gust, speed[rows]))
         return WindRecord(
             time - time[0], velocity, self.source, self.refused, self.first_refused,
             None if epoch is None else epoch + float(time[0]), (*notes, *doubts), gust,
@@ -187,7 +187,7 @@ def _slower_gusts(gust: Floats | None, speed: Floats) -> tuple[str, ...]:
     return (f'the gust is slower than the wind in {slower} rows: are the columns swapped?',)
 
 
-def gaps_of(time: Floats) -> tuple[str, ...]:
+def _gaps(time: Floats) -> tuple[str, ...]:
     """Return a sentence about the gaps in times (n,) [s], if there are any."""
     apart = np.diff(time)
     if len(apart) < _LEAST_OF_GAPS:

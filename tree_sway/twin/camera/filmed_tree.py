@@ -311,7 +311,8 @@ class FilmedTree(ObservedTree):
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
         self._axes = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=1)
         self._slopes = self._axes @ seen @ found.slopes(self)[:, :, : self._n]
-        still = found.row[self._usual_motion() < _STILL * self._usual_motion().max(initial=0.0)]
+        moves = self._usual_motion()
+        still = found.row[moves < _STILL * moves.max(initial=0.0)]
         behind = points_behind(self.tree, poses, camera, image)
         self._behind = behind if len(behind) >= _FEWEST else still
         self._behind_at = image[self._behind]
