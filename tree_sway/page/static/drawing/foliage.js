@@ -22,6 +22,8 @@ const SPARSE = 0.7;
 const [FULLNESS, FILLED] = [2, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 2;
+/** The same of a bough, and the most clusters on one over those of the tree. */
+const [BOUGH, MOST_ON_BOUGH] = [1.6, 0.03];
 /** Largest size of a cluster over the mean one, as its leaves are larger with it. */
 const LARGEST = 1.25;
 /** How much lighter or darker a cluster is than others, and a card than others of it. */
@@ -79,6 +81,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
   const onTwig = Math.min(ON_TWIG, each);
   const axis = twigCorners(ORIGIN, [0.7 * look.spray.length, 0, 0], [0, 1, 0]);
   const hung = hungOn(kind, branches);
+  const boughOf = boughs(kind, rest);
   const leaves = leafShare(look, along, isFlowering); // part of the picture, whose rest are flowers
   const candle = candleCorners(CANDLE * wholeLeaf(look));
   const { lowest, soil } = lowestLeaves(look, rest[2], high[2]);
@@ -97,6 +100,7 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
     const own = axes.map((axis) => turned(back, axis));
     const middle = inFrame(axes, [isSpread ? 0.42 * look.spray.length - 0.5 : 0.8 * spray.length - 0.5, 0, 0], shoot.size, shoot.at);
     const centre = turned(back, shoot.at.map((a, c) => a - origin[c]));
+    const bough = boughOf(shoot.segment);
     let twig = twigs[0];
     const count = isSpread ? Math.max(2, shoot.share * each * (1 + 1 / onTwig)) : each;
     for (let card = isSpread ? -1 : 0; card < count; card++) {
@@ -106,10 +110,10 @@ export function leafMesh(shape, branches, cards, most, isFlowering, isPlain = fa
       const end = inFrame(axes, corners[corners.length - 2].place, shoot.size, shoot.at);
       if (isSpread && end[2] < soil) continue;
       const { open, towards } = shade(end);
-      const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c])));
+      const light = turned(back, towards.map((each, c) => each + (ROUNDED / shoot.size) * (end[c] - middle[c]) + (BOUGH / bough.radius) * (end[c] - bough.centre[c])));
       // Leaves within a clump are darker than those at its surface.
       const deep = Math.min(1, distance(end, middle) / (0.6 * shoot.size));
-      const tint = (isSpread ? 0.7 + 0.42 * deep : 1) + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
+      const tint = (isSpread ? 0.6 + 0.3 * deep + 0.22 * Math.min(1, distance(end, bough.centre) / bough.radius) : 1) + UNEVEN * Math.sin(7 * shoot.phase + (card % 2));
       const flutter = [shoot.frequency, shoot.phase + 2.4 * card];
       faces.push(facesFrom(values.length / PER_VERTEX, corners.length));
       for (const { place, swing, normal, u, v } of corners) {
@@ -135,6 +139,24 @@ function lowestLeaves(look, foot, top) {
   if (look.is_potted) return { lowest: -Infinity, soil: -Infinity };
   const browsed = weeps(look) ? LEAST_BROWSED : Math.min(BROWSED, 0.11 * (top - foot));
   return { lowest: foot + browsed, soil: foot + 0.6 * browsed };
+}
+
+/** Finds the bough of a segment, the longest line of its ancestors that bears few enough clusters: the middle of these, and the radius
+ * of a ball of them [m]. @param {Kind} kind @param {Float32Array} rest */
+function boughs(kind, rest) {
+  const { arrays: { branch_first: first, branch_parent: parents, leaf_segment: carrier, leaf_size: sizes }, nBranches, nSegments } = kind;
+  const owner = new Int32Array(nSegments);
+  for (let branch = 0; branch < nBranches; branch++) owner.fill(branch, first[branch], first[branch + 1]);
+  const sums = Array.from({ length: nBranches }, () => [0, 0, 0, 0]);
+  const add = (/** @type {number[]} */ sum, /** @type {number[]} */ more) => more.forEach((each, c) => (sum[c] += each));
+  carrier.forEach((segment, i) => add(sums[owner[segment]], [...leafPlace(kind, rest, i), 1]));
+  for (let branch = nBranches - 1; branch > 0; branch--) add(sums[parents[branch]], sums[branch]);
+  return (/** @type {number} */ segment) => {
+    let branch = owner[segment];
+    while (!sums[branch][3] || sums[parents[branch]]?.[3] < MOST_ON_BOUGH * carrier.length) branch = parents[branch];
+    const [x, y, z, count] = sums[branch];
+    return { centre: [x / count, y / count, z / count], radius: 0.6 * sizes[0] * Math.cbrt(count) };
+  };
 }
 
 /** Triangles of a card from its first vertex. @param {number} v @param {number} corners */
@@ -270,14 +292,19 @@ function leafyTwig(look, { length, width }, random) {
   const isTuft = look.form === "tufts";
   const bare = BARE_TWIG[isTuft ? 0 : hangs(look) || look.is_potted ? 2 : 1];
   const some = () => random() + random() - 1;
-  const end = [whole * (0.42 + 0.42 * some()), wide * some(), deep * wide * some()];
+  // Twigs end at the surface of the cluster, where the light is, and leaves stand towards their ends.
+  const way = unit([some(), some(), some()]);
+  const far = 0.75 + 0.25 * random();
+  const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
+  const outward = [way[0], way[1], way[2] + 1];
+  const spread = hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : isTuft ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
-    const far = bare + ((1 - bare) * (i + random())) / ON_TWIG;
-    const away = unit(unit(along).map((each, c) => each + (hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : isTuft ? 0.6 : look.is_potted ? 1.4 : 0.8) * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
-    const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
-    const beside = cross(upright, away);
+    const far = bare + (1 - bare) * Math.sqrt((i + random()) / ON_TWIG);
+    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
+    const beside = unit(cross(outward, away));
+    const upright = cross(away, beside);
     const roll = 1.9 * deep * some();
     const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
       .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));

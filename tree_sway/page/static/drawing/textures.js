@@ -54,7 +54,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
-  else brush.spray(1 / along, isSpread ? 0.4 : 0.75);
+  else brush.spray(1 / along, isSpread ? 0.65 : 0.75);
   return brush.context.canvas;
 }
 
