@@ -17,9 +17,9 @@ const LEAST_CARD = 0.08;
  * leaves in leaves. */
 const [SHOOT, DENSE, FEW_LEAVES] = [4, 2, 4];
 /** Most tufts over the number of other small cards, as sky is seen between them. */
-const SPARSE = 0.7;
+const SPARSE = 1;
 /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
-const [FULLNESS, FILLED] = [2, 0.55];
+const [FULLNESS, FILLED] = [3.5, 0.55];
 /** How much a cluster is lit as a ball rather than as part of the crown. */
 const ROUNDED = 2;
 /** The same of a bough, and the most clusters on one over those of the tree. */
@@ -299,7 +299,7 @@ function leafyTwig(look, { length, width }, random) {
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
   const outward = [way[0], way[1], way[2] + 1];
-  const spread = hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : isTuft ? 0.6 : 1.4;
+  const spread = hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + (1 - bare) * Math.sqrt((i + random()) / ON_TWIG);
     const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 0.6 : 0)));

@@ -15,7 +15,7 @@ const LEAF_SHARE = 0.75;
 /** Width of a small card of short needles over that of others. */
 const TWIG = 0.55;
 /** Length of the part of a shoot that long needles clothe, over their length. */
-const BRUSH = 1.9;
+const BRUSH = 1.5;
 /** Number of layers of leaves; the lowest is shaded by the others. */
 const LAYERS = 3;
 
@@ -25,7 +25,7 @@ export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form
 /** Width of a picture over its length.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} [isSpread] of small cards */
 export const pictureWidth = ({ form, slenderness, spray }, along, isSpread = false) =>
-  along > 1 ? spray.width * (isSpread && form === "needles" ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
+  along > 1 ? spray.width * (isSpread && (form === "needles" || form === "fronds") ? TWIG : 1) : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Part of the width of a picture that has leaves; the flowers of a horse chestnut are beside them.
  * @param {Look} look @param {number} along as in `leafPicture` @param {boolean} isFlowering */
@@ -50,7 +50,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.64, 0, 0, 0.35, 26);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.66, 0, 0, 0.34, 34);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
@@ -168,14 +168,14 @@ class Brush {
   needles(shoot) {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
-    const apart = Math.max(0.12, 0.95 * shoot);
+    const apart = isFrond ? 0.45 * shoot : Math.max(0.12, 0.95 * shoot);
     const long = (isFrond ? 0.4 : 0.22) * apart;
     const wide = Math.max(0.1 * long, 0.004);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
     for (let x = 0.02; x < 0.9; x += 0.36 * apart, side = -side) {
-      const lean = side * (0.75 + 0.25 * random());
+      const lean = side * (isFrond ? 0.5 : 0.75 + 0.25 * random());
       const reach = (0.7 + 0.3 * random()) * Math.min(half * Math.sin(Math.PI * (0.12 + 0.88 * x) ** 0.85) ** 0.7, (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
       if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
       for (let far = apart; far < reach - 0.5 * apart; far += apart) {
@@ -211,13 +211,13 @@ class Brush {
         // Along the shoot, so that it is a brush, and no star, which would be a leaf of a maple.
         const before = Math.min(BRUSH * long, 0.8 * x) * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
-        const turn = heading + (i % 2 ? 1 : -1) * (0.06 + 0.4 * random());
+        const turn = heading + (i % 2 ? 1 : -1) * (0.2 + 0.9 * random());
         const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
         const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
-        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.011, color));
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.012, color));
       }
     }
   }
