@@ -5,57 +5,57 @@
 
 import { STRIDE } from "../placing.js";
 import { distance, multiply, turned } from "../quaternions.js";
-import { hangs, lookOf, seeded, shapes } from "./looks.js";
+import { hangs, lookOf, numbers, seeded, shapes } from "./looks.js";
 import { leafPlace, reachOf } from "./mesh.js";
 import { leafShare, leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
-/** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
-const LARGEST_CARDS = 2.5;
-/** Least length of a small card over that of a full one. */
-const LEAST_CARD = 0.08;
-/** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
- * leaves in leaves. */
-const [SHOOT, DENSE, FEW_LEAVES] = [4, 2, 4];
-/** Most tufts over the number of other small cards, as sky is seen between them. */
-const SPARSE = 1;
-/** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
-const [FULLNESS, FILLED] = [3.5, 0.55];
-/** How much a cluster is lit as a ball rather than as part of the crown. */
-const ROUNDED = 2;
-/** The same of a bough, and the most clusters on one over those of the tree. */
-const [BOUGH, MOST_ON_BOUGH] = [1.6, 0.03];
-/** Largest size of a cluster over the mean one, as its leaves are larger with it. */
-const LARGEST = 1.25;
-/** How much lighter or darker a cluster is than others, and a card than others of it. */
-const UNEVEN = 0.16;
-/** Number of different twigs in clusters, of cards on one, half the width of its wood over the size of the cluster, and the part
- * of it before the first card where that is a tuft, where it stands, and where it hangs. */
-const [VARIETY, ON_TWIG, TWIG_WIDE, BARE_TWIG] = [60, 7, 0.005, [0.6, 0.3, 0.04]];
-/** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
- * that of a cluster, and at most [m]. */
-const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
-/** Length below which a limb under the crown is dead, over that of the longest. */
-const DEAD = 0.1;
-/** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
- * clothed all along. */
-const [STUB, LONG] = [1.2, 1.6];
-/** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
- * shoots hide the boughs. */
-const [WEEPS, CURTAIN] = [0.8, 14];
+const {
+  /** Largest size of cards over the usual one, where few are drawn; each then shows more leaves. */
+  LARGEST_CARDS,
+  /** Least length of a small card over that of a full one. */
+  LEAST_CARD,
+  /** Length of a small card in leaves, how many of these there are per area of the cluster, and size of a cluster of single
+   * leaves in leaves. */
+  SHOOT, DENSE, FEW_LEAVES,
+  /** Area of all single leaves over that of their cluster, and the share of its card that a leaf fills. */
+  FULLNESS, FILLED,
+  /** How much a cluster is lit as a ball rather than as part of the crown. */
+  ROUNDED,
+  /** The same of a bough, and the most clusters on one over those of the tree. */
+  BOUGH, MOST_ON_BOUGH,
+  /** Largest size of a cluster over the mean one, as its leaves are larger with it. */
+  LARGEST,
+  /** How much lighter or darker a cluster is than others, and a card than others of it. */
+  UNEVEN,
+  /** Number of different twigs in clusters, of cards on one, half the width of its wood over the size of the cluster, and the part
+   * of it before the first card of a tuft. */
+  VARIETY, ON_TWIG, TWIG_WIDE, BARE_TWIG,
+  /** Radius of wood that gets leaves though it has no cluster, over the thickest that has one; size of these shoots over
+   * that of a cluster, and at most [m]. */
+  THIN, BARE_SIZE, LARGEST_BARE,
+  /** Length below which a limb under the crown is dead, over that of the longest. */
+  DEAD,
+  /** Lengths over the size of a shoot: below the first a branch without leaves stays bare; above the second a segment is
+   * clothed all along. */
+  STUB, LONG,
+  /** Droop from which on a tree weeps, and how much thicker wood gets leaves with it, as hanging
+   * shoots hide the boughs. */
+  WEEPS, CURTAIN,
+  /** Candles of flowers: length over that of a leaf, width over length, how open to the sky the twigs below are at
+   * least, and the share of these that bear one. */
+  CANDLE, CANDLE_WIDE, CANDLE_OPEN, CANDLES,
+  /** Height up to which animals browse the leaves, and the same under a curtain [m]. */
+  BROWSED, LEAST_BROWSED,
+  /** How far a card bends down at its end, over its length. */
+  BOW,
+} = /** @type {Record<string, number>} */ (numbers.foliage);
 /** Whether a tree weeps. @param {Look} look */
 const weeps = ({ droop = 0 }) => droop > WEEPS;
 /** Orientation of a shoot that hangs straight down. */
 const DOWN = [0, Math.SQRT1_2, 0, Math.SQRT1_2];
-/** Candles of flowers: length over that of a leaf, width over length, how open to the sky the twigs below are at
- * least, and the share of these that bear one. */
-const [CANDLE, CANDLE_WIDE, CANDLE_OPEN, CANDLES] = [1.3, 0.75, 0.6, 0.18];
-/** Height up to which animals browse the leaves, and the same under a curtain [m]. */
-const [BROWSED, LEAST_BROWSED] = [2.2, 0.25];
 /** Numbers per vertex of a card. */
 const PER_VERTEX = 19;
 const ORIGIN = [0, 0, 0];
-/** How far a card bends down at its end, over its length. */
-const BOW = 0.1;
 
 /** Mesh of the leaves on some branches. A cluster is up to three large cards that cross each other about its shoot, or
  * many small ones about its twig. Cards come in a mixed order, so that any first part of them is a thinner crown.
@@ -144,15 +144,14 @@ function lowestLeaves(look, foot, top) {
 /** Finds the bough of a segment, the longest line of its ancestors that bears few enough clusters: the middle of these, and the radius
  * of a ball of them [m]. @param {Kind} kind @param {Float32Array} rest */
 function boughs(kind, rest) {
-  const { arrays: { branch_first: first, branch_parent: parents, leaf_segment: carrier, leaf_size: sizes }, nBranches, nSegments } = kind;
-  const owner = new Int32Array(nSegments);
-  for (let branch = 0; branch < nBranches; branch++) owner.fill(branch, first[branch], first[branch + 1]);
+  const { arrays: { branch_first: first, branch_parent: parents, leaf_segment: carrier, leaf_size: sizes }, nBranches } = kind;
+  const owner = (/** @type {number} */ segment) => first.findIndex((from) => from > segment) - 1;
   const sums = Array.from({ length: nBranches }, () => [0, 0, 0, 0]);
   const add = (/** @type {number[]} */ sum, /** @type {number[]} */ more) => more.forEach((each, c) => (sum[c] += each));
-  carrier.forEach((segment, i) => add(sums[owner[segment]], [...leafPlace(kind, rest, i), 1]));
+  carrier.forEach((segment, i) => add(sums[owner(segment)], [...leafPlace(kind, rest, i), 1]));
   for (let branch = nBranches - 1; branch > 0; branch--) add(sums[parents[branch]], sums[branch]);
   return (/** @type {number} */ segment) => {
-    let branch = owner[segment];
+    let branch = owner(segment);
     while (!sums[branch][3] || sums[parents[branch]]?.[3] < MOST_ON_BOUGH * carrier.length) branch = parents[branch];
     const [x, y, z, count] = sums[branch];
     return { centre: [x / count, y / count, z / count], radius: 0.6 * sizes[0] * Math.cbrt(count) };
@@ -262,7 +261,7 @@ function cardsOf(look, mean, clusters, cards, most) {
     const long = Math.max(small, (look.form === "tufts" ? 1.7 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
-    return { each: Math.max(1, Math.round(each * Math.min(look.form === "tufts" ? SPARSE : 1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
+    return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
   const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
   const spray = { ...alone, length: leaf / mean };
@@ -289,8 +288,7 @@ function leafyTwig(look, { length, width }, random) {
   const whole = look.spray.length;
   const wide = look.spray.width * whole;
   const deep = look.depth ?? 0.8;
-  const isTuft = look.form === "tufts";
-  const bare = BARE_TWIG[isTuft ? 0 : hangs(look) || look.is_potted ? 2 : 1];
+  const bare = look.form === "tufts" ? BARE_TWIG : 0.04;
   const some = () => random() + random() - 1;
   // Twigs end at the surface of the cluster, where the light is, and leaves stand towards their ends.
   const way = unit([some(), some(), some()]);
@@ -298,16 +296,13 @@ function leafyTwig(look, { length, width }, random) {
   const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
-  const outward = [way[0], way[1], way[2] + 1];
   const spread = hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
-    const far = bare + (1 - bare) * Math.sqrt((i + random()) / ON_TWIG);
+    const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
     const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
-    const beside = unit(cross(outward, away));
-    const upright = cross(away, beside);
-    const roll = 1.9 * deep * some();
-    const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
-      .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));
+    // Leaves face outward and up, the more so the flatter the cluster is.
+    const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1)), away));
+    const normal = cross(away, across);
     return cornersOf((u, v) => ({
       place: hanging(foot.map((each, c) => each + far * along[c] + length * ((u - 0.15) * away[c] + v * width * across[c])), BOW * length * u),
       swing: normal.map((each) => length * (0.4 * u + v * width) * each),

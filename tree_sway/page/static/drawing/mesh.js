@@ -5,26 +5,29 @@
 
 import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, turned } from "../quaternions.js";
+import { numbers, numbers } from "./looks.js";
 import { crownShade } from "./shade.js";
 
-/** Least spacing of the rings of a tube [points of the picture]. */
-const RING_SPACING = 6;
-/** Least radius of wood on the screen [px]. */
-const LEAST_RADIUS = 0.56;
-/** Height of the picture of bark on a stem [m]. */
-const BARK_TILE = 0.6;
+const {
+  /** Least spacing of the rings of a tube [points of the picture]. */
+  RING_SPACING,
+  /** Least radius of wood on the screen [px]. */
+  LEAST_RADIUS,
+  /** Height of the picture of bark on a stem [m]. */
+  BARK_TILE,
+  /** Heights of the rings at the foot of a stem, over its radius. */
+  FOOT_RINGS,
+  /** How far the rings of wood lie beside its axis, and how much they differ, over their radius. */
+  CROOKED,
+  /** Roots that spread from the foot of a stem. */
+  ROOTS,
+  /** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
+  BARKED,
+} = /** @type {Record<string, any>} */ (numbers.bark);
 /** Numbers per vertex of bark. */
 const PER_VERTEX = 8;
 /** Sides of what is drawn as a flat ribbon: twigs. */
 const RIBBON = 2;
-/** Heights of the rings at the foot of a stem, over its radius. */
-const FOOT_RINGS = [0, 0.6, 1.4, 2.6, 4.5];
-/** How far the rings of wood lie beside its axis, and how much they differ, over their radius. */
-const CROOKED = 0.4;
-/** Roots that spread from the foot of a stem. */
-const ROOTS = 5;
-/** Radius of wood from which on it shows the bark of the stem, over the height of the tree. */
-const BARKED = 0.005;
 
 /** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
 export const boxOf = (points) => [Math.min, Math.max].map((of) =>

@@ -2,22 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: leaves, alone or in sprays, cut out by their alpha; and bark. */
 
-import { barks, outlineOf, places, seeded } from "./looks.js";
+import { barks, numbers, outlineOf, places, seeded } from "./looks.js";
 
-/** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
-const ALONG = [1, 3, 5, 8, 12, 18, 24, 32];
-/** Length of a whole leaf in leaflets. @type {Record<string, number>} */
-const IN_LEAFLETS = { compound: 3.1, digitate: 1.6 };
-/** Width over length of a leaf with leaflets. @type {Record<string, number>} */
-const WITH_LEAFLETS = { compound: 0.6, digitate: 1 };
-/** Width of the leaf beside a candle of flowers, over that of the picture. */
-const LEAF_SHARE = 0.75;
-/** Width of a small card of short needles over that of others. */
-const TWIG = 0.55;
-/** Length of the part of a shoot that long needles clothe, over their length. */
-const BRUSH = 1.5;
-/** Number of layers of leaves; the lowest is shaded by the others. */
-const LAYERS = 3;
+const {
+  /** Numbers of leaves along a picture: a single leaf, then longer and longer sprays. */
+  ALONG,
+  /** Length of a whole leaf in leaflets. */
+  IN_LEAFLETS,
+  /** Width over length of a leaf with leaflets. */
+  WITH_LEAFLETS,
+  /** Width of the leaf beside a candle of flowers, over that of the picture. */
+  LEAF_SHARE,
+  /** Width of a small card of short needles over that of others. */
+  TWIG,
+  /** Length of the part of a shoot that long needles clothe, over their length. */
+  BRUSH,
+  /** Number of layers of leaves; the lowest is shaded by the others. */
+  LAYERS,
+  /** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
+  BARK_WIDE,
+} = /** @type {Record<string, any>} */ (numbers.pictures);
 
 /** Length of a leaf with all its leaflets [m]. @param {Look} look */
 export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
@@ -37,7 +41,7 @@ export const leafShare = ({ form }, along, isFlowering) =>
 export function leavesAlong(look, long) {
   const least = look.form in IN_LEAFLETS ? 8 : look.has_needles ? 3 : 1;
   const wanted = long / look.leaf_size;
-  return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
+  return ALONG.find((/** @type {number} */ along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
@@ -58,8 +62,6 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   return brush.context.canvas;
 }
 
-/** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
-const BARK_WIDE = 128;
 
 /** @param {number[]} color @param {number} light */
 const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, light * c))).join(" ")})`;
@@ -212,8 +214,7 @@ class Brush {
         const before = Math.min(BRUSH * long, 0.8 * x) * random();
         const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
         const turn = heading + (i % 2 ? 1 : -1) * (0.2 + 0.9 * random());
-        const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
-        const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
+        const room = (half - Math.abs(fromY)) / Math.abs(Math.sin(turn));
         // About as long as each other: from afar long ones among short ones would be the lobes of a leaf.
         const reach = Math.min(long * (0.82 + 0.18 * random()), 0.99 - fromX, room);
         const color = this.color((isUpper ? 0.72 : 0.4) + 0.25 * random(), 0.1);
@@ -275,7 +276,7 @@ class Brush {
       }
       return;
     }
-    const pairs = slenderness < 0.35 ? 5 : slenderness < 0.4 ? 4 : 3;
+    const pairs = slenderness < 0.35 ? 5 : 4;
     const long = 1.1 / pairs;
     this.line(0.98 - long, 0.02, color);
     for (let i = 0; i <= 2 * pairs; i++) {
