@@ -5,7 +5,7 @@
 
 import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, turned } from "../quaternions.js";
-import { numbers, numbers } from "./looks.js";
+import { numbers } from "./looks.js";
 import { crownShade } from "./shade.js";
 
 const {
