@@ -36,7 +36,7 @@ pytestmark = [pytest.mark.long, pytest.mark.ros]
 
 DEADLINE = 300.0
 PROMISED = {
-    'show': r'http://\S+',
+    'show': r'https?://\S+',
     'demo': r'tip +[\d.]+ mm \| poses +[\d.]+ Hz',
     'listen': r'poses +\d+ at',
     'record': r'[1-9]\d* of /segment_poses',
@@ -44,7 +44,7 @@ PROMISED = {
     'study': r'\d+ cases in',
     'calibrate': r'modulus .* GPa',
     'render': r'\d+ pictures',
-    'risk': r'\d+ trees in',
+    'risk': r'\d+ trees.* in [\d.]+ s',
 }
 """What each command says once it does what it is for."""
 RECORDS = ROOT / 'examples' / 'data'
