@@ -159,7 +159,7 @@ def test_silhouettes_differ() -> None:
     """By the outline, a tenth of the width at least, or by twigs that hang or rise."""
     # Species without a form of their own grow as their group.
     own = [key for key in (*forms._CONIFERS, *forms._BROADLEAVES) if key != 'any']
-    assert len(own) == 20
+    assert len(own) == 22
     outlines = {key: outline(key) for key in own}
     for one, other in combinations(own, 2):
         (wide, rise), (width, lift) = outlines[one], outlines[other]
