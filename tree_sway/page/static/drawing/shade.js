@@ -41,7 +41,7 @@ export function crownShade(places, areas, low, high) {
       }
       const light = Math.exp(-EXTINCTION * passed) / WAYS.length;
       open += light;
-      way.forEach((each, c) => (towards[c] += 2 * light * (each - (c === 2 ? 0.27 : 0))));
+      way.forEach((each, c) => (towards[c] += 6 * light * (each - (c === 2 ? 0.27 : 0))));
     }
     return { open, towards };
   };

@@ -6,8 +6,8 @@
 #part tones
 precision highp float;
 precision highp int;
-// Tones of light: deep shade is lifted and full sun held back, as in a photograph.
-vec3 toned(vec3 c) { return 1.95 * c / (c + 0.8); }
+// Tones of light: full sun is held back, as in a photograph.
+vec3 toned(vec3 c) { return 2.25 * c / (c + 1.2); }
 uniform vec4 stem; // of the first tree: place, one over the radius of the trees and of the stem or the pot
 // Share of the light of the sky that reaches the ground: less under a crown, least beside a stem.
 float skyAt(vec2 p) {
@@ -15,7 +15,7 @@ float skyAt(vec2 p) {
   return (0.72 + 0.28 * smoothstep(0.0, 1.3, far.x)) * (1.0 - 0.66 * exp(-0.12 * far.y * far.y));
 }
 
-#part seen tones
+#part seen noise
 uniform mat4 camera;
 uniform float ground;
 uniform vec3 light; // towards the sun
@@ -75,6 +75,20 @@ float noise(vec2 p) { return tiled(p, vec2(65536.0)); }
 float grain(vec2 p, float size, float pixel) {
   float shown = 1.0 - smoothstep(0.25, 0.8, pixel / size);
   return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
+}
+
+// Colour of the meadow: patches of lush and of dry grass, clover, moss; bare earth under a crown.
+float worn(vec2 p) {
+  float far = distance(p, stem.xy) * stem.z;
+  return 1.0 - smoothstep(0.12, 0.5, far + 0.5 * (noise(p / 0.9) - 0.5) + 0.3 * (noise(p / 0.23) - 0.5));
+}
+vec3 meadow(vec2 p) {
+  float broad = 0.6 * noise(p / 23.0) + 0.4 * noise(p / 6.1 + 9.0);
+  float clumps = 0.6 * noise(p / 1.9) + 0.4 * noise(p / 0.7 + 5.0);
+  vec3 grass = mix(vec3(0.34, 0.43, 0.19), vec3(0.54, 0.56, 0.31), smoothstep(0.25, 0.9, 0.75 * broad + 0.35 * clumps));
+  grass = mix(grass, vec3(0.31, 0.42, 0.22), 0.6 * smoothstep(0.5, 0.75, noise(p / 3.7 + 40.0)));
+  grass *= 0.88 + 0.24 * clumps;
+  return mix(grass, vec3(0.42, 0.36, 0.27) * (0.8 + 0.4 * clumps), 0.75 * worn(p));
 }
 
 #part lit noise
@@ -253,11 +267,13 @@ void main() {
   // Leaves deep in the crown are darker than those at its surface.
   float near = smoothstep(0.0, 0.8, open);
   // Each leaf samples the shadow at places of its own, so that its border is a mixture of light and dark leaves.
-  float sunny = mix(0.16, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.16 + 0.84 * near);
-  vec3 up = sky * (0.16 + 0.85 * near) * (0.58 + 0.42 * n.z);
+  // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
+  float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
+  float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near) * (0.1 + 0.9 * turnedTo);
+  vec3 up = sky * (0.1 + 0.95 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
-  vec3 direct = sun * sunny * (0.08 + 2.3 * max(0.85 * across + 0.15, 0.0) + through);
+  vec3 direct = sun * sunny * (0.1 + 3.3 * max(0.8 * across + 0.2, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
   vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
@@ -405,7 +421,7 @@ uniform float dimmed;
 out vec4 base;
 void main() {
   vec2 root = field.xy + field.z * blade.xy;
-  float tall = field.w * blade.z;
+  float tall = field.w * blade.z * (1.0 - 0.85 * worn(root));
   vec3 p = vec3(root, ground);
   float sunny = sunlight(p);
   float own = 6.2831853 * blade.w;
@@ -420,10 +436,10 @@ void main() {
   vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = mix(vec3(0.3, 0.39, 0.17), vec3(0.53, 0.57, 0.3), blade.w * blade.w);
+  vec3 tint = meadow(root) * (0.85 + 0.4 * blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
-  tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
+  tint *= dimmed * (0.55 + 0.7 * max(light.z, 0.3)) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
   base = vec4(tint * skyAt(root) * mix(vec3(0.36, 0.4, 0.5), vec3(1.0), sunny), clearness(p));
   gl_Position = seen(p);
 }
@@ -509,6 +525,19 @@ float cloudy(vec2 p) {
   }
   return sum;
 }
+// Round lobes that lie over each other: from the middle of the uppermost, and its height, 0 to 1.
+vec3 lobes(vec2 p) {
+  vec3 best = vec3(0.0);
+  for (float i = -1.0; i < 2.0; i++) {
+    for (float j = -1.0; j < 2.0; j++) {
+      vec2 cell = floor(p) + vec2(i, j);
+      vec2 from = p - cell - vec2(hash(cell), hash(cell + 57.0));
+      float high = 1.0 - dot(from, from) / (0.4 + 0.9 * hash(cell + 31.0));
+      if (high > best.z) best = vec3(from, high);
+    }
+  }
+  return best;
+}
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
   vec3 c = mix(horizon, zenith, 1.0 - exp(-3.6 * high));
@@ -560,45 +589,46 @@ vec4 treeRow(vec3 way, float round, float seed) {
   vec2 outward = normalize(p.xy);
   vec2 beside = vec2(-outward.y, outward.x);
   vec2 leaf = vec2(9.0 * along, up);
-  float rough = cloudy(0.55 * leaf + seed);
-  float fine = cloudy(2.3 * leaf + seed);
-  // Clumps are lit on their side towards the sun.
-  float relief = rough - cloudy(0.55 * (leaf + 1.1 * vec2(dot(light.xy, beside), light.z)) + seed);
+  // Boughs are round, with shade between them; behind a plant on a terrace they are out of focus.
+  bool isSharp = kind > 0.5;
+  float rim = isSharp ? 0.08 : 0.3;
+  float fine = isSharp ? 2.0 * cloudy(1.9 * leaf + seed) - 0.5 : 0.3 + 0.5 * noise(0.5 * leaf + seed);
+  vec3 bough = isSharp ? lobes(leaf / 2.4 + 0.5 * fine + seed) : vec3(0.0, 0.0, 0.3 + 0.5 * noise(0.3 * leaf + seed));
+  float rough = 0.45 * bough.z + 0.55 * fine;
   // Woods, hedges and gaps.
   float wooded = smoothstep(0.16, 0.42, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
   vec4 best = vec4(0.0);
-  float first = -1.0;
   for (float k = -1.0; k < 2.0; k++) {
     float cell = mod(floor(along) + k, cells);
     vec2 name = vec2(cell, 17.0 * seed);
     float one = hash(name);
     float two = hash(name + 71.0);
     float dense = smoothstep(0.16, 0.42, tiled(vec2(cell * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
-    if (one < 0.8 - 0.8 * dense || two < first) continue;
+    if (one < 0.8 - 0.8 * dense) continue;
     float high = hash(name + 5.0);
     float tall = (7.0 + 10.0 * high * high) * (0.5 + 0.5 * dense);
     float wide = tall * mix(0.34, 0.55, two) + 1.0;
-    bool isPointed = hash(name + 9.0) < 0.2 * dense;
+    bool isPointed = isSharp && hash(name + 9.0) < 0.2 * dense;
     if (isPointed) { wide *= 0.6; tall *= 1.1; }
     float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
     float z = (up - 0.52 * tall) / (0.5 * tall);
     float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
-    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) + (isPointed ? 0.9 : 1.3) * (rough - 0.48) + 0.5 * (fine - 0.48);
-    if (edge > 1.0 && (abs(x) * wide > 0.03 * tall || z > 0.0)) continue;
-    first = two;
+    float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) - (isPointed ? 0.7 : 0.9) * (rough - 0.45);
+    float shown = max(1.0 - smoothstep(1.0 - rim, 1.0 + rim, edge), z < 0.0 && isSharp && abs(x) * wide < 0.03 * tall ? 1.0 : 0.0);
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
-    vec3 n = vec3(x * beside - deep * outward, z);
-    float shone = max(0.0, 0.2 + 0.7 * dot(normalize(n), light) + 0.8 * (fine - 0.5) + 2.2 * relief);
-    vec3 own = mix(isPointed ? vec3(0.12, 0.19, 0.1) : vec3(0.17, 0.24, 0.1), vec3(0.27, 0.31, 0.12), one * one * (isPointed ? 0.2 : 1.0));
-    vec3 lit = own * toned(sky * (0.3 + 0.4 * smoothstep(-0.9, 0.9, z) + 0.8 * (rough - 0.5)) + 1.3 * sun * shone);
-    best = edge > 1.0 ? vec4(0.12, 0.1, 0.08, 1.0) : vec4(lit, smoothstep(1.0, 0.97, edge));
+    vec3 n = normalize(vec3((x + 1.3 * bough.x) * beside - deep * outward, z + 1.3 * bough.y));
+    float shone = max(0.0, 0.2 + 0.8 * dot(n, light)) * smoothstep(0.1, 0.7, rough);
+    vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.33, 0.36, 0.16), one * one * (isPointed ? 0.2 : 1.0));
+    vec3 lit = own * toned(sky * (0.2 + 0.25 * z + 0.7 * rough) + 1.7 * sun * shone);
+    if (edge > 1.0 + rim) lit = vec3(0.12, 0.1, 0.08);
+    // The right one stands before the left one.
+    best = vec4(mix(best.rgb, lit, shown / max(shown + best.a * (1.0 - shown), 1e-3)), shown + best.a * (1.0 - shown));
   }
   // Bushes and nettles hide the stems.
-  float hedge = wooded * (0.8 + 3.2 * rough) - 0.6 + 0.6 * fine;
-  if (up < hedge) {
-    vec3 lit = mix(vec3(0.1, 0.14, 0.06), vec3(0.23, 0.3, 0.11), clamp(up / hedge + 1.2 * (fine - 0.5), 0.0, 1.0));
-    if (first < 0.6 || best.a < 1.0) best = vec4(lit, 1.0);
-  }
+  float bush = 0.5 * (wooded * (1.4 + 2.6 * noise(leaf * 0.3)) - 0.6 + 1.6 * (rough - 0.5) - up);
+  vec3 leafy = mix(vec3(0.1, 0.14, 0.07), vec3(0.3, 0.36, 0.16), clamp(0.25 * up + 1.0 * (rough - 0.4), 0.0, 1.0));
+  float shown = smoothstep(0.0, 4.0 * rim, bush) * smoothstep(isSharp ? -0.02 : -0.4, 0.0, up);
+  best = vec4(mix(best.rgb, leafy, shown / max(shown + best.a * (1.0 - shown), 1e-3)), shown + best.a * (1.0 - shown));
   return best;
 }
 #endif
@@ -634,18 +664,24 @@ void main() {
       vec2 edge = abs(fract(slab) - 0.5);
       float joint = smoothstep(0.485, 0.495, max(edge.x, edge.y)) * (1.0 - smoothstep(0.1, 0.5, pixel / 0.12));
       soil = vec3(0.52, 0.505, 0.475) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
-      soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
+      soil *= 1.0 + 0.07 * grain(p, 0.35, pixel) + 0.1 * grain(p, 0.08, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      // Patches of lush and of dry grass, clover, moss; blades.
-      float broad = cloudy(p / 31.0) + 0.6 * (cloudy(p / 7.0 + 9.0) - 0.5);
-      float clumps = cloudy(p / 1.3) - 0.5;
-      soil = mix(vec3(0.3, 0.39, 0.17), vec3(0.46, 0.49, 0.26), smoothstep(0.3, 0.8, broad + 0.5 * clumps));
-      soil = mix(soil, vec3(0.32, 0.43, 0.22), 0.6 * smoothstep(0.55, 0.7, cloudy(p / 5.0 + 40.0)));
+      soil = meadow(p);
       float size = 4.5 * pow(eye.z - ground, -0.2) * length(fwidth(ray));
-      soil *= 1.0 + 0.5 * clumps / (1.0 - 2.0 * pixel / way.z) + 0.7 * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z);
+      float grassy = 1.0 - 0.8 * worn(p);
+      if (kind < 0.5) grassy *= 0.35; // out of focus
+      soil *= 1.0 + 0.5 * grassy * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z) + 0.3 * grassy * grain(p, 0.05, pixel);
+      // Daisies, where there is less grass.
+      vec2 cell = p / 0.17;
+      vec2 to = fract(cell) - 0.5 - 0.6 * (vec2(hash(floor(cell) + 3.0), hash(floor(cell) + 7.0)) - 0.5);
+      // They stand upright.
+      to -= 0.65 * dot(to, normalize(way.xy)) * normalize(way.xy);
+      float seed = hash(floor(cell)) / max(0.02, 0.16 * smoothstep(0.5, 0.8, noise(p / 2.3 + 70.0)));
+      float petals = max(0.13, 0.5 * pixel / 0.17);
+      if (seed < 1.0 && kind > 0.5) soil = mix(soil, vec3(0.93, 0.93, 0.88), min(1.0, 0.02 / petals / petals) * (1.0 - smoothstep(0.7 * petals, petals, length(to))));
     }
-    soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
+    soil *= dimmed * (0.55 + 0.7 * max(light.z, 0.3)) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
     // Far meadows stay green up to the edge of the wood.
     c = mix(horizon, soil, max(0.6, exp(-haze * far)));
   }
@@ -653,7 +689,7 @@ void main() {
   // Rows of trees stand on it, the far one first.
   for (float row = 3.0; row > 0.0; row--) {
     vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
-    c = mix(c, mix(dimmed * trees.rgb, horizon, 0.06 + 0.13 * row), trees.a);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, 0.1 + 0.14 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);
