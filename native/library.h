@@ -281,7 +281,7 @@ typedef struct sway_correction {
   const double *wanted; /* trust of new gains (n) */
   double *trust; /* share of the correction that is applied (n), written */
   const double *leaning; /* share of its lean that is applied at most (n) */
-  double *moved; /* displacement and rate of the correction (2, n), written */
+  double *moved; /* displacement, rate and force of the correction (3, n), written */
   double *energies; /* of the motion with and without it, both twice (2), written */
 } sway_correction;
 
@@ -292,17 +292,18 @@ typedef struct sway_correction {
 SWAY_API void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,
                          double share, const double *eta, const double *rate);
 
-/* What the correction of n coordinates moves of all m by drag. */
+/* What the correction of n coordinates moves of all m by drag and by its force. */
 typedef struct sway_dragged {
   int64_t coordinates, corrected; /* m, n */
   const double
       *law; /* displacement and rate after a step by those before and the force (2, 3, m) */
   const double *drag; /* force on each coordinate per rate of the corrected ones (n, m) */
+  const double *push; /* force on each coordinate per force of the corrected ones (n, m) */
   const double *trust; /* (n) */
   double *state; /* displacement, rate and force (3, m), written */
 } sway_dragged;
 
-/* Move it by a number of steps under a correction (2, n), and write it with the correction to
+/* Move it by a number of steps under a correction (3, n), and write it with the correction to
  * `added` (2, m). */
 SWAY_API void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
                         double *added);

@@ -271,7 +271,8 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
           trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
     }
     const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
-    const double lean = ahead[8 * n + i] * calm[2 * n + i] / stiffness;
+    const double force = ahead[8 * n + i] * calm[2 * n + i], lean = force / stiffness;
+    moved[2 * n + i] = trust[i] * force;
     moved[i] += fmax(most * correction->leaning[i] - trust[i], 0.0) * lean;
     const double at = x + moved[i], going = v + moving[i];
     whole += stiffness * at * at + going * going;
@@ -285,7 +286,10 @@ void sway_drag(const sway_dragged *dragged, const double *correction, size_t ste
   const int64_t m = dragged->coordinates, n = dragged->corrected;
   double *state = dragged->state, *force = state + 2 * m;
   for (int64_t i = 0; i < m; i++) force[i] = 0.0;
-  for (int64_t j = 0; j < n; j++) add_row(m, correction[n + j], dragged->drag + j * m, force);
+  for (int64_t j = 0; j < n; j++) {
+    add_row(m, correction[n + j], dragged->drag + j * m, force);
+    add_row(m, correction[2 * n + j], dragged->push + j * m, force);
+  }
   for (int64_t j = 0; j < n; j++) force[j] *= 1.0 - dragged->trust[j];
   for (size_t step = 0; step < steps; step++) move(m, dragged->law, 2, state);
   memcpy(added, state, size_t(2 * m) * sizeof(double));

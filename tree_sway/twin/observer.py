@@ -109,7 +109,9 @@ class Observer:
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, tuple[Floats, int]] = {}
         self._swing_at = [address(each) for each in swing[:2]]
-        self._moved = np.zeros((2, n))
+        self.push = np.zeros((n, oscillators.shapes.shape[1]))
+        """Force on each coordinate of the model by that of each corrected one (`push_of`)."""
+        self._moved = np.zeros((3, n))
         self.energies = np.zeros(2)
         """
         Energies of the corrected and of the uncorrected motion, (2,).
@@ -188,7 +190,7 @@ class Observer:
         Returns
         -------
         Floats
-            Correction of displacement and rate, (2, count). The array is reused.
+            Correction of displacement, rate and force, (3, count). The array is reused.
 
         """
         self._step += 1
@@ -218,7 +220,7 @@ class Observer:
         rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
         self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
         self.noise, self._wanted_trust[:] = gains.noise, gains.trust
-        self.leaning[:] = gains.leaning
+        self.leaning[:], self.push[:] = gains.leaning, gains.push
         for k in gains.used:
             self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}

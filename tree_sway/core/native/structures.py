@@ -95,7 +95,7 @@ class NativeCorrection(Structure):
 class NativeDragged(Structure):
     """``sway_dragged``."""
 
-    _fields_ = _fields('coordinates corrected law drag trust state')
+    _fields_ = _fields('coordinates corrected law drag push trust state')
 
 
 class NativeFarWind(Structure):
