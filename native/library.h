@@ -143,13 +143,13 @@ SWAY_API void sway_rest_branches(sway_branch_block *blocks, size_t count, double
 enum { SWAY_RING = 4096 };
 
 /* The last samples of a sensor. At first all is 0, but the time of the newest is minus infinity,
- * and the period and `before` are not a number. */
+ * and the times and `before` are not a number. */
 typedef struct sway_ring {
   double time[SWAY_RING];       /* [s] */
   double values[SWAY_RING][9];
   int64_t first, count;         /* row of the first sample, and their number */
   int64_t behind;               /* samples in a row far in the past */
-  double newest, period;        /* time of the newest; a running median of the period [s] */
+  double newest;                /* time of the newest [s] */
   int64_t same[6];              /* how often each number was repeated */
   double before[6];             /* numbers of the sample before */
   int64_t given, lead; /* bits of the quantities of most samples, and the lead of these */
@@ -185,6 +185,9 @@ SWAY_API void sway_ask_for(sway_ring *ring, int64_t given);
  * of dt [s] about the time are averaged; elsewhere those before and after are joined by a line.
  * Returns 0, and leaves zeros or a sum, where no sample is near. */
 SWAY_API int sway_read_samples(sway_ring *ring, double time, double dt, double *sample);
+
+/* Time between samples [s], the median of the last; not a number before two samples. */
+SWAY_API double sway_sample_period(const sway_ring *ring);
 
 enum { SWAY_HALVES = 3 };
 

@@ -4,16 +4,15 @@
 Motion of the coordinates without correction that the correction of others causes.
 
 A stem that sways otherwise than in the wind alone moves its hanging twigs, by the air and by the
-wood. Drag couples the coordinates of both. And a force on one coordinate alone is one that pushes
-the twigs against the stem, by the shape of that coordinate, where in truth they hang from a
-stem that leans farther. The unknown forces are taken to be forces on the wood at the sensors, which
-push all coordinates of the twigs::
+wood. Drag couples the coordinates of both. And an unknown force on one coordinate alone pushes the
+twigs against the stem, by the shape of that coordinate, where in truth they hang from a stem that
+leans farther. So it is taken for a force on the wood at the sensors, which pushes all of them::
 
     x_u'' + c_u x_u' + k_u x_u = (1 - t_u) sum over j of  P_uj t_j d_j - D_uj v_j
 
-v_j are the rates of the correction and d_j its unknown forces, D the drag per rate in the mean wind,
-P the push (`push_of`), t_u the share of the correction of u that is applied, and c_u, k_u damping,
-by wood and air, and stiffness.
+v_j are the rates of the correction and d_j its unknown forces, D the drag per rate in the mean
+wind, P the push (`push_of`), t_u the share of the correction of u that is applied, and c_u, k_u
+damping, by wood and air, and stiffness.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from tree_sway.twin.observer import Observer
 
 _LEAST_TOLD = 0.1
-"""Forces that the corrected coordinates tell less of than this, over their mean, are left out."""
+"""What coordinates tell of a force of which half is believed, over the mean of all forces [-]."""
 
 
 def push_of(moved: Floats, stiffness: Floats, trust: Floats, share: Floats) -> Floats:
