@@ -262,7 +262,7 @@ SWAY_API void sway_judge(sway_sensor *sensor, double size);
 
 /* A steady filter of n coordinates by p measurements, three of each quantity. */
 typedef struct sway_filter {
-  int64_t coordinates, measurements, lag; /* n, p, l */
+  int64_t coordinates, measurements; /* n, p */
   const double *law; /* state after a step by that before, of each coordinate (3, 3, n) */
   const double *sensed; /* measurements by the state (3 n, p) */
   const double *gain; /* correction of the state by the innovations (p, 3 n) */
@@ -270,7 +270,7 @@ typedef struct sway_filter {
   const int64_t *row; /* of each measurement among the readings, those of a sensor together (p) */
   double *state; /* displacement, rate and disturbance, as told (3, n) */
   double *calm; /* and calm (3, n) */
-  double *innovations; /* of the last steps, limited, the oldest first (l, p) */
+  double *innovations; /* of the last step, limited (p), written */
 } sway_filter;
 
 /* Move a filter by a number of steps, correct it by the readings of sensors that are known and in

@@ -226,9 +226,7 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
     move(n, filter->law, 3, state);
     move(n, filter->law, 3, calm);
   }
-  double *last = filter->innovations + (filter->lag - 1) * p;
-  memmove(filter->innovations, filter->innovations + p,
-          size_t(filter->lag - 1) * p * sizeof(double));
+  double *last = filter->innovations;
   for (int64_t k = 0; k < p; k++) last[k] = 0.0;
   for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
   double largest = 0.0;  // of the quantities of a sensor

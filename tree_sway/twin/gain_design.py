@@ -29,9 +29,6 @@ from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
 from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
 
-NOISE = 1.0
-"""Noise for which gains are found, over the noise of the sensors."""
-
 _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 """
 Shares of the variance of a coordinate that the sensors take away below and above which its
@@ -148,8 +145,8 @@ class GainDesign:
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            found = steady_filter(own, sensed, NOISE * noise)
-            told = told_shares(found, others, NOISE * noise)
+            found = steady_filter(own, sensed, noise)
+            told = told_shares(found, others, noise)
             beyond_little = (told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
             trust = leaning * np.clip(beyond_little, 0.0, 1.0)
             push = push_of(moved, stiffness, trust, streaming)

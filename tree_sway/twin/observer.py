@@ -24,7 +24,7 @@ from tree_sway.core.native import address, LIBRARY, NativeCorrection
 from tree_sway.core.setup import one_thread
 from tree_sway.twin.disturbance import crown_slope
 from tree_sway.twin.estimate import Estimate
-from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
+from tree_sway.twin.gain_design import GainDesign, Gains
 from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.running_fit import RunningFit
 from tree_sway.twin.sensor_place import place_motion
@@ -252,7 +252,7 @@ class Observer:
             felt, noise = self._design.felt(k)
             expected = np.einsum('ij,jk,ik->i', felt, self.unknown.variance, felt)
             missed = self._readings.beyond[k, track.picked] - felt @ estimate.state.ravel()
-            squares = np.square(missed) / (expected + np.square(NOISE * noise))
+            squares = np.square(missed) / (expected + np.square(noise))
             track.judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
     def limit(self, share: float) -> None:

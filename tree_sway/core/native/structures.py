@@ -82,7 +82,7 @@ class NativeFilter(Structure):
     """``sway_filter``."""
 
     _fields_ = _fields(
-        'coordinates measurements lag law sensed gain deviation row state calm innovations'
+        'coordinates measurements law sensed gain deviation row state calm innovations'
     )
 
 
