@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg import expm
 
-from tree_sway.twin.dragged_motion import DraggedMotion, push_of
+from tree_sway.twin.dragged_motion import DraggedMotion
+from tree_sway.twin.pushed_twigs import push_of
 
 M, N, DT = 5, 3, 1.0 / 60.0
 

@@ -11,7 +11,7 @@ leans farther. So it is taken for a force on the wood at the sensors, which push
     x_u'' + c_u x_u' + k_u x_u = (1 - t_u) sum over j of  P_uj t_j d_j - D_uj v_j
 
 v_j are the rates of the correction and d_j its unknown forces, D the drag per rate in the mean
-wind, P the push (`push_of`), t_u the share of the correction of u that is applied, and c_u, k_u
+wind, P the push (`pushed_twigs`), t_u the share of the correction of u that is applied, and c_u, k_u
 damping, by wood and air, and stiffness.
 """
 
@@ -28,37 +28,6 @@ from tree_sway.core.oscillators import held_propagator
 if TYPE_CHECKING:
     from tree_sway.twin.disturbance import Disturbance
     from tree_sway.twin.observer import Observer
-
-_LEAST_TOLD = 0.1
-"""What coordinates tell of a force of which half is believed, over the mean of all forces [-]."""
-
-
-def push_of(moved: Floats, stiffness: Floats, trust: Floats, share: Floats) -> Floats:
-    """
-    Find the force on each coordinate of a model by those that are known of the first, (n, m).
-
-    The forces at some places are those that cause most of the lean of the corrected coordinates,
-    whose squared misses count by their stiffness.
-
-    Parameters
-    ----------
-    moved
-        Ways of the places by each coordinate, one row each, (p, m).
-    stiffness
-        Stiffness of the coordinates [1/s^2], (m,).
-    trust
-        Share of the correction of the first coordinates that is applied, (n,).
-    share
-        Share of the push that each coordinate takes, (m,).
-
-    """
-    leant = moved[:, : len(trust)] / stiffness[: len(trust)]
-    told = leant @ (trust[:, None] * moved[:, : len(trust)].T)
-    least = _LEAST_TOLD * np.trace(told) / len(told)
-    if not least:
-        return np.zeros((len(trust), len(stiffness)))
-    forces = np.linalg.solve(told + least * np.eye(len(told)), leant)
-    return np.asarray(forces.T @ moved * share)
 
 
 class DraggedMotion:

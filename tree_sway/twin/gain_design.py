@@ -21,9 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.twin.dragged_motion import push_of
 from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
+from tree_sway.twin.pushed_twigs import push_of
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
