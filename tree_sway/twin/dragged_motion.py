@@ -11,8 +11,8 @@ leans farther. So it is taken for a force on the wood at the sensors, which push
     x_u'' + c_u x_u' + k_u x_u = (1 - t_u) sum over j of  P_uj t_j d_j - D_uj v_j
 
 v_j are the rates of the correction and d_j its unknown forces, D the drag per rate in the mean
-wind, P the push (`pushed_twigs`), t_u the share of the correction of u that is applied, and c_u, k_u
-damping, by wood and air, and stiffness.
+wind, P the push (`pushed_twigs`), t_u the share of the correction of u that is applied, and c_u,
+k_u damping, by wood and air, and stiffness.
 """
 
 from __future__ import annotations
