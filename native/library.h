@@ -143,13 +143,13 @@ SWAY_API void sway_rest_branches(sway_branch_block *blocks, size_t count, double
 enum { SWAY_RING = 4096 };
 
 /* The last samples of a sensor. At first all is 0, but the time of the newest is minus infinity,
- * and the period and `before` are not a number. */
+ * and the times and `before` are not a number. */
 typedef struct sway_ring {
   double time[SWAY_RING];       /* [s] */
   double values[SWAY_RING][9];
   int64_t first, count;         /* row of the first sample, and their number */
   int64_t behind;               /* samples in a row far in the past */
-  double newest, period;        /* time of the newest; a running median of the period [s] */
+  double newest;                /* time of the newest [s] */
   int64_t same[6];              /* how often each number was repeated */
   double before[6];             /* numbers of the sample before */
   int64_t given, lead; /* bits of the quantities of most samples, and the lead of these */
@@ -185,6 +185,9 @@ SWAY_API void sway_ask_for(sway_ring *ring, int64_t given);
  * of dt [s] about the time are averaged; elsewhere those before and after are joined by a line.
  * Returns 0, and leaves zeros or a sum, where no sample is near. */
 SWAY_API int sway_read_samples(sway_ring *ring, double time, double dt, double *sample);
+
+/* Time between samples [s], the median of the last; not a number before two samples. */
+SWAY_API double sway_sample_period(const sway_ring *ring);
 
 enum { SWAY_HALVES = 3 };
 
@@ -259,7 +262,7 @@ SWAY_API void sway_judge(sway_sensor *sensor, double size);
 
 /* A steady filter of n coordinates by p measurements, three of each quantity. */
 typedef struct sway_filter {
-  int64_t coordinates, measurements, lag; /* n, p, l */
+  int64_t coordinates, measurements; /* n, p */
   const double *law; /* state after a step by that before, of each coordinate (3, 3, n) */
   const double *sensed; /* measurements by the state (3 n, p) */
   const double *gain; /* correction of the state by the innovations (p, 3 n) */
@@ -267,7 +270,7 @@ typedef struct sway_filter {
   const int64_t *row; /* of each measurement among the readings, those of a sensor together (p) */
   double *state; /* displacement, rate and disturbance, as told (3, n) */
   double *calm; /* and calm (3, n) */
-  double *innovations; /* of the last steps, limited, the oldest first (l, p) */
+  double *innovations; /* of the last step, limited (p), written */
 } sway_filter;
 
 /* Move a filter by a number of steps, correct it by the readings of sensors that are known and in
@@ -281,7 +284,7 @@ typedef struct sway_correction {
   const double *wanted; /* trust of new gains (n) */
   double *trust; /* share of the correction that is applied (n), written */
   const double *leaning; /* share of its lean that is applied at most (n) */
-  double *moved; /* displacement and rate of the correction (2, n), written */
+  double *moved; /* displacement, rate and force of the correction (3, n), written */
   double *energies; /* of the motion with and without it, both twice (2), written */
 } sway_correction;
 
@@ -292,17 +295,18 @@ typedef struct sway_correction {
 SWAY_API void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,
                          double share, const double *eta, const double *rate);
 
-/* What the correction of n coordinates moves of all m by drag. */
+/* What the correction of n coordinates moves of all m by drag and by its force. */
 typedef struct sway_dragged {
   int64_t coordinates, corrected; /* m, n */
   const double
       *law; /* displacement and rate after a step by those before and the force (2, 3, m) */
   const double *drag; /* force on each coordinate per rate of the corrected ones (n, m) */
+  const double *push; /* force on each coordinate per force of the corrected ones (n, m) */
   const double *trust; /* (n) */
   double *state; /* displacement, rate and force (3, m), written */
 } sway_dragged;
 
-/* Move it by a number of steps under a correction (2, n), and write it with the correction to
+/* Move it by a number of steps under a correction (3, n), and write it with the correction to
  * `added` (2, m). */
 SWAY_API void sway_drag(const sway_dragged *dragged, const double *correction, size_t steps,
                         double *added);

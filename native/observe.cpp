@@ -226,9 +226,7 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
     move(n, filter->law, 3, state);
     move(n, filter->law, 3, calm);
   }
-  double *last = filter->innovations + (filter->lag - 1) * p;
-  memmove(filter->innovations, filter->innovations + p,
-          size_t(filter->lag - 1) * p * sizeof(double));
+  double *last = filter->innovations;
   for (int64_t k = 0; k < p; k++) last[k] = 0.0;
   for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
   double largest = 0.0;  // of the quantities of a sensor
@@ -271,7 +269,8 @@ void sway_carry(const sway_correction *correction, const double *ahead, const do
           trust[i] * (by[0] * calm[i] + by[n] * calm[n + i] + by[2 * n] * calm[2 * n + i]);
     }
     const double stiffness = correction->stiffness[i], x = eta[i], v = rate[i];
-    const double lean = ahead[8 * n + i] * calm[2 * n + i] / stiffness;
+    const double force = ahead[8 * n + i] * calm[2 * n + i], lean = force / stiffness;
+    moved[2 * n + i] = trust[i] * force;
     moved[i] += fmax(most * correction->leaning[i] - trust[i], 0.0) * lean;
     const double at = x + moved[i], going = v + moving[i];
     whole += stiffness * at * at + going * going;
@@ -285,7 +284,10 @@ void sway_drag(const sway_dragged *dragged, const double *correction, size_t ste
   const int64_t m = dragged->coordinates, n = dragged->corrected;
   double *state = dragged->state, *force = state + 2 * m;
   for (int64_t i = 0; i < m; i++) force[i] = 0.0;
-  for (int64_t j = 0; j < n; j++) add_row(m, correction[n + j], dragged->drag + j * m, force);
+  for (int64_t j = 0; j < n; j++) {
+    add_row(m, correction[n + j], dragged->drag + j * m, force);
+    add_row(m, correction[2 * n + j], dragged->push + j * m, force);
+  }
   for (int64_t j = 0; j < n; j++) force[j] *= 1.0 - dragged->trust[j];
   for (size_t step = 0; step < steps; step++) move(m, dragged->law, 2, state);
   memcpy(added, state, size_t(2 * m) * sizeof(double));

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <algorithm>
+
 #include "library.h"
 
 namespace {
@@ -19,6 +21,9 @@ constexpr int REPEATED = 3;
 // Time by which a clock is set back, and longest time between samples that is bridged [s].
 constexpr double CLOCK_BACK = 1.0, LONGEST_GAP = 0.25;
 constexpr double SILENT_PERIODS = 4.0;
+
+// Samples whose period is told, at most.
+constexpr int64_t RECENT = 40;
 
 // Share of a step within which a sample is of the time asked for.
 constexpr double SAME_TIME = 0.01;
@@ -127,14 +132,6 @@ int keep(sway_ring &ring, double time, const double *sample, int64_t given) {
     ring.behind = 0;
     if (is_saturated(ring, sample)) return SWAY_SATURATED;
   }
-  const double step = time - ring.newest;
-  if (step < INFINITY) {
-    // A running median: up or down by a twentieth.
-    if (isnan(ring.period))
-      ring.period = step;
-    else if (step != ring.period)
-      ring.period *= step > ring.period ? 1.05 : 0.95;
-  }
   if (ring.count == SWAY_RING) drop_oldest(ring);
   const int64_t row = row_of(ring, ring.count);
   ring.time[row] = time;
@@ -171,6 +168,22 @@ void sway_ask_for(sway_ring *kept, int64_t given) {
   ring.spikes = -USUAL;
 }
 
+double sway_sample_period(const sway_ring *ring) {
+  double steps[RECENT - 1];
+  int64_t count = 0;
+  double later = ring->newest;
+  // Also of samples that were read. Times rise, but where the clock was set back.
+  for (int64_t back = 2; back <= RECENT; back++) {
+    const double stamp = ring->time[row_of(*ring, ring->count + SWAY_RING - back)];
+    if (!(stamp < later)) break;
+    steps[count++] = later - stamp;
+    later = stamp;
+  }
+  if (!count) return NAN;
+  std::nth_element(steps, steps + count / 2, steps + count);
+  return steps[count / 2];
+}
+
 int sway_read_samples(sway_ring *kept, double time, double dt, double *sample) {
   sway_ring &ring = *kept;
   while (ring.count > 2 && ring.time[row_of(ring, 1)] < time - 0.5 * dt) drop_oldest(ring);
@@ -199,7 +212,8 @@ int sway_read_samples(sway_ring *kept, double time, double dt, double *sample) {
   }
   if (after < 0) return 0;
   const double apart = ring.time[after] - ring.time[before];
-  if (apart > fmax(LONGEST_GAP, SILENT_PERIODS * ring.period)) return 0;
+  const bool is_gap = apart > LONGEST_GAP;
+  if (is_gap && apart > SILENT_PERIODS * sway_sample_period(kept)) return 0;
   const double share = (time - ring.time[before]) / apart;
   for (int j = 0; j < 9; j++) sample[j] = from[j] + share * (ring.values[after][j] - from[j]);
   return 1;

@@ -82,8 +82,8 @@ def test_the_calm_motion_is_carried_to_the_present(gains: SteadyFilter, late: in
     by_matrix = np.linalg.matrix_power(gains.law.matrix, late) @ calm.ravel()
     eta, rate, force = by_matrix.reshape(3, M)
     lean = np.maximum(trust.max() * leaning - trust, 0.0) * force / stiffness
-    expected = np.stack([trust * eta + lean, trust * rate])
-    moved, energies = np.zeros((2, M)), np.zeros(2)
+    expected = np.stack([trust * eta + lean, trust * rate, trust * force])
+    moved, energies = np.zeros((3, M)), np.zeros(2)
     native = NativeCorrection(
         coordinates=M, stiffness=stiffness, wanted=wanted, trust=before,
         leaning=leaning, moved=moved, energies=energies,
@@ -93,7 +93,7 @@ def test_the_calm_motion_is_carried_to_the_present(gains: SteadyFilter, late: in
     LIBRARY.sway_carry(native.at, ahead_at, calm_at, 0.3, *swing_at)
     np.testing.assert_allclose(before, trust, atol=1e-12)
     np.testing.assert_allclose(moved, expected, atol=1e-12)
-    both = swing + expected, swing
+    both = swing + expected[:2], swing
     own = [stiffness @ np.square(eta) + np.square(rate).sum() for eta, rate in both]
     np.testing.assert_allclose(energies, own)
 

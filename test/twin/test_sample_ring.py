@@ -75,3 +75,22 @@ def test_the_newest_samples_are_those_of_one_clock() -> None:
     assert ring.period == pytest.approx(0.04)
     ring.ask_for((True, False, False))
     assert len(ring.newest_samples()) == 0
+
+
+def test_a_gap_is_told_from_the_period_of_the_last_samples() -> None:
+    sample = np.zeros(9)
+    ring, time = SampleRing(sample), 0.0
+    ring.ask_for((True, True, True))
+    rng = np.random.default_rng(7)
+    for period, most in ((0.01, 0.25), (0.2, 0.8)):
+        for _ in range(21):  # most of the last 39 steps are of this period
+            time += period
+            sample[:] = rng.normal(size=9)
+            assert ring.keep(time) == 'accepted'
+        assert ring.period == pytest.approx(period)
+        for apart, is_gap in ((0.9 * most, False), (1.1 * most, True)):
+            before = time
+            time += apart
+            sample[:] = rng.normal(size=9)
+            assert ring.keep(time) == 'accepted'
+            assert (ring.read(before + 0.5 * apart, DT) is None) == is_gap

@@ -1,16 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Motion of the coordinates without correction that the correction of others causes by drag.
+Motion of the coordinates without correction that the correction of others causes.
 
-A stem that sways otherwise than in the wind alone moves its hanging twigs through the air, whose
-drag couples the coordinates of both. Without it, twigs would follow the corrected stem as they do
-in still air, which is another amplitude and phase::
+A stem that sways otherwise than in the wind alone moves its hanging twigs, by the air and by the
+wood. Drag couples the coordinates of both. And an unknown force on one coordinate alone pushes the
+twigs against the stem, by the shape of that coordinate, where in truth they hang from a stem that
+leans farther. So it is taken for a force on the wood at the sensors, which pushes all of them::
 
-    x_u'' + c_u x_u' + k_u x_u = - (1 - t_u) sum over j of D_uj v_j
+    x_u'' + c_u x_u' + k_u x_u = (1 - t_u) sum over j of  P_uj t_j d_j - D_uj v_j
 
-v_j are the rates of the correction, D the drag per rate in the mean wind, t_u the share of the
-correction of u that is applied, and c_u, k_u damping, by wood and air, and stiffness.
+v_j are the rates of the correction and d_j its unknown forces, D the drag per rate in the mean
+wind, P the push (`pushed_twigs`), t_u the share of the correction of u that is applied, and c_u,
+k_u damping, by wood and air, and stiffness.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 
 class DraggedMotion:
     """
-    What the correction of an observer moves by drag.
+    What the correction of an observer moves by drag and by its forces.
 
     Parameters
     ----------
@@ -51,7 +53,7 @@ class DraggedMotion:
         self._drag = np.zeros((observer.count, m))
         self._native = NativeDragged(
             coordinates=m, corrected=observer.count, law=self._law,
-            drag=self._drag, trust=observer.trust, state=self._state,
+            drag=self._drag, push=observer.push, trust=observer.trust, state=self._state,
         )  # fmt: skip
         self._given_at, self._out_at = LastAddress(), LastAddress()
         self._found_for: tuple[Disturbance | None, Floats | None] = None, None
@@ -63,7 +65,7 @@ class DraggedMotion:
         Parameters
         ----------
         correction
-            Displacement and rate of the correction that is applied, (2, count).
+            Displacement, rate and force of the correction that is applied, (3, count).
         n_periods
             Number of time steps.
         out

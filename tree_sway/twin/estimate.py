@@ -41,10 +41,10 @@ class Estimate:
         if old is not None:
             self.state[:], self.calm[:] = old.state, old.calm
         self._native = NativeFilter(
-            coordinates=m, measurements=len(rows), lag=1,
+            coordinates=m, measurements=len(rows),
             law=np.ascontiguousarray(gains.law.step), sensed=gains.sensed.T.copy(),
             gain=gains.gain.T.copy(), deviation=gains.deviation, row=rows, state=self.state,
-            calm=self.calm, innovations=np.zeros((1, len(rows))),
+            calm=self.calm, innovations=np.zeros(len(rows)),
         )  # fmt: skip
 
     def advance(self, readings: NativeReadings, n_periods: int) -> None:

@@ -7,8 +7,9 @@ A sensor on the stem tells about a hanging twig only what both have in common by
 gusts, and of all that the filter knows, that law is known least for fast gusts: slow ones hold a
 whole crown. The sway of a coordinate is corrected where the sensors take away enough of its
 variance even if each limb meets gusts of its own; its lean, force over stiffness, where they do so
-of any coordinate, but that of a hanging twig: its wind damps it so strongly that it streams, and
-leans less than its force tells. Elsewhere the tree sways in the wind alone.
+of any coordinate. Neither is of a hanging twig: its wind damps it so strongly that it streams, and
+leans less than its force tells. It is moved by the wind, and by the wood that is corrected
+(`dragged_motion`).
 """
 
 from __future__ import annotations
@@ -22,13 +23,11 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
+from tree_sway.twin.pushed_twigs import push_of
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
 from tree_sway.twin.steady_filter import steady_filter, SteadyFilter, told_shares
 from tree_sway.twin.unknown_motion import COMPARED, UnknownMotion
-
-NOISE = 1.0
-"""Noise for which gains are found, over the noise of the sensors."""
 
 _TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
 """
@@ -51,7 +50,8 @@ class Gains(NamedTuple):
     Gains for some sensors.
 
     ``used`` are their numbers, ``noise`` that of their measurements, (p,), and ``trust`` the share
-    of the correction of each coordinate to apply, ``leaning`` that of its lean, (n,).
+    of the correction of each coordinate to apply, ``leaning`` that of its lean, (n,). ``push`` is
+    the force on each coordinate of the model by that of each of these, (n, m).
     """
 
     used: tuple[int, ...]
@@ -59,6 +59,7 @@ class Gains(NamedTuple):
     filter: SteadyFilter
     trust: Floats
     leaning: Floats
+    push: Floats
 
 
 class GainDesign:
@@ -135,16 +136,21 @@ class GainDesign:
             unknown.dt,
         )
 
-        damping_ratio = 0.5 * unknown.damped / np.sqrt(unknown.stiffness)
-        leaning = np.clip((_STREAMS - damping_ratio) / (_STREAMS - _SWAYS), 0.0, 1.0)
+        stiffness = unknown.all_stiffness
+        damping_ratio = 0.5 * (unknown.all_damping + np.diag(forces.drag)) / np.sqrt(stiffness)
+        streaming = np.clip((damping_ratio - _SWAYS) / (_STREAMS - _SWAYS), 0.0, 1.0)
+        leaning = 1.0 - streaming[: unknown.count]
+        moved = np.concatenate([self._places[k].displacement[:2] for k in used])
 
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            found = steady_filter(own, sensed, NOISE * noise)
-            told = told_shares(found, others, NOISE * noise)
+            found = steady_filter(own, sensed, noise)
+            told = told_shares(found, others, noise)
             beyond_little = (told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
-            return Gains(used, noise, found, np.clip(beyond_little, 0.0, 1.0), leaning)
+            trust = leaning * np.clip(beyond_little, 0.0, 1.0)
+            push = push_of(moved, stiffness, trust, streaming)
+            return Gains(used, noise, found, trust, leaning, push)
 
         return LaterWork(found_later, _DUE)
 

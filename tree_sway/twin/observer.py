@@ -24,7 +24,7 @@ from tree_sway.core.native import address, LIBRARY, NativeCorrection
 from tree_sway.core.setup import one_thread
 from tree_sway.twin.disturbance import crown_slope
 from tree_sway.twin.estimate import Estimate
-from tree_sway.twin.gain_design import GainDesign, Gains, NOISE
+from tree_sway.twin.gain_design import GainDesign, Gains
 from tree_sway.twin.late_wind import LateWind
 from tree_sway.twin.running_fit import RunningFit
 from tree_sway.twin.sensor_place import place_motion
@@ -109,7 +109,9 @@ class Observer:
         """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, tuple[Floats, int]] = {}
         self._swing_at = [address(each) for each in swing[:2]]
-        self._moved = np.zeros((2, n))
+        self.push = np.zeros((n, oscillators.shapes.shape[1]))
+        """Force on each coordinate of the model by that of each corrected one (`push_of`)."""
+        self._moved = np.zeros((3, n))
         self.energies = np.zeros(2)
         """
         Energies of the corrected and of the uncorrected motion, (2,).
@@ -188,7 +190,7 @@ class Observer:
         Returns
         -------
         Floats
-            Correction of displacement and rate, (2, count). The array is reused.
+            Correction of displacement, rate and force, (3, count). The array is reused.
 
         """
         self._step += 1
@@ -218,7 +220,7 @@ class Observer:
         rows = [9 * k + np.arange(9)[each] for k, each in zip(gains.used, picked, strict=True)]
         self._estimate = Estimate(gains.filter, np.concatenate(rows), self._estimate)
         self.noise, self._wanted_trust[:] = gains.noise, gains.trust
-        self.leaning[:] = gains.leaning
+        self.leaning[:], self.push[:] = gains.leaning, gains.push
         for k in gains.used:
             self.tracks[k].tells_little = not gains.trust.any()
         self._ahead = {}
@@ -250,7 +252,7 @@ class Observer:
             felt, noise = self._design.felt(k)
             expected = np.einsum('ij,jk,ik->i', felt, self.unknown.variance, felt)
             missed = self._readings.beyond[k, track.picked] - felt @ estimate.state.ravel()
-            squares = np.square(missed) / (expected + np.square(NOISE * noise))
+            squares = np.square(missed) / (expected + np.square(noise))
             track.judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
     def limit(self, share: float) -> None:

@@ -35,8 +35,8 @@ With the last one, most samples are of other quantities from this one on (`Sampl
 CAPACITY = 4096
 """Samples that are kept."""
 
-_RECENT, _NEWEST = 40, 1024
-"""Samples whose period is told, and newest samples."""
+_NEWEST = 1024
+"""Newest samples."""
 
 _RING = np.dtype(
     [
@@ -46,7 +46,6 @@ _RING = np.dtype(
         ('count', 'i8'),
         ('behind', 'i8'),
         ('newest', 'f8'),
-        ('period', 'f8'),
         ('same', 'i8', (6,)),
         ('before', 'f8', (6,)),
         ('given', 'i8'),
@@ -81,7 +80,6 @@ class SampleRing:
         self._newest, self._times = self.memory['newest'], self.memory['time'][0]
         self._first, self._count = self.memory['first'], self.memory['count']
         self._newest[0], self._times[:] = -math.inf, math.nan
-        self.memory['period'] = math.nan
         self.memory['before'] = self.memory['offered'] = math.nan
         self.memory['noise'] = LEAST_NOISE
         self.memory['given'] = -1
@@ -105,12 +103,12 @@ class SampleRing:
 
     def newest_samples(self) -> Floats:
         """Copy the samples that came last, also those that were read, the oldest first, (n, 9)."""
-        return np.array(self.memory['values'][0, self._newest_rows(_NEWEST)])
+        return np.array(self.memory['values'][0, self._newest_rows()])
 
-    def _newest_rows(self, count: int) -> Ints:
-        """Return the rows of the samples that came last, a number at most."""
+    def _newest_rows(self) -> Ints:
+        """Return the rows of the samples that came last."""
         end = int(self._first[0] + self._count[0])
-        rows = np.arange(end - count, end) % CAPACITY
+        rows = np.arange(end - _NEWEST, end) % CAPACITY
         rows = rows[np.isfinite(self._times[rows])]
         # Times rise, but where the clock was set back.
         falls = np.flatnonzero(np.diff(self._times[rows]) <= 0.0)
@@ -129,5 +127,4 @@ class SampleRing:
     @property
     def period(self) -> float:
         """Time between samples in [s], the median of the last; not a number before two samples."""
-        apart = np.sort(np.diff(self._times[self._newest_rows(_RECENT)]))
-        return float(apart[len(apart) // 2]) if len(apart) else math.nan
+        return float(LIBRARY.sway_sample_period(self._at))

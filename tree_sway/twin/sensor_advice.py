@@ -19,7 +19,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.setup import one_thread
 from tree_sway.core.tree import Tree
 from tree_sway.twin.alignment import LEAST_NOISE
-from tree_sway.twin.gain_design import NOISE
+from tree_sway.twin.observer import MOST_COORDINATES
 from tree_sway.twin.sensor_place import place_motion, place_on, tip_slopes
 from tree_sway.twin.sensor_track import as_felt, sensed_rows
 from tree_sway.twin.steady_filter import stationary_covariance, steady_filter
@@ -28,7 +28,6 @@ from tree_sway.twin.unknown_motion import UnknownMotion
 if TYPE_CHECKING:
     from tree_sway.core.run import SwaySimulator
 
-_MOST_COORDINATES = 32
 _MOST_LIMBS = 16
 _ON_STEM, _ON_LIMBS = (0.4, 0.6, 0.8), (0.5, 0.8)
 """Shares of the length at which a sensor may sit."""
@@ -64,7 +63,7 @@ def advised_places(simulator: SwaySimulator, count: int, speed: float = 7.0) -> 
 
     """
     tree = simulator.tree
-    n = min(_MOST_COORDINATES, simulator.banks[0].oscillators.shapes.shape[1])
+    n = min(MOST_COORDINATES, simulator.banks[0].oscillators.shapes.shape[1])
     with one_thread():
         unknown = UnknownMotion(simulator, n, _DT)
         unknown.note_wind(0.0, 0.0, speed)  # from anywhere
@@ -72,7 +71,7 @@ def advised_places(simulator: SwaySimulator, count: int, speed: float = 7.0) -> 
         slopes = tip_slopes(simulator)[:, :, :n].reshape(-1, n)
         weight = slopes.T @ slopes
         alone = float((weight * stationary_covariance(law)[:n, :n]).sum())
-        noise = NOISE * np.repeat(LEAST_NOISE[:2], 3)
+        noise = np.repeat(LEAST_NOISE[:2], 3)
         rows: dict[str, Floats] = {}
         for at in _candidates(tree):
             motion = place_motion(simulator, place_on(tree, at)).first(n)

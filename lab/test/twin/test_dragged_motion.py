@@ -39,7 +39,7 @@ def test_twigs_follow_the_correction_of_the_stem_as_in_the_model() -> None:
     change = swayed(twin) - as_is
 
     observer.trust[stem] = 1.0
-    dragged, correction = DraggedMotion(observer, DT), np.zeros((2, observer.count))
+    dragged, correction = DraggedMotion(observer, DT), np.zeros((3, observer.count))
     found = np.empty_like(change[:, 0])
     for k in range(STEPS):
         correction[1, stem] = change[k, 1, stem]

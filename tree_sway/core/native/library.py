@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x77991B0D
+INTERFACE = 0x6292C269
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -72,6 +72,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_keep_sample': (_status, (_pointer, _number, _pointer)),
     'sway_ask_for': (None, (_pointer, _whole)),
     'sway_read_samples': (_status, (_pointer, _number, _number, _pointer)),
+    'sway_sample_period': (_number, (_pointer,)),
     'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
     'sway_judge': (None, (_pointer, _number)),
     'sway_correct': (None, (_pointer, _pointer, _size)),

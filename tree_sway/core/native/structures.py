@@ -82,7 +82,7 @@ class NativeFilter(Structure):
     """``sway_filter``."""
 
     _fields_ = _fields(
-        'coordinates measurements lag law sensed gain deviation row state calm innovations'
+        'coordinates measurements law sensed gain deviation row state calm innovations'
     )
 
 
@@ -95,7 +95,7 @@ class NativeCorrection(Structure):
 class NativeDragged(Structure):
     """``sway_dragged``."""
 
-    _fields_ = _fields('coordinates corrected law drag trust state')
+    _fields_ = _fields('coordinates corrected law drag push trust state')
 
 
 class NativeFarWind(Structure):
