@@ -54,7 +54,7 @@ BLOCK = re.compile(r'^### (\d+)\. (.*?)$(.*?)^```shell\n(.*?)^```$', re.MULTILIN
 
 RESULTS = {
     1: r'strength used: (wood .*)',
-    2: r'frequency +(.* Hz)',
+    2: r'swing +(.* Hz)',
     3: r'goldcrest.glb: (.*)',
     4: r'birch.glb: (.*)',
     5: r'(poses +\d+ at .*)',
