@@ -89,6 +89,13 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
             "it is a species: tree-sway grow oak --height 10 -o oak.yaml, or grow('oak', 10)",
         ),
         (['info', 'oka'], "no tree 'oka'; did you mean 'oak'? give a file, or one of benjamina"),
+        (['simulate', 'benjamina', '--hz', '20'], "--hz 20; did you mean '--rate'?"),
+        (['info', 'benjamina', '--speed'], 'write one behind it, as --speed U;'),
+        (
+            ['simulate', 'benjamina', '--speed', '10', 'm/s', '-o', 'x.csv'],
+            "leave out 'm/s', as numbers have the units of --help",
+        ),
+        (['grow', 'oak'], 'required: --height; example: tree-sway grow'),
         (['info', 'x' * 300], 'File name too long'),
         (['info'], 'required: TREE'),
         (['info', 'nope'], "no tree 'nope'; give a file, or one of benjamina"),

@@ -41,13 +41,14 @@ def test_a_long_wait_without_a_terminal_shows_a_line(
 def test_longer_work_without_a_terminal_tells_what_is_left(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    now = iter([0.0, 1.0, 20.0, 21.0, 40.0])
+    now = iter([0.0, 12.0, 20.0, 31.0, 42.0])
     monkeypatch.setattr(progress.time, 'monotonic', lambda: next(now))
     with progress.counting(50, 'working') as tell:
-        for done in (5, 10, 11, 20):
+        for done in (1, 5, 20, 31):  # the first took eleven seconds to set up
             tell(done)
     assert capsys.readouterr().err == (
-        'working: 10 of 50, about 80 s left\nworking: 20 of 50, about 60 s left\n'
+        'working: 1 of 50\nworking: 20 of 50, about 30 s left\n'
+        'working: 31 of 50, about 19 s left\n'
     )
 
 

@@ -48,6 +48,20 @@ def test_rows_of_a_shorter_time_than_asked_are_said(
     assert capfd.readouterr().err == (said if is_said else '')
 
 
+def test_a_first_row_that_is_held_back_counts_from_when_it_came(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    now = iter([10.0, 12.0, 12.0])
+    monkeypatch.setattr(time, 'monotonic', lambda: next(now))
+    rows = RowFile(tmp_path / 'wind.csv')
+    rows.hold()
+    for value in '12':
+        rows.write(['time', 'u'], [value, value])
+    rows.close()
+    rows.say_short(60.0)
+    assert capfd.readouterr().err == 'note: wind.csv has 4 s of the 60 s that were asked for\n'
+
+
 def test_without_a_row_an_older_file_stays(tmp_path: Path) -> None:
     path = tmp_path / 'wind.csv'
     path.write_text('older')

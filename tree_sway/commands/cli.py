@@ -34,6 +34,13 @@ _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 _NO_NUMBER = re.compile(r"argument (\S+): invalid (float|int) value: '(.*)'")
 _UNIT = re.compile(r'\[([^]%]+)\]')
 _UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
+_LEFT = re.compile(r'unrecognized arguments: ([^-]\S*)$')
+_NO_VALUE = re.compile(r'argument (\S+): expected one argument')
+_OTHER_WORDS = {
+    'hz': 'rate', 'fps': 'rate', 'duration': 'seconds', 'time': 'seconds', 'file': 'output',
+    'wind-speed': 'speed', 'size': 'pixels', 'dbh': 'diameter', 'overwrite': 'force',
+}  # fmt: skip
+"""Words that options are sought by."""
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -47,26 +54,49 @@ class _OneLineParser(argparse.ArgumentParser):
         if wrong := _CHOICE.search(message):
             guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
         elif wrong := _UNRECOGNIZED.search(message):
-            names = (name.lstrip('-') for name in (self.chosen or self)._option_string_actions)
-            guess = nearest(wrong[1].lstrip('-'), names).replace("'", "'--", 1)
+            guess = self._nearest_option(wrong[1].lstrip('-'))
+        elif wrong := _LEFT.search(message):
+            if wrong[1] in self._units():
+                guess = f"leave out '{wrong[1]}', as numbers have the units of --help"
+        elif wrong := _NO_VALUE.search(message):
+            action = self._action(wrong[1])
+            guess = f'write one behind it, as {wrong[1]} {action.metavar or action.dest.upper()}'
         elif wrong := _NO_NUMBER.search(message):
             what, form = ('number', 'with a point, as 12 or 0.45')
             if wrong[2] == 'int':
                 what, form = ('whole number', 'as 12')
             message = f"argument {wrong[1]}: '{wrong[3]}' is no {what}"
             guess = f'give it {self._unit_of(wrong[1])}{form}'
-        if not guess and message.startswith('unrecognized') and self.chosen:
-            guess = str(self.chosen.epilog)
+        example = str((self.chosen or self).epilog)
+        is_of_use = message.startswith(('unrecognized', 'the following'))
+        if not guess and is_of_use and example.startswith('example'):
+            guess = example
         where = (self.chosen or self).prog
         text = '; '.join(filter(None, (message, guess, f'see {where} --help')))
         print(f'{where}: {text}', file=sys.stderr)
         raise SystemExit(_FAILURE)
 
+    def _nearest_option(self, word: str) -> str:
+        """Return a question whether an option is meant by a word."""
+        names = [name[2:] for name in (self.chosen or self)._option_string_actions if name[2:]]
+        other = _OTHER_WORDS.get(word)
+        question = f"did you mean '{other}'?" if other in names else nearest(word, names)
+        return question.replace("'", "'--", 1)
+
+    def _action(self, names: str) -> argparse.Action:
+        """Return the argument that an error names."""
+        actions = (self.chosen or self)._actions
+        return next(each for each in actions if '/'.join(each.option_strings) == names)
+
+    def _units(self) -> set[str]:
+        """Return the units that the help has."""
+        return {
+            each for a in (self.chosen or self)._actions for each in _UNIT.findall(str(a.help))
+        }
+
     def _unit_of(self, names: str) -> str:
         """Return the unit that the help of an argument has, as 'in m, '."""
-        actions = (self.chosen or self)._actions
-        named = (each for each in actions if '/'.join(each.option_strings) == names)
-        unit = _UNIT.search(str(getattr(next(named, None), 'help', '')))
+        unit = _UNIT.search(str(self._action(names).help))
         return f'in {unit[1]}, ' if unit else ''
 
 

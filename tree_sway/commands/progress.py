@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
-from functools import partial
 import sys
 import threading
 import time
@@ -46,7 +45,7 @@ def counting(total: int, what: str, *, is_bar: bool = True) -> Iterator[Callable
     counted = _bar_on_terminal(what, total=total) if is_bar and total > 1 else None
     if counted is None:
         with waiting(what):
-            yield partial(_tell, what, total, [time.monotonic()])
+            yield _Lines(what, total).tell
         return
     with counted:
         yield lambda done: counted.update(done - counted.n)
@@ -76,13 +75,30 @@ def waiting(what: str) -> Iterator[None]:
         timer.cancel()
 
 
-def _tell(what: str, total: int, times: list[float], done: int) -> None:
-    """Print how many are done, now and then; times are those of the begin and of each line."""
-    now = time.monotonic()
-    if done and now - times[-1] > _BETWEEN:
-        left = (now - times[0]) * (total - done) / done
-        times.append(now)
-        _report(f'{what}: {done} of {total}, about {max(left, 1.0):.0f} s left')
+class _Lines:
+    """Lines that tell now and then how many of a total are done, and what time is left."""
+
+    def __init__(self, what: str, total: int) -> None:
+        self._what = what
+        self._total = total
+        self._told = time.monotonic()
+        self._first = 0
+        self._since = 0.0
+
+    def tell(self, done: int) -> None:
+        """Print a line if the last is long ago; the first that are done, set up others."""
+        now = time.monotonic()
+        if done and not self._first:
+            self._first = done
+            self._since = now
+        if not done or now - self._told <= _BETWEEN:
+            return
+        self._told = now
+        text = f'{self._what}: {done} of {self._total}'
+        if done > self._first:
+            left = (now - self._since) * (self._total - done) / (done - self._first)
+            text = f'{text}, about {max(left, 1.0):.0f} s left'
+        _report(text)
 
 
 def _report(text: str) -> None:

@@ -35,7 +35,8 @@ class RowFile:
         self.failure = ''
         """Why a row could not be written; empty without a failure."""
         self._path = path
-        self._written = (0.0, 0.0)
+        self._first: float | None = None
+        self._last = 0.0
         self._file: TextIO | None = None
 
     def write(self, header: Sequence[str], row: Sequence[object]) -> None:
@@ -51,14 +52,19 @@ class RowFile:
         except OSError as error:
             self.failure = error.strerror or str(error)
             return
-        now = time.monotonic()
-        self._written = (self._written[0] if self.count else now, now)
+        self._last = time.monotonic()
+        if self._first is None:
+            self._first = self._last
         self.count += 1
+
+    def hold(self) -> None:
+        """Take now as the time of the first row, which is written later."""
+        self._first = time.monotonic()
 
     def say_short(self, seconds: float) -> None:
         """Print a note where rows came for a shorter time [s]; each stands for its period."""
-        begin, end = self._written
-        length = (end - begin) * self.count / max(self.count - 1, 1)
+        since = self._last if self._first is None else self._first
+        length = (self._last - since) * self.count / max(self.count - 1, 1)
         if short := shorter_than(length, seconds, self._path.name):
             print(f'note: {short}', file=sys.stderr)
 

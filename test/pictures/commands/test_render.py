@@ -76,6 +76,22 @@ def test_a_browser_that_draws_nothing_or_ends_is_named(
     assert not target.exists()
 
 
+def test_a_film_that_takes_long_says_so_after_three_pictures(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = iter([20.0, 22.0, 24.0, 25.0])  # the first picture came after 20 s
+    monkeypatch.setattr(render.time, 'monotonic', lambda: next(now))
+    pictures = [b'1', b'2', b'3', b'4']
+    told = render._with_forecast(iter(pictures), 80)
+    assert [next(told) for _ in range(2)] == pictures[:2]
+    assert capsys.readouterr().err == ''
+    assert [*told] == pictures[2:]
+    assert capsys.readouterr().err == (
+        'note: 80 pictures take about 154 s more; '
+        'a smaller --seconds, --rate or --pixels takes less\n'
+    )
+
+
 @pytest.mark.usefixtures('plainly')
 def test_a_gif_of_a_recorded_wind_moves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

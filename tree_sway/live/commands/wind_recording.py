@@ -88,6 +88,7 @@ class WindTable:
         row = reading.time or self._clock.date(time.monotonic()), reading
         if self._first is None and not self.count:
             self._first = row
+            self.rows.hold()
             return
         if self._first is not None:
             self._begin(self._first)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from io import BytesIO
 import sys
 import time
@@ -26,6 +27,10 @@ from tree_sway.page import browser, page_pictures
 
 _LEAVES = 2800
 """Share of the leaves, so that frames are drawn fast enough."""
+_TRIED = 3
+"""Pictures after which it is said how long the others take; the first one sets up."""
+_LONG = 20.0
+"""Time [s] from which on this is said."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--seconds',
         type=float,
-        default=8.0,
+        default=4.0,
         metavar='N',
         help='duration of the film [s] (%(default)s)',
     )
@@ -68,7 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
         from PIL import Image
 
         pictures = page_pictures(simulator, frames, rate, pixels, _LEAVES)
-        images = (Image.open(BytesIO(each)).convert('RGB') for each in pictures)
+        told = _with_forecast(pictures, count)
+        images = (Image.open(BytesIO(each)).convert('RGB') for each in told)
         write_pictures(images, target, rate)
     else:
         print(f'note: drawn by matplotlib, as {why_plain}', file=sys.stderr)
@@ -85,6 +91,22 @@ def run(arguments: argparse.Namespace) -> int:
         f'{arguments.seconds:g} s of wind in {spent:.1f} s'
     )
     return 0
+
+
+def _with_forecast(pictures: Iterator[bytes], count: int) -> Iterator[bytes]:
+    """Pass pictures on, and say after some of them how long the others take."""
+    times = []
+    for each in pictures:
+        times.append(time.monotonic())
+        if len(times) == _TRIED:
+            left = (times[-1] - times[0]) / (_TRIED - 1) * (count - _TRIED)
+            if left > _LONG:
+                print(
+                    f'note: {count} pictures take about {left:.0f} s more; '
+                    'a smaller --seconds, --rate or --pixels takes less',
+                    file=sys.stderr,
+                )
+        yield each
 
 
 def _why_not_the_page(arguments: argparse.Namespace) -> str:
