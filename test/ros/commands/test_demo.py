@@ -109,7 +109,12 @@ def test_a_second_process_receives_every_pose_of_a_recorded_wind(
     assert demo.returncode == 0, err
     for text in (heard, said):
         assert number(r'poses +\d+ at ([\d.]+) Hz', text) == pytest.approx(60.0, rel=0.01)
-    assert 'none missing' in heard
+    # Frames that a solver on a busy machine has left out are missing in both.
+    heard_gaps, own_gaps = (
+        number(r' (\d+) missing', text.replace('none missing', '0 missing'))
+        for text in (heard, said)
+    )
+    assert heard_gaps <= own_gaps
     assert number(r'tip +([\d.]+) mm from rest on average', said) > 0.5
 
 

@@ -215,6 +215,7 @@ def test_a_skeleton_of_vertices_and_edges(tmp_path, order, is_list):
         ('property float radius\n', 'property float confidence\n', 'a skeleton without radii'),
         ('edge 8', 'edge 0', 'a point cloud, not a tree; fit cylinders'),
         ('element edge', 'element face 3\nelement edge', 'a mesh for drawing'),
+        ('list uchar int vertex_indices', 'int vertex1', 'edges without two vertices'),
         ('vertex 9', 'vertex 0', 'without vertices'),
         ('vertex 9', 'vertex nine', 'damaged header'),
         ('2 7 8', '2 7 99', 'edge 8 joins 7 and 99 of 9 nodes'),

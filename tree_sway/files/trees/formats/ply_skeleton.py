@@ -95,6 +95,8 @@ def _refuse_others(elements: Elements) -> None:
     elif not {'x', 'y', 'z', 'radius'} <= elements['vertex'][1].keys():
         what = 'a skeleton without radii'
         cure = 'give each vertex a property radius [m], beside x, y and z'
+    elif len(elements['edge'][1]) < 2:
+        what, cure = 'edges without two vertices', 'give each edge vertex1 and vertex2'
     else:
         return
     raise FormatError(f'{what}, not a tree', cure=cure)
