@@ -36,5 +36,5 @@ def test_the_chain_is_within_a_tenth_of_a_second():
     for way in ('by state', 'by wind'):
         shares = [found[f'vane to leaf {way}, p{share}'] for share in (50, 95, 99)]
         assert 20.0 < shares[0] <= shares[1] <= shares[2] < 100.0
-        # The playout shows it later than it arrives, by a delay of its own that steady frames shorten.
+        # The playout shows it later than it arrives; steady frames shorten its delay.
         assert 0.0 < found[f'vane to leaf {way}, shown, p50'] - shares[0] < 150.0
