@@ -148,7 +148,9 @@ class GainDesign:
             found = steady_filter(own, sensed, noise)
             told = told_shares(found, others, noise)
             beyond_little = (told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
-            trust = leaning * np.clip(beyond_little, 0.0, 1.0)
+            trust = np.clip(beyond_little, 0.0, 1.0)
+            if moved.any():  # not of gauges alone, whose places tell no force
+                trust *= leaning
             push = push_of(moved, stiffness, trust, streaming)
             return Gains(used, noise, found, trust, leaning, push)
 
