@@ -41,7 +41,7 @@ COMPASS: dict[str, str] = _KNOWN['compass']
 TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 """Columns that make a time together, and how."""
 
-_UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
+_UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'ç': 'ch', 'º': '°'})
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
@@ -98,7 +98,13 @@ _NAMES = {
 """Names of each quantity, best first: those of one letter last, as t may be a temperature."""
 
 _PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns'].items()}
-"""Names that vary, as with the number of an instrument in them, folded."""
+"""Names that vary, as with the number of an instrument in them, folded, or by their `_roles`."""
+
+_ROLES = {folded(word): role for role, words in _KNOWN['words'].items() for word in words.split()}
+"""Words of many languages that names consist of, folded, and letters for what they say."""
+_WORD = re.compile('|'.join(sorted(_ROLES, key=len, reverse=True)))
+_SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
+"""Number, height or length of time in a name."""
 
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
@@ -158,8 +164,15 @@ def rank_of(column: str, quantity: str) -> int | None:
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
     pattern = _PATTERNS.get(quantity)
-    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, found)))
+    forms = (*found, *map(_roles, found))
+    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, forms)))
     return len(_NAMES[quantity]) if is_like else None
+
+
+def _roles(name: str) -> str:
+    """Return a folded name with a capital letter in place of each word that is known."""
+    words = _WORD.sub(lambda word: _ROLES[word[0]], _SPAN.sub('', name))
+    return words.replace('_', '')
 
 
 def year_of(column: str) -> int:
