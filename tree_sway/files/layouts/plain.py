@@ -22,7 +22,6 @@ from tree_sway.files.column_names import (
     unit_known,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import LONG_NAMES
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
@@ -36,7 +35,17 @@ _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
 _KNOWN = (
-    *('time', 'wind_speed', 'wind_direction', 'wind_x', 'wind_y', 'gust', 'species', 'genus'),
+    *(
+        'time',
+        'wind_speed',
+        'wind_direction',
+        'wind_x',
+        'wind_y',
+        'gust',
+        'value',
+        'species',
+        'genus',
+    ),
     *('x', 'y', 'latitude', 'longitude', 'place', *_SIZES),
 )
 """Quantities whose names tell the header."""
@@ -85,8 +94,7 @@ def is_known(cell: str) -> bool:
         return cell.lower() in _PARTS
     motion = motion_of(cell)
     is_axis = motion is not None and motion[2] != ''
-    is_long = cell in LONG_NAMES
-    return is_axis or is_long or any(rank_of(cell, each) is not None for each in _KNOWN)
+    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
 
 
 def _is_table(lines: Sequence[str]) -> bool:
