@@ -125,7 +125,7 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
             yield from _tables(each, units, source, depth + 1)
     elif isinstance(node, dict):
         if rows := list(_rows(node, own)):
-            yield _records(rows, own, source)
+            yield _records(rows, units | own, source)
         for name, each in node.items():
             beside = object_of(node.get('units')) or _said_units(node) or units
             own_units = units | object_of(node.get(f'{name}_units', beside))

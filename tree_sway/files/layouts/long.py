@@ -66,7 +66,7 @@ def widened(table: TextTable) -> TextTable:
     columns = range(len(table.columns)) if all(wanted) else ()
     known = [(sum(map(is_wind, {*table.cells(each, first)})), each) for each in columns]
     most, name = max(known, default=(0, 0), key=lambda each: each[0])
-    if not most or [name] in wanted:
+    if not most or [name] in wanted or any(map(is_wind, table.columns)):
         return table
     units: dict[str, str] = {}
     clock, value = (each[0] for each in wanted)
