@@ -91,6 +91,8 @@ def read_table_wind(
     else:
         found = table.find('wind_speed')
         places = table.find_all('wind_direction')
+        usual = 'from' if places else 'to'
+        places = places or table.find_all('wind_to')
         places = [each for each in places if found is None or each != found.index]
         from_where: Column | float | None = direction
         if places:
@@ -105,7 +107,7 @@ def read_table_wind(
         notes += [note] if note else []
         speed = Column(found.index, factor)
         notes += _repeated(table, [speed])
-        convention = direction_convention or 'from'
+        convention = direction_convention or (usual if places else 'from')
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
         notes += _doubt(table, from_where)
         yaw = 0.0
