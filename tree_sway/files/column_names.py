@@ -56,6 +56,8 @@ _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
 """Last name of a value that has others beside it, as its unit."""
+_INNER = re.compile(r'\.(?=\S)')
+"""Sign between the names of groups."""
 _YEAR = re.compile(r'(?<=[^\W\d])[_ .-]?((?:19|20)\d\d)(?!\d)')
 """Year of a measurement behind the name of what was measured."""
 _SHORTEST_GLUED = 4
@@ -160,7 +162,7 @@ def rank_of(column: str, quantity: str) -> int | None:
     kind = COLUMNS[quantity]['unit']
     column = _YEAR.sub('', column) or column
     name, _ = name_and_unit(column, kind)
-    inner = _VALUE.sub('', name).rpartition('.')[2]
+    inner = _INNER.split(_VALUE.sub('', name))[-1]
     found = (folded(name), folded(column), folded(inner), _without_unit(inner, kind)[0])
     for rank, known in enumerate(_NAMES[quantity]):
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):

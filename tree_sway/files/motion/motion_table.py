@@ -107,10 +107,12 @@ def _by_sensor(table: TextTable) -> list[TextTable]:
     """Return the rows of each sensor of motion, where a column names it, as tables of files."""
     moves = {quantity: words for quantity, words in FILES_OF.items() if quantity}
     for index, column in enumerate(table.columns):
+        rows: dict[str, list[int]] = {}
         names = table.cells(index, range(len(table.texts))) if folded(column) in SENDERS else ()
-        known = {each for each in names if any(w.search(folded(each)) for w in moves.values())}
-        if len(known) > 1:
-            rows = {each: [i for i, name in enumerate(names) if name == each] for each in known}
+        for row, name in enumerate(names):
+            rows.setdefault(name, []).append(row)
+        told = [each for each in rows if any(w.search(folded(each)) for w in moves.values())]
+        if len(told) > 1 and min(len(rows[each]) for each in told) > 1:
             return [
                 replace(
                     table,
@@ -118,7 +120,7 @@ def _by_sensor(table: TextTable) -> list[TextTable]:
                     texts=[table.texts[row] for row in of_one],
                     source=f'{table.source}/{name}',
                 )
-                for name, of_one in sorted(rows.items())
+                for name, of_one in ((each, rows[each]) for each in sorted(told))
             ]
     return [table]
 
