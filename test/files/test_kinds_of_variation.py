@@ -12,6 +12,8 @@ import pytest
 
 from tree_sway.errors import FormatError
 from tree_sway.files.motion import read_motion
+from tree_sway.files.scenes import inventory_of, inventory_table
+from tree_sway.files.text_file import read_head
 from tree_sway.files.trees import open_scene
 from tree_sway.files.wind import read_wind
 
@@ -169,6 +171,16 @@ def test_an_inventory_is_read_in_any_words_and_places(tmp_path: Path, text: str)
     y = [each.y for each in scene.trees]
     assert np.ptp(x) == pytest.approx(103.8, abs=0.1)
     assert np.ptp(y) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_stems_of_vancouver_are_in_inches(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.csv'
+    path.write_text(
+        'CIVIC_NUMBER,COMMON_NAME,HEIGHT_RANGE_ID,DIAMETER,LATITUDE,LONGITUDE\n'
+        '494,ENGLISH OAK,3,11.8,49.2178,-123.1161\n'
+    )
+    inventory = inventory_of(inventory_table(path, read_head(path)))
+    assert inventory.diameter == pytest.approx([0.2997], abs=1e-4)
 
 
 def test_swapped_heights_and_diameters_are_refused(tmp_path: Path) -> None:

@@ -4,7 +4,8 @@
 Names of columns and their units, compared however they are written.
 
 ``Baumhöhe [m]``, ``BAUMHOEHE (M)`` and ``baumhoehe_m`` are one name with one unit: letters are
-folded to lower case without accents, and all but letters and digits is left out. A unit is in
+folded to lower case without accents, and all but letters and digits is left out. Other names are
+known by the words that they consist of, as ``Vitesse moyenne du vent``. A unit is in
 brackets, behind ``-`` or a comma, or the last word, as in ``height_m`` and ``Height in metres``. A
 name of ten letters may be the beginning of a known one, as shapefiles cut it: ``TREE_HEIGH``.
 """

@@ -6,7 +6,8 @@ JSON of weather services: columns of equal length, lists of records, or values b
 Open-Meteo has columns, their units beside them (``hourly``, ``hourly_units``); weather.com, the US
 and other services have records, with names of quantities inside names of groups, which are joined
 (``metric.windspeedAvg``); Ecowitt has ``list`` and ``unit`` of each quantity; Home Assistant lists
-of states. The longest of these in the document is the table.
+of states; Prometheus, Grafana and SensorThings a list of times and values with its name and unit
+beside it. The longest of these in the document is the table.
 """
 
 from __future__ import annotations

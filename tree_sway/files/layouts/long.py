@@ -5,7 +5,8 @@ Long tables: a row per value, with the name of its quantity in a cell.
 
 InfluxDB's annotated CSV has ``_time``, ``_value`` and ``_field`` below lines with a hash (docs of
 InfluxDB, Annotated CSV); Home Assistant's history has ``entity_id,state,last_changed``; those of
-wetterdienst, openSenseMap and DMI have the instrument of each value too. Each value holds until
+wetterdienst, openSenseMap and DMI have the instrument of each value too. The column of the names
+is that whose cells are most quantities of the wind. Each value holds until
 the next of its name, as Home Assistant stores changes alone.
 """
 
