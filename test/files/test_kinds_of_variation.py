@@ -173,6 +173,17 @@ def test_an_inventory_is_read_in_any_words_and_places(tmp_path: Path, text: str)
     assert np.ptp(y) == pytest.approx(0.0, abs=1e-6)
 
 
+def test_a_point_within_a_record_is_a_place(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.json'
+    records = [
+        {'species': 'oak', 'height': 12, 'location': {'type': 'Point', 'coordinates': [x, 48.2]}}
+        for x in (16.3738, 16.3752)
+    ]
+    path.write_text(dumps(records))
+    scene = open_scene(path, warn=False)
+    assert np.ptp([each.x for each in scene.trees]) == pytest.approx(103.8, abs=0.1)
+
+
 def test_stems_of_vancouver_are_in_inches(tmp_path: Path) -> None:
     path = tmp_path / 'trees.csv'
     path.write_text(
