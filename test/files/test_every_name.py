@@ -30,7 +30,17 @@ ROOT = Path(__file__).resolve().parents[2] / 'tree_sway' / 'files'
 MAKERS = table_beside(str(ROOT / 'makers.py'), 'makers.csv')
 WIND_MAKERS = [each for each in MAKERS if each['speed']]
 MOTION_MAKERS = [each for each in MAKERS if each['acceleration'] or each['rate']]
-WIND = ('time', 'wind_x', 'wind_y', 'wind_z', 'wind_speed', 'wind_direction', 'gust')
+WIND = (
+    'time',
+    'wind_x',
+    'wind_y',
+    'wind_z',
+    'wind_speed',
+    'wind_direction',
+    'wind_to',
+    'gust',
+    'value',
+)
 INVENTORY = tuple(each for each in COLUMNS if each not in WIND and each not in MOTIONS)
 BY_RULE = {
     'species': 'epithet', 'speciesname': 'epithet', 'art': 'epithet', 'espece': 'epithet',
@@ -215,7 +225,7 @@ def test_every_set_of_parts_makes_a_time(parts: tuple[str, ...]) -> None:
         'timestamp1': '2026-03-01', 'timestamp2': '{k}00', 'doy': '60',
         'sec': '177232320{k}', 'headerstampsec': '177232320{k}', 'headerstampsecs': '177232320{k}',
         'nanosec': '0', 'headerstampnanosec': '0', 'headerstampnsecs': '0',
-        'datapomiaru': '2026-03-01', 'godzinapomiaru': '{k}',
+        'm': '3', 'd': '1', 'datapomiaru': '2026-03-01', 'godzinapomiaru': '{k}',
     }  # fmt: skip
     cells = [value.get(part, '0{k}:00') for part in parts]
     head = ';'.join([*parts, 'wind speed [m/s]', 'wind direction'])

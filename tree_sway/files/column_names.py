@@ -4,7 +4,8 @@
 Names of columns and their units, compared however they are written.
 
 ``Baumhöhe [m]``, ``BAUMHOEHE (M)`` and ``baumhoehe_m`` are one name with one unit: letters are
-folded to lower case without accents, and all but letters and digits is left out. A unit is in
+folded to lower case without accents, and all but letters and digits is left out. Other names are
+known by the words that they consist of, as ``Vitesse moyenne du vent``. A unit is in
 brackets, behind ``-`` or a comma, or the last word, as in ``height_m`` and ``Height in metres``. A
 name of ten letters may be the beginning of a known one, as shapefiles cut it: ``TREE_HEIGH``.
 """
@@ -41,7 +42,9 @@ COMPASS: dict[str, str] = _KNOWN['compass']
 TIME_PARTS: dict[str, str] = _KNOWN['time_parts']
 """Columns that make a time together, and how."""
 
-_UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
+_UMLAUTS = str.maketrans(
+    {'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'ç': 'ch', 'º': '°'}
+)
 _BRACKETS = re.compile(r'[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]')
 _BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
 _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
@@ -54,6 +57,8 @@ _GROUP = re.compile(r'^[^:(\[]*:\s*(?=[A-Z])')
 """Name of a group before that of a column, as in ``Data Set 1:Time (s)``."""
 _VALUE = re.compile(r'\.value$', re.IGNORECASE)
 """Last name of a value that has others beside it, as its unit."""
+_INNER = re.compile(r'\.(?=\S)')
+"""Sign between the names of groups."""
 _YEAR = re.compile(r'(?<=[^\W\d])[_ .-]?((?:19|20)\d\d)(?!\d)')
 """Year of a measurement behind the name of what was measured."""
 _SHORTEST_GLUED = 4
@@ -98,7 +103,13 @@ _NAMES = {
 """Names of each quantity, best first: those of one letter last, as t may be a temperature."""
 
 _PATTERNS = {quantity: re.compile(known) for quantity, known in _KNOWN['patterns'].items()}
-"""Names that vary, as with the number of an instrument in them, folded."""
+"""Names that vary, as with the number of an instrument in them, folded, or by their `_roles`."""
+
+_ROLES = {folded(word): role for role, words in _KNOWN['words'].items() for word in words.split()}
+"""Words of many languages that names consist of, folded, and letters for what they say."""
+_WORD = re.compile('|'.join(sorted(_ROLES, key=len, reverse=True)))
+_SPAN = re.compile(r'\d+(minutes?|mins?|mn|hours?|hr|m|(?=\D|$))')
+"""Number, height or length of time in a name."""
 
 _ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
@@ -152,14 +163,21 @@ def rank_of(column: str, quantity: str) -> int | None:
     kind = COLUMNS[quantity]['unit']
     column = _YEAR.sub('', column) or column
     name, _ = name_and_unit(column, kind)
-    inner = _VALUE.sub('', name).rpartition('.')[2]
+    inner = _INNER.split(_VALUE.sub('', name))[-1]
     found = (folded(name), folded(column), folded(inner), _without_unit(inner, kind)[0])
     for rank, known in enumerate(_NAMES[quantity]):
         if known in found or _glued_unit(inner, known, kind) or _is_cut(column, known):
             return rank
     pattern = _PATTERNS.get(quantity)
-    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, found)))
+    forms = (*found, *map(_roles, found))
+    is_like = pattern is not None and any(map(pattern.fullmatch, filter(None, forms)))
     return len(_NAMES[quantity]) if is_like else None
+
+
+def _roles(name: str) -> str:
+    """Return a folded name with a capital letter in place of each word that is known."""
+    words = _WORD.sub(lambda word: _ROLES[word[0]], _SPAN.sub('', name))
+    return words.replace('_', '')
 
 
 def year_of(column: str) -> int:

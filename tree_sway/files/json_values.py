@@ -71,6 +71,8 @@ def flat(
         if isinstance(each, dict) and depth < DEEPEST:
             yield from flat(each, f'{whole}.', depth + 1, lists=lists)
         elif isinstance(each, list):
+            if name == 'coordinates' and len(each) == 2:  # longitude first, as in GeoJSON
+                yield whole, json.dumps({name: each})
             if len(each) in (3, 4) and not any(isinstance(item, dict | list) for item in each):
                 axes = zip('xyzw', each, strict=False)
                 yield from ((f'{whole}.{axis}', text_of(item)) for axis, item in axes)

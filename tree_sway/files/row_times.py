@@ -16,7 +16,7 @@ from tree_sway.files.column_names import folded, name_and_unit, rank_of, TIME_PA
 from tree_sway.files.makers import maker_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import finite
-from tree_sway.files.time_stamps import dates, Times, times_of, unwrapped
+from tree_sway.files.time_stamps import dates, TIME_OF_DAY, Times, times_of, unwrapped
 
 PARTS = {tuple(names.split()): form for names, form in TIME_PARTS.items()}
 """Columns that make a time together, and the form of a date or of seconds with all of them."""
@@ -40,13 +40,18 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
         if len(places) == len(wanted):
             return places, form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
+    columns = range(len(table.columns))  # of any name, or without one as an index
     clocks = table.find_all('time')
     clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
     if not clocks or not _run_on(table.cells(clocks[0], first)):
-        columns = range(len(table.columns))  # of any name, or without one as an index
         clocks = [each for each in columns if _are_dates(table.cells(each, first))][:1] or clocks
     if not clocks:
         return None
+    texts = {each: [*filter(None, table.cells(each, first))] for each in columns}
+    days = [each for each in columns if _are_days(texts[each])]
+    of_day = [each for each in columns if texts[each] and all(map(_is_of_day, texts[each]))]
+    if days and of_day and clocks[0] in (*days, *of_day):
+        return [days[0], of_day[0]], '{0} {1}', 1.0
     if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
@@ -76,6 +81,15 @@ def _are_dates(cells: Sequence[str]) -> bool:
     """Whether cells are dates; none is a number."""
     has_numbers = any(finite(cell) is not None for cell in cells)
     return not has_numbers and dates(cells).epoch != 0.0
+
+
+def _are_days(cells: Sequence[str]) -> bool:
+    """Whether cells are dates without a time of day."""
+    return _are_dates(cells) and not any(':' in cell for cell in cells)
+
+
+def _is_of_day(cell: str) -> bool:
+    return TIME_OF_DAY.fullmatch(cell.strip()) is not None
 
 
 def _run_on(cells: Sequence[str]) -> bool:

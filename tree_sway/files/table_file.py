@@ -17,6 +17,7 @@ from functools import partial
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, TreeError
@@ -49,6 +50,9 @@ _STAMP_LETTERS = re.compile(r'(?<=\d)[TZ]')
 _WORDS = re.compile(r'\w[^\s:]*(?:\s+[\w/][^\s:]*){2,}')
 _THOUSANDS = re.compile(r'(?<=\d)\.(?=\d{3}(?:\.\d{3})*,\d)')
 """Point between the thousands of a number with a decimal comma."""
+_NINES = re.compile(r'99+(?:[.,][09]+)?')
+_MUCH = 4.0
+"""Times the largest other number that a code of a missing value is."""
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 
 
@@ -223,6 +227,13 @@ class TextTable:
                     cure=f'name one that is, or {none[0]} for the root',
                 )
         return labels, parents
+
+
+def are_nines(cells: Sequence[str], values: Floats) -> NDArray[np.bool_]:
+    """Mark codes of missing values, such as ``999``, where no other value is nearly as large."""
+    is_code = np.array([_NINES.fullmatch(cell.strip()) is not None for cell in cells], np.bool_)
+    others = values[~is_code & np.isfinite(values)]
+    return np.asarray(is_code & (len(others) > 0) & (values > _MUCH * np.max(others, initial=0.0)))
 
 
 def known_factor(kind: str, unit: str, where: str) -> float:

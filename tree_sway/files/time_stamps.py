@@ -86,7 +86,7 @@ class Times:
     note: str = ''
 
 
-_TIME_OF_DAY = re.compile(r'\d{1,2}:\d\d(?::\d\d(?:[.,:]\d+)?)?\s*(?:[AaPp]\.?[Mm]\.?)?')
+TIME_OF_DAY = re.compile(r'\d{1,2}:\d\d(?::\d\d(?:[.,:]\d+)?)?\s*(?:[AaPp]\.?[Mm]\.?)?')
 
 
 def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
@@ -168,7 +168,7 @@ def _day(days: float) -> str:
 def dates(stamps: Sequence[str]) -> Times:
     """Return the times of dates, NaN for other texts; those without a zone are taken as UTC."""
     texts = [stamp.strip() for stamp in stamps]
-    if all(_TIME_OF_DAY.fullmatch(text) for text in texts if text) and any(texts):
+    if all(TIME_OF_DAY.fullmatch(text) for text in texts if text) and any(texts):
         return _clocks(texts)
     is_month_first, note = _order(texts)
     found = (_microseconds(text, is_month_first) for text in texts)

@@ -6,7 +6,8 @@ JSON of weather services: columns of equal length, lists of records, or values b
 Open-Meteo has columns, their units beside them (``hourly``, ``hourly_units``); weather.com, the US
 and other services have records, with names of quantities inside names of groups, which are joined
 (``metric.windspeedAvg``); Ecowitt has ``list`` and ``unit`` of each quantity; Home Assistant lists
-of states. The longest of these in the document is the table.
+of states; Prometheus, Grafana and SensorThings a list of times and values with its name and unit
+beside it. The longest of these in the document is the table.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from tree_sway.files.json_values import (
     unit_beside,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import Value, wide_table, widened
+from tree_sway.files.layouts.long import is_wind, unit_for, Value, wide_table, widened
 from tree_sway.files.layouts.spread_columns import spread_table
 from tree_sway.files.layouts.station_messages import (
     SIGNALK_PAIRS,
@@ -43,6 +44,8 @@ from tree_sway.files.text_file import finite
 _BEGINS = re.compile(r'\s*(\{|\[\s*([\[{"]|[1-9]\d*\s*,))')
 _CLOCK = re.compile(r'\d{9}|\d{4}-\d\d-\d\d')
 """Begin of a time since 1970, or of a date."""
+_UNIT = re.compile('unit|uom', re.IGNORECASE)
+"""Part of a name of units."""
 Cells = dict[str, str]
 
 
@@ -52,7 +55,8 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
     messages = document if isinstance(document, list) else [document]
     told = _of_tempest(messages)
     deltas = _of_deltas(messages, source)
-    tables = [deltas] if deltas else list(_tables(told or document, {}, source, 0))
+    units = dict(_units_in(document, is_inside=False))
+    tables = [deltas] if deltas else list(_tables(told or document, units, source, 0))
     # One with a wind before a longer one of another sensor.
     winds = [each for each in tables if each.find_all('wind_speed') or each.find_all('wind_x')]
     if not tables:
@@ -61,6 +65,16 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
             cure='give columns or records with a time, a speed and a direction',
         )
     return max(winds or tables, key=lambda table: len(table.texts))
+
+
+def _units_in(node: Any, *, is_inside: bool, depth: int = 0) -> Iterator[tuple[str, str]]:
+    """Yield the names and units of all objects of units in a document, wherever they are."""
+    for name, each in object_of(node).items() if depth < DEEPEST else ():
+        if isinstance(each, str):
+            yield from [(name, each)] if is_inside and _is_unit(each) else ()
+        else:
+            inside = is_inside or _UNIT.search(name) is not None
+            yield from _units_in(each, is_inside=inside, depth=depth + 1)
 
 
 def _of_tempest(messages: list[Any]) -> list[dict[str, Any]]:
@@ -99,44 +113,26 @@ def _tables(node: Any, units: Cells, source: str, depth: int) -> Iterator[TextTa
     if depth > DEEPEST:
         return
     if isinstance(node, list):
-        node = _metrics(node) or list(_samples(node)) or list(_states(node)) or node
+        node = list(_samples(node)) or list(_states(node)) or node
+    elif object_of(node) and all(map(_CLOCK.match, node)) and all(map(object_of, node.values())):
+        node = [{'time': clock, **each} for clock, each in node.items()]
+    own: Cells = {}
+    if values := list(_series(node, '', own)):
+        yield wide_table(values, source, 'time', own)
     if isinstance(node, list):
         if node and all(isinstance(each, dict) for each in node):
             yield _records(node, units, source)
         for each in node:
             yield from _tables(each, units, source, depth + 1)
     elif isinstance(node, dict):
-        own: Cells = {}
-        values = list(_series(node, '', own))
-        if values:
-            yield wide_table(values, source, 'time', own)
         if rows := list(_rows(node, own)):
-            yield _records(rows, own, source)
+            yield _records(rows, units | own, source)
         for name, each in node.items():
             beside = object_of(node.get('units')) or _said_units(node) or units
-            own_units = object_of(node.get(f'{name}_units', beside))
+            own_units = units | object_of(node.get(f'{name}_units', beside))
             yield from _tables(each, own_units, source, depth + 1)
         if columns := spread_table(node, units, source):  # after those of a part of it
             yield columns
-
-
-def _metrics(node: list[Any]) -> dict[str, Any]:
-    """
-    Return the values of Prometheus by their names; empty for any other list.
-
-    Raises a `FormatError` for one name of several instruments.
-    """
-    found: dict[str, Any] = {}
-    for each in map(object_of, node):
-        name = object_of(each.get('metric')).get('__name__')
-        if name in found:
-            raise FormatError(
-                f'rows of several instruments: {name} occurs twice',
-                cure='ask for one, as {instance="mast"}',
-            )
-        if isinstance(name, str):
-            found[name] = each.get('values')
-    return found
 
 
 def _samples(messages: list[Any]) -> Iterator[dict[str, Any]]:
@@ -182,6 +178,7 @@ def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
     """
     lists = [_words(each) for each in node.values()]
     step = finite(cell_of(node.get('interval_ms')))
+    index = list_of(node.get('index'))  # of pandas
     for rows in (each for each in lists if each and isinstance(each[0], list)):
         heads = [[*map(text_of, each)] for each in lists if len(each) == len(rows[0])]
         sensors = [*map(object_of, list_of(node.get('sensors')))]
@@ -194,6 +191,8 @@ def _rows(node: dict[str, Any], units: Cells) -> Iterator[dict[str, Any]]:
                 units |= dict(zip(heads[0], row, strict=False))
         for number, row in enumerate(rows):
             clock = {} if step is None else {'time [ms]': number * step}
+            if len(index) == len(rows) and _CLOCK.match(cell_of(index[number])):
+                clock = {'time': index[number]}
             yield clock | dict(zip(heads[0], list_of(row), strict=False))
 
 
@@ -215,28 +214,44 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
         empty |= dict.fromkeys(record, '')
     names = list(empty)
     rows = [list((empty | record).values()) for record in records]
-    beside = [unit_beside(records[0], name) or units.get(name) for name in names]
-    units_of_columns = [_unit(each) for each in beside]
+    beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
     titles = [units.get(f'#{name}', name) for name in names]
-    return widened(table_of_cells(titles, rows, source, units=units_of_columns))
+    return widened(table_of_cells(titles, rows, source, units=beside))
 
 
-def _series(node: dict[str, Any], before: str, units: Cells) -> Iterator[Value]:
+def _series(node: Any, before: str, units: Cells) -> Iterator[Value]:
     """
     Yield the values of quantities that are lists of a time and a value, and note their units.
 
-    They are within groups at Ecowitt, and in ``values`` at api.weather.gov.
+    Their names are those of the lists, or texts beside these, as at Prometheus and SensorThings.
     """
-    for own, each in node.items():
+    own_names = node.items() if isinstance(node, dict) else (('', each) for each in list_of(node))
+    for own, each in own_names:
         inside = object_of(each)
-        name = f'{before}{own}'
-        pairs = _pairs(inside.get('list', inside.get('values', each)))
+        pairs = [] if any(map(is_wind, inside)) else _listed(each)
+        if not pairs:
+            yield from _series(inside, f'{own}_' if own else '', units)
+            continue
+        texts = dict(flat(inside))
+        name = f'{before}{own}' or next(filter(is_wind, texts.values()), '')
+        if is_wind(name) and name in units:
+            raise FormatError(
+                f'rows of several instruments: {name} occurs twice', cure='ask for one of them'
+            )
+        said = [text for key, text in texts.items() if _UNIT.search(key)]
+        units[name] = next(filter(_is_unit, said), said[0] if said else '')
         for time, value in pairs:
             yield 0, time, name, text_of(value)
-        if pairs:
-            units[name] = text_of(inside.get('unit', inside.get('uom', '')))
-        else:
-            yield from _series(inside, f'{own}_', units)
+
+
+def _is_unit(text: str) -> bool:
+    return any(unit_known(kind, text) for kind in ('speed', 'angle', 'acceleration'))
+
+
+def _listed(node: Any, depth: int = 2) -> list[tuple[str, Any]]:
+    """Return the times and values of a node or of what is in it; empty without."""
+    inner = (_listed(each, depth - 1) for each in object_of(node).values() if depth)
+    return _pairs(node) or next(filter(None, inner), [])
 
 
 def _pairs(listed: Any) -> list[tuple[str, Any]]:
@@ -244,14 +259,17 @@ def _pairs(listed: Any) -> list[tuple[str, Any]]:
     cells = [*listed.items()] if isinstance(listed, dict) else list_of(listed)
     found = []
     for each in cells:
-        if isinstance(each, list | tuple) and len(each) == 2:
-            each = dict(zip(('time', 'value'), each, strict=True))
         own = dict(object_of(each))
-        value = own.pop('value', None)
-        clock = cell_of(next(iter(own.values()), None))
-        if len(own) != 1 or not _CLOCK.match(clock):
+        values = [own.pop(name) for name in [*own] if rank_of(name, 'value') is not None]
+        parts = [*own.values(), *values]
+        if isinstance(each, list | tuple) and len(each) == 2:
+            parts = sorted(each, key=lambda part: not _CLOCK.match(cell_of(part)))
+        elif not values:
             return []
-        found.append((clock.partition('/P')[0], value))
+        clock = cell_of(next((part for part in parts if _CLOCK.match(cell_of(part))), None))
+        if not clock:
+            return []
+        found.append((clock.partition('/P')[0], parts[-1]))
     return found
 
 
@@ -263,10 +281,6 @@ def _states(node: list[Any]) -> Iterator[dict[str, Any]]:
             known = known | {'last_changed': state.get('last_updated')} | state
             if 'state' in state:
                 yield known
-
-
-def _unit(cell: Any) -> str:
-    return cell if isinstance(cell, str) else ''
 
 
 JSON = Layout('json', lambda lines: _BEGINS.match('\n'.join(lines)) is not None, _read_json_table)

@@ -5,32 +5,26 @@ Long tables: a row per value, with the name of its quantity in a cell.
 
 InfluxDB's annotated CSV has ``_time``, ``_value`` and ``_field`` below lines with a hash (docs of
 InfluxDB, Annotated CSV); Home Assistant's history has ``entity_id,state,last_changed``; those of
-wetterdienst, openSenseMap and DMI have the instrument of each value too. Each value holds until
+wetterdienst, openSenseMap and DMI have the instrument of each value too. The column of the names
+is that whose cells are most quantities of the wind. Each value holds until
 the next of its name, as Home Assistant stores changes alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 import re
 
 from tree_sway.errors import FormatError
 from tree_sway.files.cell_table import table_of_cells
-from tree_sway.files.column_names import folded, SENDERS
+from tree_sway.files.column_names import folded, rank_of, SENDERS
 from tree_sway.files.table_file import TextTable
 
-_COLUMNS = (
-    ('_time', '_field', '_value'),
-    ('last_changed', 'entity_id', 'state'),
-    ('date', 'parameter', 'value'),
-    ('createdAt', 'phenomenon', 'value'),
-    ('observed', 'parameterId', 'value'),
-    ('DT', 'ELEMENT', 'VAL'),
-)
-"""Columns of the time, the name and the value; one called ``unit`` may be beside them."""
-LONG_NAMES = frozenset(chain.from_iterable(_COLUMNS))
 _STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
+WIND = ('wind_speed', 'wind_direction', 'gust')
+_LOOKED_AT = 200
 _NO_STATE = ('unavailable', 'unknown', '')
 Value = tuple[int, str, str, str]
 """Line, time, name and value."""
@@ -66,29 +60,48 @@ def wide_table(
 
 def widened(table: TextTable) -> TextTable:
     """Return the wide table of a long one, which may be of one instrument only; others stay."""
-    names = [name.rpartition('.')[2] for name in table.columns]
-    wanted = next((each for each in _COLUMNS if {*each} <= {*names}), None)
-    if wanted is None:
+    last = tuple(name.rpartition('.')[2] for name in table.columns)
+    short = replace(table, columns=last)
+    wanted = [short.find_all(each)[:1] for each in ('time', 'value')]
+    first = range(min(len(table.texts), _LOOKED_AT))
+    columns = range(len(table.columns)) if all(wanted) else ()
+    known = [(sum(map(is_wind, {*table.cells(each, first)})), each) for each in columns]
+    most, name = max(known, default=(0, 0), key=lambda each: each[0])
+    if not most or [name] in wanted or any(map(is_wind, table.columns)):
         return table
     units: dict[str, str] = {}
-    values = _values(table, names, wanted, units)
-    return wide_table(values, table.source, wanted[0], units)
+    clock, value = (each[0] for each in wanted)
+    values = _values(short, (clock, name, value), units)
+    return wide_table(values, table.source, table.columns[clock], units)
 
 
-def _values(
-    table: TextTable, names: list[str], wanted: tuple[str, ...], units: dict[str, str]
-) -> Iterator[Value]:
+def is_wind(name: str) -> bool:
+    """Whether a text is the name of a quantity of the wind, maybe behind that of a station."""
+    plain = _STATION.sub('', name, count=1)
+    return any(rank_of(plain, each) is not None for each in WIND)
+
+
+def unit_for(name: str, units: Mapping[str, str]) -> str:
+    """Return the unit of a name, or that of the quantity of the wind which it names."""
+    quantities = [each for each in WIND if rank_of(name, each) is not None][:1]
+    same = (units[each] for each in units for of in quantities if rank_of(each, of) is not None)
+    return units.get(name) or next(same, '')
+
+
+def _values(table: TextTable, wanted: Sequence[int], units: dict[str, str]) -> Iterator[Value]:
     """Yield the values of a long table, and note the units of their names."""
-    senders = [name for name in names if folded(name) in SENDERS[:-1]]
+    names = table.columns
+    senders = [i for i, name in enumerate(names) if folded(name) in SENDERS[:-1]]
+    senders = [each for each in senders if each not in wanted]
+    units_at = [i for i, name in enumerate(names) if folded(name).startswith('unit')]
     sender_of: dict[str, str] = {}
     for line, text in zip(table.numbers, table.texts, strict=True):
         cells = table.split(text)
         # There is a header above each of several tables.
-        if len(cells) < len(names) or {*wanted} <= {*cells} or text.startswith('#'):
+        if len(cells) < len(names) or cells[wanted[2]] == table.columns[wanted[2]]:
             continue
-        record = dict(zip(names, cells, strict=False))
-        time, name, value = (record[each] for each in wanted)
-        sender = ' '.join(record[each] for each in senders)
+        time, name, value = (cells[each] for each in wanted)
+        sender = ' '.join(cells[each] for each in senders)
         first = sender_of.setdefault(name, sender)
         if sender != first:
             raise FormatError(
@@ -97,5 +110,5 @@ def _values(
                 cure='write a table for each',
             )
         if value not in _NO_STATE:
-            units.setdefault(name, record.get('unit', record.get('unit_of_measurement', '')))
+            units.setdefault(name, cells[units_at[0]] if units_at else '')
             yield line, time, name, value

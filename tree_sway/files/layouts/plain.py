@@ -22,13 +22,14 @@ from tree_sway.files.column_names import (
     unit_known,
 )
 from tree_sway.files.layouts.layout import Layout
-from tree_sway.files.layouts.long import LONG_NAMES
 from tree_sway.files.table_file import parse_table, separator_of, split_row, TextTable
 
 _HEAD = 40
 _MOST_COLUMNS = 200
 _MOST_BELOW = 3
 _NUMBER = re.compile(r'[-+]?[\d.,:]+(?:[eE][-+]?\d+)?|nan|NaN|NULL|null')
+_BETWEEN = re.compile(r'[,;:=\t|()\[\]]|\bin\b')
+"""What is between a name, what it means and its unit."""
 _DIGIT = re.compile(r'[-+]?\.?\d')
 _COMMENT = re.compile(r'(?:[#%/ ]+|;) *(?:[Hh]eaders\s*,)? *')
 _PARTS = ('yyyymmdd', 'yyyy', 'year', 'yy', 'mess_datum', 'hora utc', 'vuosi')
@@ -36,7 +37,17 @@ _KINDS = ('speed', 'acceleration', 'rate')
 """Kinds of units of which a row of units has at least one."""
 _SIZES = ('height', 'diameter', 'girth')
 _KNOWN = (
-    *('time', 'wind_speed', 'wind_direction', 'wind_x', 'wind_y', 'gust', 'species', 'genus'),
+    *(
+        'time',
+        'wind_speed',
+        'wind_direction',
+        'wind_x',
+        'wind_y',
+        'gust',
+        'value',
+        'species',
+        'genus',
+    ),
     *('x', 'y', 'latitude', 'longitude', 'place', *_SIZES),
 )
 """Quantities whose names tell the header."""
@@ -85,8 +96,7 @@ def is_known(cell: str) -> bool:
         return cell.lower() in _PARTS
     motion = motion_of(cell)
     is_axis = motion is not None and motion[2] != ''
-    is_long = cell in LONG_NAMES
-    return is_axis or is_long or any(rank_of(cell, each) is not None for each in _KNOWN)
+    return is_axis or any(rank_of(cell, each) is not None for each in _KNOWN)
 
 
 def _is_table(lines: Sequence[str]) -> bool:
@@ -134,7 +144,7 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
     above = [[*map(_unit_below, row)] for row in split if len(row) == len(table.columns)]
     rows = [row for row in (*words, *above) if _are_units(table, row)]
     if not rows:
-        return table
+        return replace(table, units=units_above(table, table.above))
     below = len(words) if rows[0] in words else 0
     units = [
         '' if rank_of(name, 'time') is not None and not unit_known('time', cell) else cell
@@ -147,6 +157,18 @@ def _without_rows_of_units(table: TextTable) -> TextTable:
         units=tuple(units),
         unit_line=table.numbers[words.index(rows[0])] if below else table.header_line,
     )
+
+
+def units_above(table: TextTable, above: Sequence[str]) -> tuple[str, ...]:
+    """Return units of columns that lines tell, as ``# WSPD: wind speed (knots)``; may be empty."""
+    said = [[part.strip('#%/" ') for part in _BETWEEN.split(line)] for line in above]
+
+    def unit_of(column: str) -> str:
+        kinds = [COLUMNS[each]['unit'] for each in _KNOWN if rank_of(column, each) is not None]
+        parts = (part for line in said if column in line for part in line if part != column)
+        return next((part for part in parts if any(unit_known(k, part) for k in kinds)), '')
+
+    return tuple(map(unit_of, table.columns))
 
 
 def _are_units(table: TextTable, cells: Sequence[str]) -> bool:

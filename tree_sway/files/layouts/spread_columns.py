@@ -15,6 +15,7 @@ from typing import Any
 from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.column_names import rank_of
 from tree_sway.files.json_values import DEEPEST, list_of, object_of, text_of
+from tree_sway.files.layouts.long import unit_for
 from tree_sway.files.table_file import TextTable
 
 _OF_QUANTITY = ('data', 'values')
@@ -36,7 +37,9 @@ def spread_table(node: Any, units: Mapping[str, Any], source: str) -> TextTable 
         return None
     rows = zip(*(map(text_of, columns[name]) for name in names), strict=True)
     told = {name: unit for name, unit in units.items() if isinstance(unit, str)} | own
-    return table_of_cells(names, list(rows), source, units=[told.get(name, '') for name in names])
+    return table_of_cells(
+        names, list(rows), source, units=[unit_for(name, told) for name in names]
+    )
 
 
 def _lists(
@@ -53,6 +56,11 @@ def _lists(
         elif len(list_of(each)) > 1:
             if not isinstance(each[0], dict | list):
                 yield (quantity if name in _OF_QUANTITY else name), each
+            elif {*map(len, map(list_of, each))} <= {3, 4}:
+                axes = zip(*each, strict=False)
+                yield from (
+                    (f'{name}.{axis}', list(of)) for axis, of in zip('xyzw', axes, strict=False)
+                )
         else:
             yield from _lists(each, name, units, depth + 1)
 

@@ -30,6 +30,7 @@ from tree_sway.files.column_names import (
     folded,
     motion_of,
     name_and_unit,
+    SENDERS,
     unit_known,
 )
 from tree_sway.files.layouts.known import table_of
@@ -94,7 +95,7 @@ def read_motion_table(path: Path) -> MotionRecord:
         about = next((each for name, each in lines_of.items() if name.endswith(_ABOUT)), [])
     for name, lines in lines_of.items():
         try:
-            records.append(_record(name, lines, about))
+            records += [_record(table, about) for table in _by_sensor(table_of(lines, name))]
         except FormatError as error:
             failures.append(error)
     if not records:
@@ -102,9 +103,31 @@ def read_motion_table(path: Path) -> MotionRecord:
     return _joined(records, str(path))
 
 
-def _record(source: str, lines: list[str], about: Sequence[str]) -> MotionRecord:
-    """Return the motion of the lines of a table; others tell about the phone."""
-    table = table_of(lines, source)
+def _by_sensor(table: TextTable) -> list[TextTable]:
+    """Return the rows of each sensor of motion, where a column names it, as tables of files."""
+    moves = {quantity: words for quantity, words in FILES_OF.items() if quantity}
+    for index, column in enumerate(table.columns):
+        rows: dict[str, list[int]] = {}
+        names = table.cells(index, range(len(table.texts))) if folded(column) in SENDERS else ()
+        for row, name in enumerate(names):
+            rows.setdefault(name, []).append(row)
+        told = [each for each in rows if any(w.search(folded(each)) for w in moves.values())]
+        if len(told) > 1 and min(len(rows[each]) for each in told) > 1:
+            return [
+                replace(
+                    table,
+                    numbers=[table.numbers[row] for row in of_one],
+                    texts=[table.texts[row] for row in of_one],
+                    source=f'{table.source}/{name}',
+                )
+                for name, of_one in ((each, rows[each]) for each in sorted(told))
+            ]
+    return [table]
+
+
+def _record(table: TextTable, about: Sequence[str]) -> MotionRecord:
+    """Return the motion of a table; lines tell about the phone."""
+    source = table.source
     table.refuse_several()
     clock = time_columns(table)
     stem = folded(Path(source).stem)

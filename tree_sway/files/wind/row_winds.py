@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import unit_factor
-from tree_sway.files.table_file import Column, TextTable
+from tree_sway.files.table_file import are_nines, Column, TextTable
+from tree_sway.files.text_file import finite
 from tree_sway.files.wind.compass import degrees_of, FULL_CIRCLE, velocity_to
 from tree_sway.files.wind.record import WindRows
 
@@ -51,6 +52,8 @@ def winds_of_directions(
     A direction may be missing in a calm. Rows are refused without a speed or a direction.
     """
     speeds = table.values([speed.index])[:, 0] * speed.factor
+    cells = table.cells(speed.index, range(len(speeds)))
+    speeds[are_nines(cells, speeds / speed.factor)] = np.nan
     degrees, texts = _degrees(table, direction)
     degrees = np.where(np.isnan(degrees) & (np.abs(speeds) < _CALM), 0.0, degrees)
     has_speed = speeds >= 0.0
@@ -61,6 +64,8 @@ def winds_of_directions(
             why = _why_no_direction(name, texts[row], degrees[row])
         elif speeds[row] < 0.0:
             why = f'speed is {speeds[row]:g}'
+        elif finite(cells[row]) is not None:
+            why = f"speed is '{cells[row]}', taken as missing"
         else:
             why = table.why_none(row, [speed.index])
         rows.refuse(table.numbers[row], why)

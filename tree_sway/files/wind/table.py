@@ -85,12 +85,14 @@ def read_table_wind(
     time = time_columns(table)
     components = _components(table, columns)
     if time is not None and components:
-        notes += _repeated(table, components)
+        notes += _repeated(table, components[0], 'wind_x')
         winds = winds_of_components(table, components, rows)
         convention = direction_convention or 'to'
     else:
         found = table.find('wind_speed')
         places = table.find_all('wind_direction')
+        usual = 'from' if places else 'to'
+        places = places or table.find_all('wind_to')
         places = [each for each in places if found is None or each != found.index]
         from_where: Column | float | None = direction
         if places:
@@ -104,8 +106,8 @@ def read_table_wind(
         factor, note = speed_factor(table, found.index, 'wind_speed', speed_unit)
         notes += [note] if note else []
         speed = Column(found.index, factor)
-        notes += _repeated(table, [speed])
-        convention = direction_convention or 'from'
+        notes += _repeated(table, speed, 'wind_speed')
+        convention = direction_convention or (usual if places else 'from')
         winds = winds_of_directions(table, speed, from_where, rows, yaw, convention)
         notes += _doubt(table, from_where)
         yaw = 0.0
@@ -151,11 +153,16 @@ def _at_one_height(table: TextTable) -> tuple[TextTable, str]:
     return replace(table, columns=tuple(names)), note
 
 
-def _repeated(table: TextTable, used: list[Column]) -> list[str]:
-    """Return a note on a used column of which there are more of the same name."""
-    names = [table.columns[column.index] for column in used]
-    twice = [name for name in names if table.columns.count(name) > 1][:1]
-    return [f'of {table.columns.count(name)} columns {name} the first is read' for name in twice]
+def _repeated(table: TextTable, used: Column, quantity: str) -> list[str]:
+    """Return a note on a used column of which there are more with names as good."""
+    name = table.columns[used.index]
+    rank = rank_of(name, quantity)
+    alike = [each for each in table.columns if each and rank_of(each, quantity) == rank]
+    if len(alike) < 2 or rank is None:
+        return []
+    names = list(dict.fromkeys(alike))
+    which = 'the first' if len(names) == 1 else name
+    return [f'of {len(alike)} columns {", ".join(names)} {which} is read']
 
 
 def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:

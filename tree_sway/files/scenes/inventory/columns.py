@@ -14,13 +14,10 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import rank_of, unit_factor, unit_known
 from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
-from tree_sway.files.table_file import Column, TextTable
+from tree_sway.files.table_file import are_nines, Column, TextTable
 
 _NUMBERED = re.compile(r'(?<=[^\W\d])[ _]?[1-9](?=$|[ _(\[])')
 """Number of a stem in the name of a column."""
-_NINES = re.compile(r'99+(?:[.,][09]+)?')
-_MUCH = 4.0
-"""Times the largest other number that a code of a missing value is."""
 
 
 class InventoryColumns:
@@ -137,10 +134,8 @@ class InventoryColumns:
     def _drop_nines(self, values: Floats, index: int) -> None:
         """Take ``99``, ``999`` and so on for a missing value where no other is nearly as large."""
         cells = self.table.cells(index, range(self.n_rows))
-        is_code = np.array([_NINES.fullmatch(cell) is not None for cell in cells], dtype=np.bool_)
-        others = values[~is_code & np.isfinite(values)]
-        is_code &= values > _MUCH * np.max(others, initial=0.0)
-        if len(others) and is_code.any():
+        is_code = are_nines(cells, values)
+        if is_code.any():
             name, cell = self.table.columns[index], cells[int(np.argmax(is_code))]
             self.note(f"{is_code.sum()} cells of {name} such as '{cell}' are taken as missing")
             values[is_code] = np.nan

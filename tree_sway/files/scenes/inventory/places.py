@@ -30,10 +30,13 @@ _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
 
 _DMS = re.compile(
-    r"(\d+)\s*°\s*(\d+(?:\.\d+)?)\s*['′’]\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|”|''))?\s*([NSEW])"
+    r"([NSEW]?)\s*(-?\d+)\s*°\s*(\d+(?:\.\d+)?)\s*['′’]\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|″|”|''))?\s*([NSEW]?)"
 )
 """Degrees, minutes and maybe seconds, and the side of the equator or of Greenwich."""
 
+_LEAST_NORTHING = 3.5e6
+_MOST_EASTING = 9e5
+"""Places of systems such as UTM in the middle latitudes [m]."""
 _FEW_DIGITS = 1
 _CLOSEST = 0.1
 """Mean distance of trees below which places of `_FEW_DIGITS` are degrees too [m]."""
@@ -87,15 +90,17 @@ def _degrees(columns: InventoryColumns, index: int) -> Floats:
 
 def _decimal(parts: re.Match[str]) -> float:
     """Return degrees, minutes and seconds as degrees, negative in the south and west."""
-    degrees, minutes, seconds = (float(part or 0.0) for part in parts.groups()[:3])
-    sign = -1.0 if parts[4] in ('S', 'W') else 1.0
-    return sign * (degrees + minutes / 60.0 + seconds / 3600.0)
+    degrees, minutes, seconds = (float(part or 0.0) for part in parts.groups()[1:4])
+    is_negative = parts[2].startswith('-') or bool({'S', 'W'} & {parts[1], parts[5]})
+    sign = -1.0 if is_negative else 1.0
+    return sign * (abs(degrees) + minutes / 60.0 + seconds / 3600.0)
 
 
 def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
     """Read columns of x and y, which may be degrees for all that."""
     x, _ = columns.numbers(east.index)
     y, _ = columns.numbers(north.index)
+    names = f'{columns.table.columns[east.index]} and {columns.table.columns[north.index]}'
     digits = min(_digits(columns, east.index), _digits(columns, north.index))
     if _in_range(x, _MOST_LONGITUDE) and _in_range(y, _MOST_LATITUDE):
         reason = ''
@@ -104,9 +109,12 @@ def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
         elif digits >= _FEW_DIGITS and _distance(x, y) < _CLOSEST:
             reason = 'as the trees would touch in metres'
         if reason:
-            names = f'{columns.table.columns[east.index]} and {columns.table.columns[north.index]}'
             columns.note(f'{names} are taken as longitude and latitude, {reason}')
             return _of_degrees(columns, y, x)
+    # No easting in metres is as far as this, and no northing with one is as near.
+    if np.nanmedian(x) > _LEAST_NORTHING > _MOST_EASTING > np.nanmedian(y) > 0.0:
+        columns.note(f'{names} are taken as north and east, by their size')
+        return _near_origin(columns, y * north.factor, x * east.factor)
     return _near_origin(columns, x * east.factor, y * north.factor)
 
 

@@ -27,6 +27,8 @@ _THICKEST = 12.0
 """Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
+_THINNEST = 195.0
+"""Height over diameter that the middle tree of no inventory exceeds."""
 _MIDDLING = 45.0
 """Usual height over diameter of a tree of a city, up to a middling stem."""
 _MIDDLING_STEM = 0.25
@@ -164,6 +166,13 @@ def heights_of(
             why = 'as the trees stand in the United States' if is_in_states else 'by their size'
             columns.note(f'{name} is taken as feet, {why}; call it {name} [m] if it is')
     height = values * factor
+    ratio = 0.0 if diameter is None else _slenderness(height, diameter)
+    if unit and ratio > _THINNEST:
+        raise columns.table.error(
+            f'stems in {name} are {ratio:.0f} times as high as they are thick: are height and '
+            'diameter swapped?',
+            cure='correct the names or the units in the header',
+        )
     for row in np.flatnonzero(height > _TALLEST).tolist():
         detail = f'{name} is {values[row]:g}, a height of {height[row]:g} m'
         columns.leave_out(row, 'too high', f'{detail}; give its unit, as in height [cm]')
