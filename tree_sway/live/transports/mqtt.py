@@ -18,8 +18,9 @@ import ssl
 import struct
 import time
 
+from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.stream_lines import READ_FOR, received
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.transport import Message
 
 PORT, TLS_PORT = 1883, 8883
 """Ports of MQTT without and with TLS."""
@@ -55,7 +56,7 @@ class Mqtt:
         scheme = 'mqtts' if self.is_encrypted else 'mqtt'
         return f'{scheme}://{self.host}:{self.port}/{",".join(self.topics)}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each message of the topics."""
         with self._connected() as link:
             link.sendall(_packet(_CONNECT, self._greeting()))

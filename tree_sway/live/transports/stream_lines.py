@@ -10,7 +10,8 @@ import socket
 import time
 
 from tree_sway.live.transports.lines import Lines, LONGEST
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 READ_FOR = 0.1
 """Interval at which a silent stream checks whether to end [s]."""
@@ -44,7 +45,7 @@ NO_QUESTION = Question()
 
 
 def deliver_lines(
-    receiver: Receiver,
+    receiver: Link,
     read: Callable[[], bytes],
     write: Callable[[bytes], object],
     question: Question,
