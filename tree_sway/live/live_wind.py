@@ -307,4 +307,4 @@ def described(reading: WindReading, bearing: float) -> str:
     text = f'{reading.speed:.1f} m/s from {point} ({reading.kind})'
     if reading.bearing is None:
         text += ', its direction is assumed'
-    return text
+    return ', '.join(filter(None, (text, reading.assumed)))
