@@ -13,6 +13,7 @@ from typing import TypeVar
 from urllib.parse import parse_qsl, SplitResult, unquote, urlsplit
 
 from tree_sway.errors import FormatError, nearest, ParameterError, shown
+from tree_sway.files import finite
 
 T = TypeVar('T')
 
@@ -82,11 +83,8 @@ class SourceAddress:
         text = self.text_of(name)
         if not text:
             return default
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (low <= value <= high and math.isfinite(value)):
+        value = finite(text)
+        if value is None or not low <= value <= high:
             raise self.error(f"{name} is '{text}', not a number from {low:g} to {high:g}")
         return value
 
