@@ -239,6 +239,28 @@ def test_lines_that_nobody_understands_are_told_within_five_seconds(hear, send, 
     assert heard.wind.state == 'unknown'
 
 
+@pytest.mark.parametrize('noise', [b'\xf8\x80' * 40, b'\xf8\x80\n'])
+def test_noise_of_a_wrong_baud_rate_is_told(hear, serial_port, noise: bytes) -> None:
+    name, write = serial_port
+    heard = hear(f'serial:{name}:2400')
+    heard.until(lambda: heard.wind.link.is_up)
+    heard.until(lambda: told(heard, 'baud rate'), lambda: write(noise))
+    assert heard.wind.state == 'unknown'
+
+
+def test_a_speed_without_a_unit_is_told_once(hear, send, port) -> None:
+    heard = hear(f'udp://127.0.0.1:{port}')
+    heard.until(
+        lambda: heard.wind.accepted > 3,
+        lambda: send(port, b'{"wind_speed": 5.3, "wind_direction": 270}'),
+    )
+    assert sum('taken in m/s' in said and 'unit=km/h' in said for said in heard.said) == 1
+    read = open_source('udp:5006?unit=m/s').source.read
+    (reading,) = read(Message(b'{"wind_speed": 5.3, "wind_direction": 270}'))
+    assert isinstance(reading, WindReading)
+    assert not reading.assumed
+
+
 def test_silence_is_told(hear, port) -> None:
     heard = hear(f'udp://127.0.0.1:{port}')
     heard.until(lambda: told(heard, 'nothing has come yet'))

@@ -16,8 +16,8 @@ import time
 
 from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
-from tree_sway.live.transports.link import Link, LONGEST_PAUSE
-from tree_sway.live.transports.transport import Message, Transport
+from tree_sway.live.transports.link import Link, LONGEST_PAUSE, Transport
+from tree_sway.live.transports.transport import Message
 
 _LOOK = 0.5
 """Interval at which it is looked whether anything comes [s]."""

@@ -24,7 +24,7 @@ from tree_sway.files.wind import Velocity
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.registry import OpenedSource
 from tree_sway.live.transports.transport import Message
 from tree_sway.simulation.wind import LEAST_INTERVAL
@@ -208,7 +208,7 @@ class LiveWind(LiveSource):
             assert isinstance(reading, WindReading)
             self._use(reading)
 
-    def _is_good(self, reading: Reading, origin: str) -> bool:
+    def _is_good(self, reading: object, origin: str) -> bool:
         """Count a reading; whether it is a wind of the sender that is followed."""
         cause = reading.reason if isinstance(reading, Refusal) else ''
         if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
@@ -307,4 +307,4 @@ def described(reading: WindReading, bearing: float) -> str:
     text = f'{reading.speed:.1f} m/s from {point} ({reading.kind})'
     if reading.bearing is None:
         text += ', its direction is assumed'
-    return text
+    return ', '.join(filter(None, (text, reading.assumed)))

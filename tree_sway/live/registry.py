@@ -9,7 +9,6 @@ import importlib
 import math
 from typing import NamedTuple
 
-from tree_sway.errors import nearest, ParameterError
 from tree_sway.live import sources
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import read_source_address
@@ -70,15 +69,9 @@ def open_source(text: str) -> OpenedSource:
     """
     address = read_source_address(text)
     kinds = {scheme: kind for kind in source_kinds() for scheme in kind.schemes}
-    if address.scheme not in kinds:
-        forms = ', '.join(kind.form for kind in source_kinds())
-        guess = nearest(address.scheme, kinds)
-        raise ParameterError(
-            f"'{text}' is no source of wind",
-            where='sensor',
-            cure='; '.join(filter(None, (guess, f'give one of {forms}'))),
-        )
-    module = importlib.import_module(f'{sources.__name__}.{kinds[address.scheme].module}')
+    forms = ', '.join(kind.form for kind in source_kinds())
+    kind = address.kind_of(kinds, 'source of wind', 'sensor', forms)
+    module = importlib.import_module(f'{sources.__name__}.{kind.module}')
     source: Source = module.open_source(address)
     name = address.name
     bearing = address.angle('from_degrees', WEST)

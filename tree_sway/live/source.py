@@ -1,13 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A live source of wind: a transport, and the reader of its messages."""
+"""A live source of wind or motion: a transport, and the reader of its messages."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from tree_sway.live.reading import Read
-from tree_sway.live.transports.transport import Transport
+from tree_sway.live.motion.motion_reading import MotionReading
+from tree_sway.live.reading import Reading
+from tree_sway.live.transports.link import Transport
+from tree_sway.live.transports.transport import Message
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,8 @@ class Source:
     transport
         Way in which messages arrive.
     read
-        Function that reads a message.
+        Function that returns what a message says, empty if it is about something else. It never
+        raises.
     name
         Short name for viewers, such as ``open-meteo``.
     expects
@@ -32,13 +36,16 @@ class Source:
         Time for which a mean is used [s]; three intervals if None.
     messages
         Word for its messages in reports.
+    ticks
+        Ticks of the sender's clock per second, for samples of motion; None to estimate them.
 
     """
 
     transport: Transport
-    read: Read
+    read: Callable[[Message], Sequence[Reading | MotionReading]]
     name: str
     expects: str
     interval: float | None = None
     lasts: float | None = None
     messages: str = 'messages'
+    ticks: float | None = None

@@ -4,13 +4,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 import math
 from pathlib import Path
 import re
+from typing import TypeVar
 from urllib.parse import parse_qsl, SplitResult, unquote, urlsplit
 
 from tree_sway.errors import FormatError, nearest, ParameterError, shown
+from tree_sway.files import finite
+
+T = TypeVar('T')
 
 _LONGEST_NAME = 120
 _SCHEME = re.compile(r'([a-z][a-z0-9-]*)(?=[:?#]|$)')
@@ -78,11 +83,8 @@ class SourceAddress:
         text = self.text_of(name)
         if not text:
             return default
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (low <= value <= high and math.isfinite(value)):
+        value = finite(text)
+        if value is None or not low <= value <= high:
             raise self.error(f"{name} is '{text}', not a number from {low:g} to {high:g}")
         return value
 
@@ -118,6 +120,15 @@ class SourceAddress:
             if name not in self.known:
                 cure = nearest(name, self.known) or f'it has {", ".join(sorted(self.known))}'
                 raise ParameterError(f"no option '{name}'", where=self.text, cure=cure)
+
+    def kind_of(self, kinds: Mapping[str, T], what: str, where: str, forms: str) -> T:
+        """Return the kind of its scheme; a `ParameterError` for one that is not there."""
+        if self.scheme not in kinds:
+            cures = nearest(self.scheme, kinds), f'give one of {forms}'
+            raise ParameterError(
+                f"'{self.text}' is no {what}", where=where, cure='; '.join(filter(None, cures))
+            )
+        return kinds[self.scheme]
 
     def error(self, what: str, cure: str = '') -> ParameterError:
         """Make an error of this address."""

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from tree_sway.live.transports.link import Link
-from tree_sway.live.transports.transport import Message, Transport
+from tree_sway.live.transports.link import Link, Transport
+from tree_sway.live.transports.transport import Message
 
 DEADLINE = 10.0
 

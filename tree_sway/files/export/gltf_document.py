@@ -104,8 +104,7 @@ class GltfDocument:
         buffers = [{'byteLength': len(self._bytes)}]
         text = json.dumps({**self._json, 'buffers': buffers}, separators=(',', ':')).encode()
         text += b' ' * (-len(text) % 4)
-        size = 12 + 8 + len(text) + 8 + len(self._bytes)
-        head = struct.pack('<4sII', b'glTF', 2, size)
-        head_of_text = struct.pack('<I4s', len(text), b'JSON')
-        head_of_bytes = struct.pack('<I4s', len(self._bytes), b'BIN\0')
-        return head + head_of_text + text + head_of_bytes + bytes(self._bytes)
+        chunks = b''
+        for kind, data in ((b'JSON', text), (b'BIN\0', self._bytes)):
+            chunks += struct.pack('<I4s', len(data), kind) + data
+        return struct.pack('<4sII', b'glTF', 2, 12 + len(chunks)) + chunks

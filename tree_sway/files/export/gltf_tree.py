@@ -76,14 +76,13 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     primitives = []
     for material, mesh in _meshes(tree, leaves, _SHOOTS):
         points = mesh.placed(poses)
-        normals = _normals(mesh, poses)
         primitive = _primitive(
             document,
             material,
             tree.species,
             mesh,
             POSITION=_add_floats(document, points, bounds=True),
-            NORMAL=_add_floats(document, normals),
+            NORMAL=_add_floats(document, mesh.turned(poses)),
         )
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
@@ -138,7 +137,7 @@ def morphing_tree(
             tree.species,
             mesh,
             POSITION=_add_floats(document, (points - middle) / size, bounds=True),
-            NORMAL=add(document, _normals(mesh, rest)),
+            NORMAL=add(document, mesh.turned(rest)),
         )
         primitive['targets'] = [
             {'POSITION': add(document, change / most, bounds=True)}
@@ -178,10 +177,6 @@ def _meshes(tree: Tree, leaves: LeafClusters | None, shoots: int) -> list[tuple[
     if leaves is None:
         return [wood]
     return [wood, ('leaves', crown_mesh(tree, leaves, look_of(tree.species).spray, shoots))]
-
-
-def _normals(mesh: TreeMesh, poses: Floats) -> Floats:
-    return np.asarray(Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals))
 
 
 def _add_floats(document: GltfDocument, values: Floats, **options: bool) -> int:

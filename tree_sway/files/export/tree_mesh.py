@@ -53,6 +53,10 @@ class TreeMesh:
         rotation = Rotation.from_quat(own[:, 3:])
         return own[:, :3] + rotation.apply(self.points)
 
+    def turned(self, poses: Floats) -> Floats:
+        """Return the normals of the vertices, (v, 3), in the frame of poses (n, 7)."""
+        return np.asarray(Rotation.from_quat(poses[self.segment, 3:]).apply(self.normals))
+
 
 def wood_mesh(tree: Tree) -> TreeMesh:
     """

@@ -152,7 +152,6 @@ def _mesh(
 ) -> str:
     """Write a mesh whose vertices move with one joint each."""
     points = mesh.placed(poses)
-    normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
     one_each = 'elementSize = 1\n    interpolation = "vertex"'
     return f"""\
 def Mesh "{kind}" (prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"])
@@ -164,7 +163,7 @@ uniform token subdivisionScheme = "none"
 int[] faceVertexCounts = {[3] * len(mesh.triangles)}
 int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}
 point3f[] points = {_tuples(points)}
-normal3f[] normals = {_tuples(normals)} (interpolation = "vertex")
+normal3f[] normals = {_tuples(mesh.turned(poses))} (interpolation = "vertex")
 texCoord2f[] primvars:st = {_tuples(mesh.texture)} (interpolation = "vertex")
 color3f[] primvars:displayColor = {_tuples(np.array([color]))}
 int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})

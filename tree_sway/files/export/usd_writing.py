@@ -11,6 +11,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 import io
 from pathlib import Path
+import struct
 import tempfile
 import zipfile
 
@@ -70,8 +71,6 @@ def _packed(files: dict[str, bytes]) -> bytes:
             entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
             begin = packed.tell() + _HEADER + len(name.encode()) + 4
             padding = -begin % _ALIGNED
-            entry.extra = (
-                _PADDING_ID.to_bytes(2, 'little') + padding.to_bytes(2, 'little') + bytes(padding)
-            )
+            entry.extra = struct.pack('<HH', _PADDING_ID, padding) + bytes(padding)
             archive.writestr(entry, data)
     return packed.getvalue()

@@ -37,6 +37,8 @@ class WindReading:
         Name of the station, where the message has it.
     sender
         What the message says of the instrument that it is of, as its serial number.
+    assumed
+        What was assumed of it, and how to change that; empty if nothing was.
 
     """
 
@@ -49,6 +51,7 @@ class WindReading:
     time: float | None = None
     place: str = ''
     sender: str = ''
+    assumed: str = ''
 
     def velocity(self, bearing: float) -> Velocity:
         """

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
-import threading
 import time
 from typing import Any
 
@@ -14,6 +13,7 @@ from tree_sway.errors import ParameterError
 from tree_sway.live.camera.camera_view import CameraView, opencv
 from tree_sway.live.camera.point_tracker import Sighting
 from tree_sway.twin.camera import Camera
+from tree_sway.worker import Worker
 
 _PREFIX = 'camera:'
 _AGAIN = 3.0
@@ -127,31 +127,21 @@ class FilmPoints:
         self._sightings.append(seen)
 
 
-class LiveFilm(FilmPoints):
+class LiveFilm(FilmPoints, Worker):
     """Points of a live camera, followed in a view of it from `start` to `stop`."""
 
     def __init__(self, film: Film, view: CameraView, log: Callable[[str], None]) -> None:
-        super().__init__(film.name, log)
+        FilmPoints.__init__(self, film.name, log)
+        Worker.__init__(self, 'camera')
         self._film, self.view = film, view
         self.picture = view.drawn
         """Draws what it sees as a JPEG; called in a thread of its own."""
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
         self.problem = 'no picture yet'
         """Why no picture comes; empty if they come."""
 
-    def start(self) -> None:
-        """Begin."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """End."""
-        self._stop.set()
-        self._thread.join(timeout=2.0)
-
     def _run(self) -> None:
         try:
-            while not self._stop.is_set():
+            while not self.is_stopping:
                 at, picture = self._film.newest()
                 if picture is not None:
                     self._say('')
@@ -160,7 +150,7 @@ class LiveFilm(FilmPoints):
                     self._add(seen)
                     continue
                 self._say('no picture comes: check the camera and its connection')
-                self._stop.wait(_AGAIN)
+                self._stopping.wait(_AGAIN)
                 self._film.open_again()
         except Exception as error:  # of OpenCV: the tree goes on without a camera
             self._say(f'it stopped ({type(error).__name__}: {error})')

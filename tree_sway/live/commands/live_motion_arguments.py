@@ -7,10 +7,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, ExitStack
-import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tree_sway.errors import ParameterError
+from tree_sway.live.commands.sensor_arguments import say
 from tree_sway.live.commands.sensor_places import add_place_argument, sensors_and_places
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ def sensing(
     from tree_sway.live import LiveMotion, MotionFeed, open_motion
     from tree_sway.live.motion.motion_feed import PlacedSensor
 
+    say_motion = partial(say, kind='motion')
     placed = []
     addresses = set[str]()
     for number, (url, at) in enumerate(sensors_and_places(arguments)):
@@ -66,7 +68,7 @@ def sensing(
             )
         addresses.add(address)
         tell = heard[number] if heard else None
-        placed.append(PlacedSensor(LiveMotion(opened, _say, heard=tell), at))
+        placed.append(PlacedSensor(LiveMotion(opened, say_motion, heard=tell), at))
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
         raise ParameterError(
@@ -79,9 +81,3 @@ def sensing(
             each.live.start()
             stack.callback(each.live.stop)
         yield feed
-
-
-def _say(text: str) -> None:
-    """Print a line of news of a sensor."""
-    # In one piece with its end: each sensor tells its news from its own thread.
-    print(f'motion: {text}\n', end='', file=sys.stderr, flush=True)

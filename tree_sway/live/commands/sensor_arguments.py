@@ -38,9 +38,9 @@ def add_sensor_argument(parser: argparse.ArgumentParser, *others: str) -> None:
     parser.add_argument('--sensor', *others, metavar='SOURCE', help=HELP)
 
 
-def say(text: str) -> None:
+def say(text: str, kind: str = 'sensor') -> None:
     """Print a line of news of a source, in one write: threads of sources print as well."""
-    print(f'sensor: {text}\n', end='', file=sys.stderr, flush=True)
+    print(f'{kind}: {text}\n', end='', file=sys.stderr, flush=True)
 
 
 @contextmanager

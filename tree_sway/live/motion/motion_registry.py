@@ -7,23 +7,22 @@ from __future__ import annotations
 from typing import NamedTuple
 from urllib.parse import unquote
 
-from tree_sway.errors import nearest, ParameterError
 from tree_sway.live.motion.motion_json import EXPECTS, read_motion_json
-from tree_sway.live.motion.motion_reading import MotionSource
 from tree_sway.live.motion.phyphox import EXPECTS as OF_PHYPHOX
 from tree_sway.live.motion.phyphox import PhyphoxPhone
+from tree_sway.live.source import Source
 from tree_sway.live.source_address import read_source_address, SourceAddress
 from tree_sway.live.sources.mqtt_topic import broker_of
 from tree_sway.live.sources.udp_line import udp_of
 
-FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
+_FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
 """Addresses as examples."""
 
 
 class OpenedMotion(NamedTuple):
     """A source of motion, and its name for viewers."""
 
-    source: MotionSource
+    source: Source
     name: str
 
 
@@ -45,24 +44,18 @@ def open_motion(text: str) -> OpenedMotion:
         A library that it needs is not installed.
 
     """
-    forms = f'give one of {", ".join(FORMS)}'
-    address = read_source_address(text, '--motion', forms)
+    forms = ', '.join(_FORMS)
+    address = read_source_address(text, '--motion', f'give one of {forms}')
     known = {
         'http': _phyphox, 'https': _phyphox, 'udp': _udp, 'mqtt': _mqtt, 'mqtts': _mqtt,
     }  # fmt: skip
-    if address.scheme not in known:
-        raise ParameterError(
-            f"'{text}' is no live motion sensor",
-            where='--motion',
-            cure='; '.join(filter(None, (nearest(address.scheme, known), forms))),
-        )
-    source = known[address.scheme](address)
+    source = address.kind_of(known, 'live motion sensor', '--motion', forms)(address)
     name = address.name
     address.refuse_others()
     return OpenedMotion(source, name or source.name)
 
 
-def _phyphox(address: SourceAddress) -> MotionSource:
+def _phyphox(address: SourceAddress) -> Source:
     parts = address.parts
     if not address.host:
         raise address.error('no host', 'give http://PHONE:8080, which phyphox shows')
@@ -70,14 +63,14 @@ def _phyphox(address: SourceAddress) -> MotionSource:
         raise address.error(f"a path '{parts.path}'", 'give what phyphox shows, http://PHONE:8080')
     url = f'{address.scheme}://{parts.netloc}'
     phone = PhyphoxPhone(url, address.number('every', 0.05, 0.02, 1.0))
-    return MotionSource(phone, phone.read, 'phyphox', OF_PHYPHOX, 1.0)
+    return Source(phone, phone.read, 'phyphox', OF_PHYPHOX, ticks=1.0)
 
 
-def _udp(address: SourceAddress) -> MotionSource:
+def _udp(address: SourceAddress) -> Source:
     link = udp_of(address)
-    return MotionSource(link, read_motion_json, f'UDP {link.port}', EXPECTS)
+    return Source(link, read_motion_json, f'UDP {link.port}', EXPECTS)
 
 
-def _mqtt(address: SourceAddress) -> MotionSource:
+def _mqtt(address: SourceAddress) -> Source:
     topic = unquote(address.parts.path.removeprefix('/'))
-    return MotionSource(broker_of(address, (topic,)), read_motion_json, topic, EXPECTS)
+    return Source(broker_of(address, (topic,)), read_motion_json, topic, EXPECTS)

@@ -13,11 +13,12 @@ interpolated to the times of the acceleration.
 from __future__ import annotations
 
 import asyncio
-from collections import deque
+from collections import ChainMap, deque
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 import json
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import aiohttp
 
@@ -28,7 +29,8 @@ from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_poll import body_of
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 EXPECTS = 'the remote access of phyphox, with an experiment of acceleration or the gyroscope'
 _LARGEST = 4 * 2**20
@@ -50,11 +52,43 @@ _KIND = 'phyphox'
 Sample = tuple[float, Numbers]
 
 
-class Buffers(NamedTuple):
-    """Names of the buffers of a sensor: three axes and the time."""
+@dataclass
+class _Sensor:
+    """A sensor of an experiment: the names of its buffers, three axes and the time."""
 
-    axes: tuple[str, str, str]
+    quantity: str
+    axes: tuple[str, ...]
     time: str
+    newest: float = 0.0
+    """Time of its newest sample [s]."""
+    waiting: deque[Sample] = field(default_factory=lambda: deque(maxlen=_WAITING))
+    is_heard: bool = False
+
+    def question(self) -> dict[str, str]:
+        """Return what is asked for its new samples."""
+        after = f'{self.newest:.9g}'
+        return {self.time: after, **{axis: f'{after}|{self.time}' for axis in self.axes}}
+
+    def rows(self, answer: Any) -> list[Sample] | None:
+        """
+        Return its new samples in an answer; None if its buffers differ in length by many.
+
+        All values of an answer are later than one moment, so buffers agree from their first value
+        on.
+        """
+        times, *columns = (_values(answer, name) for name in (self.time, *self.axes))
+        lengths = [len(each) for each in (times, *columns)]
+        if max(lengths) - min(lengths) > _AHEAD:
+            return None
+        return list(zip(times, zip(*columns, strict=False), strict=False))
+
+    def note(self, answer: Any) -> bool:
+        """Note the newest time of an answer; whether it has new samples."""
+        rows = self.rows(answer)
+        times = _values(answer, self.time) if rows is None else [at for at, _ in rows]
+        known = [at for at in times if math.isfinite(at)]
+        self.newest = known[-1] if known else self.newest
+        return bool(known)
 
 
 class PhyphoxPhone:
@@ -74,25 +108,22 @@ class PhyphoxPhone:
         self.url = url
         self._every = every
         self.silence = 10.0
-        self._buffers: dict[str, Buffers] = {}
-        self._waiting: dict[str, deque[Sample]] = {}
-        self._newest: dict[str, float] = {}
-        self._heard: set[str] = set()
+        self._sensors: list[_Sensor] = []
 
     def __str__(self) -> str:
         """Return its address."""
         return self.url
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each answer with new samples; a `ConnectionError` says what to change."""
         run_until_over(self._poll(receiver), receiver)
 
-    async def _poll(self, receiver: Receiver) -> None:
+    async def _poll(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
         # Phones of some versions answer one request for each connection.
         connector = aiohttp.TCPConnector(force_close=True)
         async with aiohttp.ClientSession(timeout=timeout, connector=connector) as session:
-            self._begin(await self._document(session, '/config', {}))
+            self._sensors = _sensors_of(await self._document(session, '/config', {}))
             receiver.opened()
             loop = asyncio.get_running_loop()
             heard = -math.inf
@@ -101,53 +132,22 @@ class PhyphoxPhone:
                 if asked - heard > _LOOK_AGAIN:
                     await self._look(session)
                     heard = asked
-                answer = await self._document(session, '/get', self._question())
-                if self._note(answer):
+                question = ChainMap(*(each.question() for each in self._sensors))
+                answer = await self._document(session, '/get', question)
+                if any([each.note(answer) for each in self._sensors]):
                     heard = asked
-                    receiver.deliver(Message(json.dumps(answer['buffer']).encode(), '/get'))
+                    receiver.deliver(Message(json.dumps(answer).encode(), '/get'))
                 await asyncio.sleep(max(self._every - (loop.time() - asked), 0.0))
-
-    def _begin(self, config: Any) -> None:
-        self._buffers = _buffers_of(config)
-        if not self._buffers:
-            title = str(object_of(config).get('title', ''))[:40]
-            raise ConnectionError(
-                f"experiment '{title}' has neither acceleration nor gyroscope: open "
-                "'Acceleration (with g)' in phyphox, or one of your own with both"
-            )
-        self._waiting = {name: deque(maxlen=_WAITING) for name in self._buffers}
-        self._newest = {}
-        self._heard = set()
 
     async def _look(self, session: aiohttp.ClientSession) -> None:
         """Take the newest sample that is there now as the one to go on from."""
-        times = {each.time: '' for each in self._buffers.values()}
+        times = {each.time: '' for each in self._sensors}
         answer = await self._document(session, '/get', times)
         if object_of(object_of(answer).get('status')).get('measuring') is False:
             raise ConnectionError('the measurement is paused: press play in phyphox')
-        for name, each in self._buffers.items():
-            values = values_of(answer, each.time)
-            self._newest[name] = values[-1] if values and math.isfinite(values[-1]) else 0.0
-
-    def _question(self) -> dict[str, str]:
-        asked: dict[str, str] = {}
-        for name, each in self._buffers.items():
-            after = f'{self._newest.get(name, 0.0):.9g}'
-            asked[each.time] = after
-            asked |= {axis: f'{after}|{each.time}' for axis in each.axes}
-        return asked
-
-    def _note(self, answer: Any) -> bool:
-        """Note the newest times of an answer; whether it has new samples."""
-        is_new = False
-        for name, each in self._buffers.items():
-            rows = rows_of(answer, each)
-            times = values_of(answer, each.time) if rows is None else [at for at, _ in rows]
-            known = [value for value in times if math.isfinite(value)]
-            if known:
-                self._newest[name] = known[-1]
-                is_new = True
-        return is_new
+        for each in self._sensors:
+            values = _values(answer, each.time)
+            each.newest = values[-1] if values and math.isfinite(values[-1]) else 0.0
 
     async def _document(
         self, session: aiohttp.ClientSession, path: str, asked: Mapping[str, str]
@@ -173,47 +173,38 @@ class PhyphoxPhone:
 
     def read(self, message: Message) -> Sequence[MotionReading | Refusal]:
         """Read an answer; samples of the acceleration wait until the rate is known about them."""
-        document = {'buffer': parse_json(message.data)}
+        answer = parse_json(message.data)
         found = list[MotionReading | Refusal]()
-        for name, each in self._buffers.items():
-            rows = rows_of(document, each)
+        for each in self._sensors:
+            rows = each.rows(answer)
             if rows is None:
-                return [Refusal(_KIND, f'buffers of the {name} differ in length')]
+                return [Refusal(_KIND, f'buffers of the {each.quantity} differ in length')]
             good = [row for row in rows if math.isfinite(row[0])]
             found += [Refusal(_KIND, 'its time is no number')] * (len(rows) - len(good))
-            self._waiting[name].extend(good)
-        first, *others = (name for name in self._waiting if not self._is_missing(name))
+            each.waiting.extend(good)
+            each.is_heard |= bool(each.waiting)
+        # What sends nothing while another sensor does is one that the phone lacks.
+        waiting = [each.waiting for each in self._sensors if each.waiting]
+        spans = [samples[-1][0] - samples[0][0] for samples in waiting]
+        is_late = max(spans, default=0.0) > _PATIENCE
+        first, *others = (each for each in self._sensors if each.is_heard or not is_late)
         if others:
-            return found + self._joined(self._waiting[first], self._waiting[others[0]])
-        found += [_reading(first, *each) for each in self._waiting[first]]
-        self._waiting[first].clear()
-        return found
-
-    def _is_missing(self, name: str) -> bool:
-        """Whether a sensor of the experiment sends nothing, as the phone has none."""
-        if name in self._heard or self._waiting[name]:
-            self._heard.add(name)
-            return False
-        spans = [each[-1][0] - each[0][0] for each in self._waiting.values() if each]
-        return max(spans, default=0.0) > _PATIENCE
-
-    @staticmethod
-    def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading | Refusal]:
-        """Read accelerations with the rate at their times, up to the newest rate."""
-        found = list[MotionReading | Refusal]()
-        while forces and rates and forces[0][0] <= rates[-1][0]:
-            at, force = forces.popleft()
-            while len(rates) > 1 and rates[1][0] < at:
-                rates.popleft()
-            if rates[0][0] <= at and len(rates) > 1:
-                found.append(MotionReading(at, force, _between(rates[0], rates[1], at)))
+            return found + _joined(first.waiting, others[0].waiting)
+        found += [MotionReading(at, **{first.quantity: values}) for at, values in first.waiting]
+        first.waiting.clear()
         return found
 
 
-def _reading(quantity: str, time: float, values: Numbers) -> MotionReading:
-    if quantity == 'acceleration':
-        return MotionReading(time, values)
-    return MotionReading(time, None, values)
+def _joined(forces: deque[Sample], rates: deque[Sample]) -> list[MotionReading | Refusal]:
+    """Read accelerations with the rate at their times, up to the newest rate."""
+    found = list[MotionReading | Refusal]()
+    while forces and rates and forces[0][0] <= rates[-1][0]:
+        at, force = forces.popleft()
+        while len(rates) > 1 and rates[1][0] < at:
+            rates.popleft()
+        if rates[0][0] <= at and len(rates) > 1:
+            found.append(MotionReading(at, force, _between(rates[0], rates[1], at)))
+    return found
 
 
 def _between(before: Sample, after: Sample, at: float) -> Numbers:
@@ -221,39 +212,29 @@ def _between(before: Sample, after: Sample, at: float) -> Numbers:
     return tuple(a + share * (b - a) for a, b in zip(before[1], after[1], strict=True))
 
 
-def _buffers_of(config: Any) -> dict[str, Buffers]:
-    """Return the buffers of acceleration and rate of an experiment, by ``/config``."""
-    sources: dict[str, Buffers] = {}
+def _sensors_of(config: Any) -> list[_Sensor]:
+    """Return the sensors of an experiment by ``/config``; a `ConnectionError` without any."""
+    sources: dict[str, dict[str, str]] = {}
     for each in map(object_of, list_of(object_of(config).get('inputs'))):
         named: dict[str, str] = {}
         for output in map(object_of, list_of(each.get('outputs'))):
             named |= {str(key): str(name) for key, name in output.items()}
         if {'x', 'y', 'z', 't'} <= named.keys():
-            axes = named['x'], named['y'], named['z']
-            sources.setdefault(str(each.get('source')), Buffers(axes, named['t']))
-    found: dict[str, Buffers] = {}
+            sources.setdefault(str(each.get('source')), named)
+    found = []
     for quantity, kinds in _SENSORS:
-        known = next((sources[kind] for kind in kinds if kind in sources), None)
-        if known is not None:
-            found[quantity] = known
+        for names in [sources[kind] for kind in kinds if kind in sources][:1]:
+            found.append(_Sensor(quantity, tuple(names[axis] for axis in 'xyz'), names['t']))
+    if not found:
+        title = str(object_of(config).get('title', ''))[:40]
+        raise ConnectionError(
+            f"experiment '{title}' has neither acceleration nor gyroscope: open "
+            "'Acceleration (with g)' in phyphox, or one of your own with both"
+        )
     return found
 
 
-def rows_of(answer: Any, buffers: Buffers) -> list[Sample] | None:
-    """
-    Return the new samples of a sensor in an answer; None if its buffers differ in length by many.
-
-    All values of an answer are later than one moment, so buffers agree from their first value on.
-    """
-    times = values_of(answer, buffers.time)
-    columns = [values_of(answer, axis) for axis in buffers.axes]
-    lengths = [len(each) for each in (times, *columns)]
-    if max(lengths) - min(lengths) > _AHEAD:
-        return None
-    return list(zip(times, zip(*columns, strict=False), strict=False))
-
-
-def values_of(answer: Any, name: str) -> list[float]:
+def _values(answer: Any, name: str) -> list[float]:
     """Return the values of a buffer in an answer, not a number where there is none."""
     held = object_of(object_of(object_of(answer).get('buffer')).get(name))
     known = map(number, list_of(held.get('buffer')))

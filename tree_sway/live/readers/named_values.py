@@ -24,6 +24,7 @@ _LONGEST = 120
 """Length of names that are looked at; of one letter is none, which may be anything."""
 _MOST = 2000
 """Largest number of values of one message."""
+_NO_UNIT = 'taken in m/s, as nothing tells its unit: unit=km/h in the address changes it'
 
 
 @dataclass(frozen=True)
@@ -56,13 +57,13 @@ class WindNames:
         if speed is _ABSENT:
             return []
         unit = self._unit_of(document, leaves, name, 'wind_speed')
-        factor = unit_factor('speed', unit)
+        factor = unit_factor('speed', unit or 'm/s')
         if factor is None:
             return [Refusal(kind, f"unknown unit '{unit[:20]}'")]
         _, direction = _found(document, leaves, self.direction, 'wind_direction')
         name, gust = _found(document, leaves, self.gust, 'gust')
         most = None if gust is _ABSENT else number(gust)
-        gust_factor = unit_factor('speed', self._unit_of(document, leaves, name, 'gust'))
+        gust_factor = unit_factor('speed', self._unit_of(document, leaves, name, 'gust') or 'm/s')
         has_gust = most is not None and gust_factor is not None
         return [
             reading_of(
@@ -73,15 +74,16 @@ class WindNames:
                 gust=most * gust_factor if has_gust else None,  # type: ignore[operator]
                 interval=self.interval,
                 sender=_sender(leaves),
+                assumed='' if unit else _NO_UNIT,
             )
         ]
 
     def _unit(self, document: Any) -> str:
-        """Text of the unit of speeds."""
+        """Text of the unit of speeds; empty where nothing tells it."""
         if not self.unit or unit_factor('speed', self.unit) is not None:
-            return self.unit or 'm/s'
+            return self.unit
         found = JsonPath(self.unit).find(document)
-        return found if isinstance(found, str) else self.unit
+        return found if isinstance(found, str) and found else self.unit
 
     def _unit_of(self, document: Any, leaves: Mapping[str, Any], name: str, quantity: str) -> str:
         """Return the unit of a speed: that beside it, in its name, or of all."""

@@ -12,8 +12,7 @@ from tree_sway.files import unit_factor
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_options import names_of
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Read, Reading
+from tree_sway.live.reading import Reading
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.http_poll import HttpPoll
@@ -31,15 +30,6 @@ _ALIKE = 0.8
 """Share of common letters from which an option of the query is a misspelt one of ours."""
 
 _EXPECTS = 'JSON with a wind speed; say where: speed=PATH&direction=PATH&unit=km/h'
-
-
-def _json_reader(names: WindNames) -> Read:
-    """Return a reader of documents."""
-
-    def read(message: Message) -> Sequence[Reading]:
-        return read_document(parse_json(message.data), names)
-
-    return read
 
 
 def _refuse_misspelt(address: SourceAddress, name: str, value: str) -> None:
@@ -71,4 +61,9 @@ def open_source(address: SourceAddress) -> Source:
     headers = {'Authorization': f'Bearer {token}'} if token else {}
     transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
     interval = every if every >= LEAST_INTERVAL else 0.0
-    return Source(transport, _json_reader(names_of(address)), address.host, _EXPECTS, interval)
+    names = names_of(address)
+
+    def read(message: Message) -> Sequence[Reading]:
+        return read_document(parse_json(message.data), names)
+
+    return Source(transport, read, address.host, _EXPECTS, interval)

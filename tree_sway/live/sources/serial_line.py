@@ -21,7 +21,7 @@ def open_source(address: SourceAddress) -> Source:
     if place is None:
         raise address.error('no serial port', 'give serial:/dev/ttyUSB0:4800 or serial:COM3:9600')
     read = lines_of(address)
-    port = SerialPort(
-        place[1], int(place[2] or NMEA_BAUD), question_of(address), silence_of(address)
-    )
-    return Source(port, read, place[1].rpartition('/')[2], EXPECTS, messages='lines')
+    baud = int(place[2] or NMEA_BAUD)
+    port = SerialPort(place[1], baud, question_of(address), silence_of(address))
+    expects = f'{EXPECTS}; is {baud} its baud rate? If not, give that: serial:{place[1]}:9600'
+    return Source(port, read, place[1].rpartition('/')[2], expects, messages='lines')

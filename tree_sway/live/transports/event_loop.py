@@ -7,13 +7,13 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Coroutine
 
-from tree_sway.live.transports.transport import Receiver
+from tree_sway.live.transports.link import Link
 
 _LOOK = 0.05
 """Interval at which the end is looked for [s]."""
 
 
-def run_until_over(work: Coroutine[object, object, None], receiver: Receiver) -> None:
+def run_until_over(work: Coroutine[object, object, None], receiver: Link) -> None:
     """Run a coroutine until it ends, or the receiver is over; raise what it raises."""
 
     async def watch() -> None:

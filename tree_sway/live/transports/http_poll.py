@@ -13,7 +13,8 @@ import aiohttp
 
 from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_failure import failure_without_address, without_query
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 _LARGEST = 2**20
 """Largest document [bytes]."""
@@ -44,12 +45,12 @@ class HttpPoll:
         """Return its address, without a query that may have a key in it."""
         return without_query(self.url)
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each document; a `ConnectionError` for a status that is not 200."""
         with failure_without_address():
             run_until_over(self._poll(receiver), receiver)
 
-    async def _poll(self, receiver: Receiver) -> None:
+    async def _poll(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
         async with aiohttp.ClientSession(timeout=timeout, headers=dict(self.headers)) as session:
             is_first = True

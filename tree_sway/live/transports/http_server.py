@@ -16,7 +16,8 @@ from aiohttp import web
 
 from tree_sway.doorkeeper import Doorkeeper
 from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 _LARGEST = 65_536
 """Largest body of a request [bytes]."""
@@ -49,11 +50,11 @@ class HttpServer:
         """Return its address."""
         return f'http://{self.host}:{self.port}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver what is sent."""
         run_until_over(self._serve(receiver), receiver)
 
-    async def _serve(self, receiver: Receiver) -> None:
+    async def _serve(self, receiver: Link) -> None:
         doors = Doorkeeper(_MOST_SOCKETS, receiver.refuse)
 
         async def take(request: web.Request) -> web.Response:

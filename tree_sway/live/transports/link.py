@@ -1,16 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that listens to a transport and connects again when the connection breaks."""
+"""A transport, and the thread that listens to it and connects again when it breaks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 import time
+from typing import Protocol
 
 from tree_sway.live.transports.link_failure import failure_text
 from tree_sway.live.transports.pace import MOST, Pace
-from tree_sway.live.transports.transport import Message, Transport
+from tree_sway.live.transports.transport import Message
 from tree_sway.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
@@ -18,6 +19,28 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 _MOST_CAUSES = 20
 """Number of causes of refusals that are counted apart."""
 _TOO_MANY = f'more than {MOST:g} messages per second'
+
+
+class Transport(Protocol):
+    """
+    A way in which messages arrive.
+
+    ``silence`` is the time [s] without a message after which the connection is made again.
+    """
+
+    @property
+    def silence(self) -> float:
+        """Longest time without a message [s]."""
+
+    def __str__(self) -> str:
+        """Return its address as text, without a password."""
+
+    def listen(self, receiver: Link) -> None:
+        """
+        Connect and deliver messages until the receiver is over.
+
+        Any exception means that the connection broke; a `ConnectionError` has the reason as text.
+        """
 
 
 @dataclass(eq=False)
@@ -54,7 +77,7 @@ class Link(Worker):
 
     @property
     def is_over(self) -> bool:
-        """Whether the transport is to end."""
+        """Whether the transport is to end: on request, or as nothing came; asked often."""
         return self._stopping.is_set() or self._is_silent
 
     def opened(self) -> None:
@@ -77,7 +100,7 @@ class Link(Worker):
         self.rest()
 
     def rest(self) -> None:
-        """Rest if the thread took more than its share of the processor."""
+        """Rest if the thread took more than its share of the processor; called often."""
         if rest := self._pace.rest:
             self.pause(rest)
 

@@ -20,7 +20,8 @@ import time
 from typing import Any
 
 from tree_sway.extras import refuse_missing
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 PORT = 502
 """Port of Modbus over TCP."""
@@ -70,7 +71,7 @@ class Modbus:
         """Return its address."""
         return f'modbus:{self.place}:{self.baud or self.port}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Read the registers again and again."""
         function = KINDS[self.kind]
         size = 2 * self.count

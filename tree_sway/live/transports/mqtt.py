@@ -18,8 +18,9 @@ import ssl
 import struct
 import time
 
+from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.stream_lines import READ_FOR, received
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.transport import Message
 
 PORT, TLS_PORT = 1883, 8883
 """Ports of MQTT without and with TLS."""
@@ -55,7 +56,7 @@ class Mqtt:
         scheme = 'mqtts' if self.is_encrypted else 'mqtt'
         return f'{scheme}://{self.host}:{self.port}/{",".join(self.topics)}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each message of the topics."""
         with self._connected() as link:
             link.sendall(_packet(_CONNECT, self._greeting()))
@@ -77,7 +78,8 @@ class Mqtt:
                         _refuse(body[1] if len(body) > 1 else 0)
                         is_accepted = True
                         receiver.opened()
-                        link.sendall(_packet(_SUBSCRIBE, self._subscription()))
+                        asked_for = b''.join(_text(topic) + b'\0' for topic in self.topics)
+                        link.sendall(_packet(_SUBSCRIBE, b'\0\1' + asked_for))
                     elif kind == _SUBACK and _REFUSED_TOPIC in body[2:]:
                         raise ConnectionError('the broker refuses the topic: not authorised')
                     elif kind == _PUBLISH and (message := _message(body)) is not None:
@@ -104,9 +106,6 @@ class Mqtt:
             body += _text(self.user)
             body += _text(self.password) if self.password else b''
         return body
-
-    def _subscription(self) -> bytes:
-        return b'\x00\x01' + b''.join(_text(topic) + b'\x00' for topic in self.topics)
 
 
 class _Packets:

@@ -9,13 +9,13 @@ import importlib
 from typing import Any
 
 from tree_sway.extras import refuse_missing
+from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.stream_lines import (
     deliver_lines,
     NO_QUESTION,
     Question,
     READ_FOR,
 )
-from tree_sway.live.transports.transport import Receiver
 
 NMEA_BAUD = 4800
 """Baud rate of NMEA 0183."""
@@ -46,7 +46,7 @@ class SerialPort:
         """Return its address."""
         return f'serial:{self.device}:{self.baud}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver the lines of the port."""
         serial: Any = importlib.import_module('serial')
         with serial.Serial(self.device, self.baud, timeout=READ_FOR) as port:

@@ -6,11 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+import math
 import socket
 import time
 
 from tree_sway.live.transports.lines import Lines, LONGEST
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 READ_FOR = 0.1
 """Interval at which a silent stream checks whether to end [s]."""
@@ -18,6 +20,9 @@ READ_FOR = 0.1
 
 _BLOCK = 65_536
 """Most bytes that are read at once."""
+_LONGEST_LINE = 2.0
+"""Time [s] in which a line of an instrument ends."""
+_NO_END = 'bytes without the end of a line: is the baud rate that of the instrument?'
 
 
 def received(link: socket.socket) -> bytes:
@@ -44,7 +49,7 @@ NO_QUESTION = Question()
 
 
 def deliver_lines(
-    receiver: Receiver,
+    receiver: Link,
     read: Callable[[], bytes],
     write: Callable[[bytes], object],
     question: Question,
@@ -56,11 +61,18 @@ def deliver_lines(
     """
     lines = Lines()
     due = time.monotonic()
+    begun = math.inf  # arrival of the first bytes that no line has ended
     while not receiver.is_over:
         if question.text and time.monotonic() >= due:
             write(question.text)
             due = time.monotonic() + question.every
-        for line in lines.feed(read()):
+        data = read()
+        if data:
+            begun = min(begun, time.monotonic())
+            if time.monotonic() - begun > _LONGEST_LINE:
+                receiver.refuse(_NO_END)
+        for line in lines.feed(data):
+            begun = math.inf
             receiver.deliver(Message(line))
         if lines.dropped:
             receiver.refuse(f'a line of more than {LONGEST} bytes', lines.dropped)

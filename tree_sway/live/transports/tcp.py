@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 import socket
 
+from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.stream_lines import (
     deliver_lines,
     NO_QUESTION,
@@ -15,7 +16,6 @@ from tree_sway.live.transports.stream_lines import (
     READ_FOR,
     received,
 )
-from tree_sway.live.transports.transport import Receiver
 
 _CONNECT_FOR = 5.0
 """Longest wait for a connection [s]."""
@@ -34,7 +34,7 @@ class Tcp:
         """Return its address."""
         return f'tcp://{self.host}:{self.port}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver the lines of the server."""
         with socket.create_connection((self.host, self.port), _CONNECT_FOR) as link:
             receiver.opened()

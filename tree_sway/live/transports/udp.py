@@ -9,8 +9,9 @@ from ipaddress import ip_address
 import socket
 import struct
 
+from tree_sway.live.transports.link import Link
 from tree_sway.live.transports.stream_lines import READ_FOR
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.transport import Message
 
 _LARGEST = 65_536
 
@@ -33,7 +34,7 @@ class Udp:
         """Return its address."""
         return f'udp://{self.host}:{self.port}'
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each datagram."""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
             if self.is_shared or _is_group(self.host):

@@ -11,7 +11,8 @@ import aiohttp
 
 from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_failure import failure_without_address, without_query
-from tree_sway.live.transports.transport import Message, Receiver
+from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.transport import Message
 
 _LARGEST = 2**18
 """Largest message [bytes]; a larger one ends the connection."""
@@ -33,12 +34,12 @@ class WebSocket:
         """Return its address, without the query."""
         return without_query(self.url)
 
-    def listen(self, receiver: Receiver) -> None:
+    def listen(self, receiver: Link) -> None:
         """Deliver each message; a `ConnectionError` for a server that speaks something else."""
         with failure_without_address():
             run_until_over(self._follow(receiver), receiver)
 
-    async def _follow(self, receiver: Receiver) -> None:
+    async def _follow(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=None, connect=_CONNECT_FOR)
         async with (
             aiohttp.ClientSession(timeout=timeout, headers=dict(self.headers)) as session,

@@ -17,11 +17,9 @@ goes from the vertex before, or from the base of its axis, to each vertex of the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-import math
+from dataclasses import dataclass
 from pathlib import Path
 import re
-from typing import NamedTuple
 
 import numpy as np
 
@@ -45,7 +43,7 @@ class _Vertex:
     whole: _Vertex | None
     """Vertex of the coarser scale that it is a part of."""
     parent: _Vertex | None
-    features: dict[str, float] = field(default_factory=dict)
+    position: list[float] | None = None
     diameter: float = 0.0
     """Its own diameter, or its parent's where it has none."""
     place: _Vertex | None = None
@@ -53,79 +51,48 @@ class _Vertex:
     segment: int = -1
     """Segment that its successors are on."""
 
-    @property
-    def position(self) -> list[float]:
-        return [self.features.get(name, math.nan) for name in _POSITION]
-
-    @property
-    def is_placed(self) -> bool:
-        return all(name in self.features for name in _POSITION)
-
-    @property
-    def begins(self) -> _Vertex | None:
-        """Vertex whose first part it is."""
-        return self.whole if self.edge == '/' else None
-
-
-class _Segment(NamedTuple):
-    """A segment from one vertex to another, on a parent segment."""
-
-    base: _Vertex
-    tip: _Vertex
-    parent: int
-    continues: bool
-
 
 def _read(path: Path) -> tuple[Cylinders, ...]:
-    """Segments of a digitised tree."""
+    """Segments of a digitised tree, which are of the finest scale that has positions."""
     vertices = _parse(read_lines(path), str(path))
-    segments = _segments(vertices)
-    if not segments:
-        raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
-    known = list(dict.fromkeys(name for each in vertices for name in each.features))
-    if _DIAMETER not in known:
-        raise FormatError(
-            f'no feature {_DIAMETER} among {", ".join(known)}',
-            cure=f'call the diameter [mm] {_DIAMETER}',
-        )
-    ends = [(each.base.diameter, each.tip.diameter) for each in segments]
-    diameter = np.array([(base if base > 0.0 else tip, tip) for base, tip in ends])
-    n_placed = sum(vertex.is_placed for vertex in vertices)
-    note = (
-        f'{n_placed} vertices with a position, {len(vertices) - n_placed} without; '
-        f'{len(segments)} of them segments'
-    )
-    cylinders = Cylinders(
-        np.array([each.base.position for each in segments]),
-        np.array([each.tip.position for each in segments]),
-        diameter,
-        np.array([each.parent for each in segments], dtype=np.int64),
-        np.array([each.continues for each in segments], dtype=np.bool_),
-        [each.tip.label for each in segments],
-        notes=(note,),
-    )
-    return (cylinders,)
-
-
-def _segments(vertices: Sequence[_Vertex]) -> list[_Segment]:
-    """Find the segments, which are of the finest scale that has positions."""
-    finest = max((vertex.scale for vertex in vertices if vertex.is_placed), default=0)
-    segments: list[_Segment] = []
+    placed = [vertex for vertex in vertices if vertex.position]
+    finest = max((vertex.scale for vertex in placed), default=0)
+    bases: list[_Vertex] = []
+    tips: list[_Vertex] = []
+    parents: list[int] = []
+    continues: list[bool] = []
     for vertex in vertices:
         before = _before(vertex)
         parent = vertex.parent
-        vertex.place = vertex if vertex.is_placed else before
-        vertex.diameter = vertex.features.get(_DIAMETER, 0.0)
+        vertex.place = vertex if vertex.position else before
         if parent is not None:
             vertex.segment = parent.segment
-            if vertex.diameter <= 0.0:
-                vertex.diameter = parent.diameter
-        if vertex.scale != finest or not vertex.is_placed or before is None:
-            continue  # without anything before it, it is the first point of a plant
-        continues = vertex.edge == '<' and before is parent and vertex.segment >= 0
-        segments.append(_Segment(before, vertex, vertex.segment, continues))
-        vertex.segment = len(segments) - 1
-    return segments
+            vertex.diameter = vertex.diameter or parent.diameter
+        # Without anything before it, it is the first point of a plant.
+        if vertex.scale == finest and vertex.position and before is not None:
+            bases.append(before)
+            tips.append(vertex)
+            parents.append(vertex.segment)
+            continues.append(vertex.edge == '<' and before is parent and vertex.segment >= 0)
+            vertex.segment = len(tips) - 1
+    if not tips:
+        raise FormatError(f'no two vertices with {", ".join(_POSITION)}', cure='digitise the tree')
+    start, end = (np.array([each.position for each in nodes]) for nodes in (bases, tips))
+    diameter = np.array([[each.diameter for each in nodes] for nodes in (bases, tips)]).T
+    note = (
+        f'{len(placed)} vertices with a position, {len(vertices) - len(placed)} without; '
+        f'{len(tips)} of them segments'
+    )
+    cylinders = Cylinders(
+        start,
+        end,
+        np.where(diameter > 0.0, diameter, diameter[:, 1:]),
+        np.array(parents),
+        np.array(continues),
+        [each.label for each in tips],
+        notes=(note,),
+    )
+    return (cylinders,)
 
 
 def _before(vertex: _Vertex) -> _Vertex | None:
@@ -135,11 +102,11 @@ def _before(vertex: _Vertex) -> _Vertex | None:
     It is the base of the axis whose first part it is, if that has a position; else the place of
     its parent.
     """
-    axis = vertex.begins
-    while axis is not None:
-        if axis.is_placed:
+    axis = vertex
+    while axis.edge == '/' and axis.whole is not None:
+        axis = axis.whole
+        if axis.position:
             return axis
-        axis = axis.begins
     return None if vertex.parent is None else vertex.parent.place
 
 
@@ -152,6 +119,11 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
         raise FormatError('no line ENTITY-CODE', cure='save it as FORM-A')
     header = [cell.strip() for cell in lines[begin].split('\t')]
     first = next((i for i, cell in enumerate(header) if i and cell), len(header))
+    if _DIAMETER not in header:
+        raise FormatError(
+            f'no feature {_DIAMETER} among {", ".join(header[first:])}',
+            cure=f'call the diameter [mm] {_DIAMETER}',
+        )
     vertices: list[_Vertex] = []
     latest: list[_Vertex] = []
     """Latest vertex of each column."""
@@ -168,10 +140,10 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
         added = _vertices(code.removeprefix('^'), reference, scales, where)
         vertices += added
         latest[column:] = added[-1:]
-        for name, cell in zip(header[first:], cells[first:], strict=False):
-            value = finite(cell)
-            if value is not None:
-                added[-1].features[name] = value
+        values = dict(zip(header[first:], map(finite, cells[first:]), strict=False))
+        position = [value for name in _POSITION if (value := values.get(name)) is not None]
+        added[-1].position = position if len(position) == 3 else None
+        added[-1].diameter = max(values.get(_DIAMETER) or 0.0, 0.0)
     if not vertices:
         raise FormatError('no vertices')
     return vertices
@@ -207,13 +179,13 @@ def _vertices(
     code: str, reference: _Vertex | None, scales: dict[str, int], where: str
 ) -> list[_Vertex]:
     """Return the vertices of a code, such as ``/P1/A1``, of which each refers to the last."""
-    parts = list(_CODE.finditer(code))
-    if not parts or ''.join(part[0] for part in parts) != code:
+    parts = _CODE.findall(code)
+    if not parts or ''.join(map(''.join, parts)) != code:
         raise FormatError(
             f"'{code[:20]}' is not a code", where=where, cure='such as /P1, <S2 or +A1'
         )
     found: list[_Vertex] = []
-    for edge, name in map(re.Match.groups, parts):
+    for edge, name in parts:
         symbol = name.rstrip('0123456789')
         if symbol not in scales:
             raise FormatError(f"no class '{symbol}'", where=where, cure='list it under CLASSES')

@@ -26,7 +26,6 @@ import re
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, inside
@@ -210,7 +209,10 @@ def _cylinders(table: Floats, labels: list[str]) -> Cylinders:
         raise FormatError('an axis without direction', where=labels[row])
     axis_length[axis_length == 0.0] = 1.0  # of cylinders without length
     end = start + (length / axis_length)[:, None] * axis
-    continues = _continues(parent, extension[0]) if extension else None
+    continues = None
+    if extension:
+        after = extension[0].take(parent, mode='clip')
+        continues = (parent >= 0) & (after == np.arange(len(parent)))
     diameter = 2.0 * table[:, [0, 0]]
     return Cylinders(start, end, diameter, parent, continues, labels)
 
@@ -228,15 +230,6 @@ def _indices(numbers: Floats, labels: list[str]) -> Ints:
         raise FormatError(f'the smallest parent is {root}', cure='the root has parent 0, or -1')
     first = root + 1
     return (numbers.astype(np.int64) - first).T
-
-
-def _continues(parent: Ints, extension: Ints) -> NDArray[np.bool_]:
-    """Whether each cylinder is the extension of its parent."""
-    continues = np.zeros(len(parent), dtype=np.bool_)
-    for row, after in enumerate(extension.tolist()):
-        if 0 <= after < len(parent) and parent[after] == row:
-            continues[after] = True
-    return continues
 
 
 MAT = FileFormat('treeqsm-mat', ('.mat',), contains(r'\AMATLAB'), _read_mat, FITTED)
