@@ -274,7 +274,7 @@ void main() {
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near) * (0.1 + 0.9 * turnedTo);
-  vec3 up = sky * (0.1 + 0.95 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
+  vec3 up = sky * (0.14 + 0.91 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.1 + 3.3 * max(0.8 * across + 0.2, 0.0) + through);
@@ -614,18 +614,18 @@ vec4 blurred(vec3 way, float round, float seed) {
   float soft = 0.012 * round;
   float high = 1.5 + 0.05 * round * noise(vec2(x / 31.0, seed)) + 11.0 * pow(noise(vec2(x / 11.0, seed + 2.0)), 1.5)
     + 4.5 * noise(vec2(x / 4.7, seed + 4.0)) + 1.8 * noise(vec2(x / 2.1, seed + 6.0));
-  vec2 leaf = vec2(x, up);
+  vec2 leaf = mat2(0.8, 0.6, -0.6, 0.8) * vec2(x, up);
   float mass = 0.5 * noise(leaf / vec2(6.0, 4.4)) + 0.3 * noise(leaf / 2.7 + 7.0) + 0.2 * noise(leaf / 1.3 + 5.0);
   float over = up - high + 5.0 * (mass - 0.5);
   float shown = (1.0 - smoothstep(-soft, soft, over)) * smoothstep(-0.5 * soft, 0.6 * soft, up);
   // Each tree has a green of its own.
   vec3 own = mix(vec3(0.16, 0.23, 0.12), vec3(0.36, 0.38, 0.17), noise(vec2(x / 8.0, seed + 9.0)));
   own = mix(own, vec3(0.2, 0.25, 0.2), 0.7 * smoothstep(0.5, 0.8, noise(vec2(x / 13.0, seed + 15.0))));
-  float lit = smoothstep(0.25, 0.75, mass) * (0.25 + 0.75 * smoothstep(0.0, 1.0, up / high));
-  vec3 c = own * toned(sky * (0.22 + 0.7 * lit) + 1.5 * sun * lit * smoothstep(-0.5, 1.0, light.z + 0.6 * (mass - 0.5)));
+  float lit = mix(0.25, 1.0, smoothstep(0.25, 0.75, mass)) * (0.45 + 0.55 * smoothstep(0.0, 1.0, up / high));
+  vec3 c = own * toned(vec3(0.5) * (0.35 + 0.7 * lit) + 1.5 * sun * lit * smoothstep(-0.5, 1.0, light.z + 0.6 * (mass - 0.5)));
   // Stems, and light between them.
   float low = 1.0 - smoothstep(0.15, 0.45, up / high);
-  c = mix(c, vec3(0.13, 0.12, 0.1), 0.35 * low * smoothstep(0.55, 0.8, noise(vec2(x / 1.4, seed + 20.0))));
+  c = mix(c, vec3(0.13, 0.12, 0.1), 0.3 * low * smoothstep(0.55, 0.8, noise(vec2(x / 1.4, seed + 20.0))));
   float light_ = discs(leaf / soft / 1.1) + 0.7 * discs(leaf / soft / 0.6 + 40.0);
   c += light_ * (0.3 * own * sun * lit + 0.13 * horizon * smoothstep(-4.0, 1.0, over) * smoothstep(0.2, 0.6, up / high));
   return vec4(c, shown);
