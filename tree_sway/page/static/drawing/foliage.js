@@ -258,13 +258,14 @@ function cardsOf(look, mean, clusters, cards, most) {
   if (look.has_needles || mean > FEW_LEAVES * leaf) {
     // Shoots with leaves, as large as they are: a leaf alone would be a fleck in the air.
     const small = length * Math.max(LEAST_CARD, Math.sqrt(2 / each));
-    const long = Math.max(small, (look.form === "tufts" ? 1.7 : SHOOT) * look.leaf_size / mean);
+    const long = Math.max(small, (look.form === "tufts" ? 2.6 : SHOOT) * look.leaf_size / mean);
     const along = leavesAlong(look, long * mean);
     const spray = { rolls, width: pictureWidth(look, along, true), length: long };
     return { each: Math.max(1, Math.round(each * Math.min(1, DENSE * (small / long) ** 2))), along, spray, isSpread: true };
   }
-  const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
-  const spray = { ...alone, length: leaf / mean };
+  const size = (look.is_potted ? 0.85 : 1) * leaf / mean;
+  const leaves = (FULLNESS * Math.PI) / (4 * FILLED * alone.width * size * size);
+  const spray = { ...alone, length: size };
   return { each: Math.max(1, Math.min(each, Math.round(leaves))), along: 1, spray, isSpread: true };
 }
 
@@ -287,7 +288,7 @@ function cardCorners({ length, width, rolls }, phase, card, outline) {
 function leafyTwig(look, { length, width }, random) {
   const whole = look.spray.length;
   const wide = look.spray.width * whole;
-  const deep = look.depth ?? 0.8;
+  const { depth: deep = 0.8, droop = 0 } = look;
   const bare = look.form === "tufts" ? BARE_TWIG : 0.04;
   const some = () => random() + random() - 1;
   // Twigs end at the surface of the cluster, where the light is, and leaves stand towards their ends.
@@ -296,10 +297,10 @@ function leafyTwig(look, { length, width }, random) {
   const end = [whole * (0.42 + 0.42 * far * way[0]), 0.8 * wide * far * way[1], 0.8 * deep * wide * far * way[2]];
   const foot = [Math.max(0, end[0] - 0.6 * Math.hypot(end[1], end[2])) * random(), 0, 0];
   const along = end.map((each, c) => each - foot[c]);
-  const spread = hangs(look) ? 1.4 - 1.2 * (look.droop ?? 0) : look.has_needles ? 0.6 : 1.4;
+  const spread = hangs(look) ? 1.4 - 1.2 * droop : look.has_needles ? 0.6 : 1.4;
   const cards = Array.from({ length: ON_TWIG }, (_, i) => {
     const far = bare + (1 - bare) * ((i + random()) / ON_TWIG) ** (hangs(look) ? 1 : 0.5);
-    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 0.6 : 0)));
+    const away = unit(unit(along).map((each, c) => each + spread * some() - (look.is_potted && c > 1 ? 2.2 * droop : 0)));
     // Leaves face outward and up, the more so the flatter the cluster is.
     const across = unit(cross(way.map((each, c) => each + 1.2 * deep * some() + Number(c > 1)), away));
     const normal = cross(away, across);

@@ -8,6 +8,8 @@ import { seeded } from "./looks.js";
 
 /** Number of blades with and without a graphics unit. */
 const [BLADES, FEW_BLADES] = [140000, 2500];
+/** Pixels of a picture that shows all blades. */
+const FULL = 1e6;
 /** Radius over the size of the scene, and height over that of the trees. */
 const [REACH, TALL] = [3, 0.02];
 /** Lowest and highest grass [m]. */
@@ -37,8 +39,8 @@ export class Grass {
     this.gusts.spread(time, mean, 2 * reach);
     const field = [x, y, reach, tall];
     use(this.gl, this._program, { field, downwind: [...way, first, 2 * reach], time: time % 1000, "gusts[0]": this.gusts.speeds });
-    // Around a small tree blades are large in the picture, and fewer of them cover it.
-    const share = Math.min(1, ((TALL * height) / tall) ** 2);
+    // Around a small tree blades are large in the picture, and fewer of them cover it; so do fewer of a small picture.
+    const share = Math.min(1, ((TALL * height) / tall) ** 2, (this.gl.drawingBufferWidth * this.gl.drawingBufferHeight) / FULL);
     drawPart(this.gl, this._part, share);
   }
 }

@@ -326,9 +326,9 @@ export class Scene {
       pictures.set(name, this.isSlow ? chosenTexture(gl, picture) : pictureTexture(gl, picture, false));
     }
     const relief = look.bark_pattern;
-    const turned = this.isAutumn ? look.autumn : null;
-    const unturned = turned ? look.green.map((each, c) => each / turned[c]) : [1, 1, 1];
-    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / look.green[1]) * (1 + Math.max(1, (each * look.green[1]) / look.green[c])));
+    const own = (this.isAutumn && look.autumn) || look.green;
+    const unturned = look.green.map((each, c) => each / own[c]);
+    const dulled = OPEN_GREENS[+look.has_needles].map((each, c) => Math.sqrt(0.1 / own[1]) * (1 + Math.max(1, (each * own[1]) / own[c])));
     const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {

@@ -77,18 +77,22 @@ float grain(vec2 p, float size, float pixel) {
   return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
 }
 
-// Colour of the meadow: patches of lush and of dry grass, clover, moss; bare earth under a crown.
+// Share of bare earth, which lies under a crown.
 float worn(vec2 p) {
   float far = distance(p, stem.xy) * stem.z;
+  if (far > 0.9) return 0.0;
   return 1.0 - smoothstep(0.12, 0.5, far + 0.5 * (noise(p / 0.9) - 0.5) + 0.3 * (noise(p / 0.23) - 0.5));
 }
-vec3 meadow(vec2 p) {
+// Colour of the meadow, and how lush it is, 0 to 1: patches of lush and of dry grass, clover, moss. Small ones fade out
+// where a pixel is larger.
+vec4 meadow(vec2 p, float bare, float pixel) {
   float broad = 0.6 * noise(p / 23.0) + 0.4 * noise(p / 6.1 + 9.0);
-  float clumps = 0.6 * noise(p / 1.9) + 0.4 * noise(p / 0.7 + 5.0);
-  vec3 grass = mix(vec3(0.34, 0.43, 0.19), vec3(0.54, 0.56, 0.31), smoothstep(0.25, 0.9, 0.75 * broad + 0.35 * clumps));
-  grass = mix(grass, vec3(0.31, 0.42, 0.22), 0.6 * smoothstep(0.5, 0.75, noise(p / 3.7 + 40.0)));
-  grass *= 0.88 + 0.24 * clumps;
-  return mix(grass, vec3(0.42, 0.36, 0.27) * (0.8 + 0.4 * clumps), 0.75 * worn(p));
+  float clumps = 0.5 + (0.6 * noise(p / 1.9) + 0.4 * noise(p / 0.7 + 5.0) - 0.5) / (1.0 + pixel * pixel);
+  float dry = smoothstep(0.3, 0.95, 0.7 * broad + 0.4 * clumps);
+  vec3 grass = mix(vec3(0.3, 0.39, 0.18), vec3(0.49, 0.5, 0.29), dry);
+  grass = mix(grass, vec3(0.27, 0.38, 0.2), 0.7 * smoothstep(0.5, 0.75, noise(p / 3.7 + 40.0)) / (1.0 + 0.3 * pixel));
+  grass *= 0.8 + 0.4 * clumps;
+  return vec4(mix(grass, vec3(0.42, 0.36, 0.27) * (0.8 + 0.4 * clumps), 0.75 * bare), clumps * (1.0 - 0.5 * dry));
 }
 
 #part lit noise
@@ -270,16 +274,18 @@ void main() {
   // The far side of the crown has little sun, whatever the shadow of its few leaves lets through.
   float turnedTo = smoothstep(-1.3, 1.5, dot(outward, light));
   float sunny = mix(0.12, 1.0, sunlight(p, 0.007, 3.0 * flutter.y)) * (0.12 + 0.88 * near) * (0.1 + 0.9 * turnedTo);
-  vec3 up = sky * (0.1 + 0.95 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
+  vec3 up = sky * (0.14 + 0.91 * near) * (0.6 + 0.4 * n.z) * (0.75 + 0.3 * turnedTo);
   // Light through a leaf is yellow.
   vec3 through = vec3(1.0, 1.08, 0.4) * (1.2 * max(-side * dot(flat_, light), 0.0));
   vec3 direct = sun * sunny * (0.1 + 3.3 * max(0.8 * across + 0.2, 0.0) + through);
   // Greens vary, from leaf to leaf and from cluster to cluster; young ones at the rim of the crown are lighter. In
   // autumn shaded leaves, and some others, turn last.
-  vec3 hue = dulled * (1.0 + vec3(0.06, 0.0, -0.06) * sin(5.0 * flutter.y));
+  vec3 spot = 9.0 * shadowTop * p;
+  float limb = 0.5 * (sin(spot.x + 1.7 * spot.z) + sin(spot.y - 1.3 * spot.z + 1.0));
+  vec3 hue = dulled * (1.0 + 0.08 * sin(9.0 * flutter.y) + vec3(0.05, 0.0, -0.06) * (sin(5.0 * flutter.y) + limb));
   hue += (0.5 * (flutter.w - 1.0) + 0.12 * max(0.0, near - 0.7)) * vec3(0.5, 0.2, -0.4);
-  float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y));
-  hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.5, -0.5, 0.2) * sin(2.0 * flutter.y));
+  float late = smoothstep(0.1, 1.0, 0.75 - open + 0.35 * sin(3.0 * flutter.y) + 0.25 * sin(8.0 * flutter.y) + 0.35 * limb);
+  hue *= mix(vec3(1.0), unturned, late) * (1.0 + (1.0 - unturned) * vec3(0.25, -0.8, 0.4) * (0.6 * sin(2.0 * flutter.y) - 0.7 * limb));
   float shine = gloss > 0.0 ? gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0) : 0.0;
   vec3 whole = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : toned(up + direct));
   float clear = clearness(p);
@@ -421,7 +427,10 @@ uniform float dimmed;
 out vec4 base;
 void main() {
   vec2 root = field.xy + field.z * blade.xy;
-  float tall = field.w * blade.z * (1.0 - 0.85 * worn(root));
+  float bare = worn(root);
+  vec4 lush = meadow(root, bare, 0.0);
+  // Tussocks stand above the others.
+  float tall = field.w * blade.z * (0.5 + 2.2 * lush.w * lush.w) * (1.0 - 0.85 * bare);
   vec3 p = vec3(root, ground);
   float sunny = sunlight(p);
   float own = 6.2831853 * blade.w;
@@ -436,7 +445,7 @@ void main() {
   vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * max(0.02 * field.w, 0.0005 * distance(eye, p));
   p.xy += corner * across;
   if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
-  vec3 tint = meadow(root) * (0.85 + 0.4 * blade.w * blade.w);
+  vec3 tint = lush.rgb * (0.8 + 0.5 * blade.w * blade.w);
   // A bent blade shows its pale side.
   tint *= (corner == 0.0 ? 1.1 : 0.8) + 0.4 * max(0.0, lean - 0.66);
   tint *= dimmed * (0.55 + 0.7 * max(light.z, 0.3)) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
@@ -538,6 +547,19 @@ vec3 lobes(vec2 p) {
   }
   return best;
 }
+// Brightness of discs out of focus, each of its own, which lie over each other.
+float discs(vec2 p) {
+  float sum = 0.0;
+  for (float i = -1.0; i < 2.0; i++) {
+    for (float j = -1.0; j < 2.0; j++) {
+      vec2 cell = floor(p) + vec2(i, j);
+      float far = distance(p, cell + vec2(hash(cell), hash(cell + 57.0)));
+      float bright = hash(cell + 31.0);
+      sum += bright * bright * bright * (0.7 + 0.6 * far) * (1.0 - smoothstep(0.55, 0.68, far));
+    }
+  }
+  return sum;
+}
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
   vec3 c = mix(horizon, zenith, 1.0 - exp(-3.6 * high));
@@ -555,8 +577,8 @@ vec3 heaven(vec3 way) {
   float far = 0.03 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
   float near = 0.012 + 0.03 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.003 * noise(vec2(turn * 40.0, 5.0));
   vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.34) * dimmed, 0.6);
-  if (way.z < far) c = mix(horizon, blue, 0.3);
-  if (way.z < near) c = mix(horizon, blue, 0.55);
+  if (way.z < far) c = mix(horizon, blue, 0.14 + 0.16 * way.z / far);
+  if (way.z < near) c = mix(horizon, blue, 0.3 + 0.25 * way.z / near);
   // Edges of woods, the nearer ones higher: crowns lit from above, with shade between them.
   for (float row = 0.0; row < 2.0; row++) {
     vec2 along = vec2(turn * (46.0 - 14.0 * row) + 31.0 * row, row);
@@ -573,28 +595,56 @@ vec3 heaven(vec3 way) {
   return c;
 }
 #ifndef PLAIN
-// A row of trees around the scene, over what is behind them: colour, and how much of it is seen.
-vec4 treeRow(vec3 way, float round, float seed) {
-  // Where the ray meets the cylinder on which they stand.
+// Where a ray meets the cylinder on which a row of trees stands around the scene: along it, and above the ground [m].
+vec2 onRow(vec3 way, float round) {
   float a = dot(way.xy, way.xy);
   float b = dot(eye.xy, way.xy);
   float inside = round * round - dot(eye.xy, eye.xy);
-  if (inside < 0.0 || a < 1e-4) return vec4(0.0);
-  float far = (sqrt(b * b + a * inside) - b) / a;
-  vec3 p = eye + far * way;
-  float up = p.z - ground;
+  if (inside < 0.0 || a < 1e-4) return vec2(-99.0);
+  vec3 p = eye + (sqrt(b * b + a * inside) - b) / a * way;
+  return vec2((atan(p.y, p.x) / 6.2831853 + 0.5) * floor(round * 0.7) * 9.0, p.z - ground);
+}
+// Trees behind a plant on a terrace, out of focus: masses of every size, light above and dark below, and discs of light
+// between the leaves. Colour, and how much of it is seen.
+vec4 blurred(vec3 way, float round, float seed) {
+  vec2 at = onRow(way, round);
+  float up = at.y;
+  if (up < -3.0 || up > 30.0) return vec4(0.0);
+  float x = at.x + 70.0 * seed;
+  float soft = 0.012 * round;
+  float high = 1.5 + 0.05 * round * noise(vec2(x / 31.0, seed)) + 11.0 * pow(noise(vec2(x / 11.0, seed + 2.0)), 1.5)
+    + 4.5 * noise(vec2(x / 4.7, seed + 4.0)) + 1.8 * noise(vec2(x / 2.1, seed + 6.0));
+  vec2 leaf = mat2(0.8, 0.6, -0.6, 0.8) * vec2(x, up);
+  float mass = 0.5 * noise(leaf / vec2(6.0, 4.4)) + 0.3 * noise(leaf / 2.7 + 7.0) + 0.2 * noise(leaf / 1.3 + 5.0);
+  float over = up - high + 5.0 * (mass - 0.5);
+  float shown = (1.0 - smoothstep(-soft, soft, over)) * smoothstep(-0.5 * soft, 0.6 * soft, up);
+  // Each tree has a green of its own.
+  vec3 own = mix(vec3(0.16, 0.23, 0.12), vec3(0.36, 0.38, 0.17), noise(vec2(x / 8.0, seed + 9.0)));
+  own = mix(own, vec3(0.2, 0.25, 0.2), 0.7 * smoothstep(0.5, 0.8, noise(vec2(x / 13.0, seed + 15.0))));
+  float lit = mix(0.25, 1.0, smoothstep(0.25, 0.75, mass)) * (0.45 + 0.55 * smoothstep(0.0, 1.0, up / high));
+  vec3 c = own * toned(vec3(0.5) * (0.35 + 0.7 * lit) + 1.5 * sun * lit * smoothstep(-0.5, 1.0, light.z + 0.6 * (mass - 0.5)));
+  // Stems, and light between them.
+  float low = 1.0 - smoothstep(0.15, 0.45, up / high);
+  c = mix(c, vec3(0.13, 0.12, 0.1), 0.3 * low * smoothstep(0.55, 0.8, noise(vec2(x / 1.4, seed + 20.0))));
+  float light_ = discs(leaf / soft / 1.1) + 0.7 * discs(leaf / soft / 0.6 + 40.0);
+  c += light_ * (0.3 * own * sun * lit + 0.13 * horizon * smoothstep(-4.0, 1.0, over) * smoothstep(0.2, 0.6, up / high));
+  return vec4(c, shown);
+}
+// A row of trees around the scene, over what is behind them: colour, and how much of it is seen.
+vec4 treeRow(vec3 way, float round, float seed) {
+  vec2 leaf = onRow(way, round);
+  float up = leaf.y;
   if (up < -0.5 || up > 22.0) return vec4(0.0);
   float cells = floor(round * 0.7);
-  float along = (atan(p.y, p.x) / 6.2831853 + 0.5) * cells; // in cells of 9 m
-  vec2 outward = normalize(p.xy);
+  float along = leaf.x / 9.0;
+  float turn = 6.2831853 * (along / cells - 0.5);
+  vec2 outward = vec2(cos(turn), sin(turn));
   vec2 beside = vec2(-outward.y, outward.x);
-  vec2 leaf = vec2(9.0 * along, up);
-  // Boughs are round, with shade between them; behind a plant on a terrace they are out of focus.
-  bool isSharp = kind > 0.5;
-  float rim = isSharp ? 0.08 : 0.3;
-  float fine = isSharp ? 2.0 * cloudy(1.9 * leaf + seed) - 0.5 : 0.3 + 0.5 * noise(0.5 * leaf + seed);
-  vec3 bough = isSharp ? lobes(leaf / 2.4 + 0.5 * fine + seed) : vec3(0.0, 0.0, 0.3 + 0.5 * noise(0.3 * leaf + seed));
-  float rough = 0.45 * bough.z + 0.55 * fine;
+  // Boughs are round, with shade between them.
+  const float rim = 0.1;
+  float fine = 2.0 * cloudy(1.9 * leaf + seed) - 0.5;
+  vec3 bough = lobes(leaf / 2.4 + 0.5 * fine + seed);
+  float rough = 0.35 * bough.z + 0.65 * fine;
   // Woods, hedges and gaps.
   float wooded = smoothstep(0.16, 0.42, tiled(vec2(along * 0.11, seed), vec2(floor(cells * 0.11), 65536.0)));
   vec4 best = vec4(0.0);
@@ -608,15 +658,15 @@ vec4 treeRow(vec3 way, float round, float seed) {
     float high = hash(name + 5.0);
     float tall = (7.0 + 10.0 * high * high) * (0.5 + 0.5 * dense);
     float wide = tall * mix(0.34, 0.55, two) + 1.0;
-    bool isPointed = isSharp && hash(name + 9.0) < 0.2 * dense;
+    bool isPointed = hash(name + 9.0) < 0.2 * dense;
     if (isPointed) { wide *= 0.6; tall *= 1.1; }
     float x = (along - floor(along) - k - 0.5 - 0.5 * (one - 0.5)) * 9.0 / wide;
     float z = (up - 0.52 * tall) / (0.5 * tall);
     float swell = isPointed ? 0.55 - 0.5 * z : 1.0;
     float edge = length(vec2(x / max(swell, 0.05), z * (z < 0.0 ? 0.92 : 1.0))) - (isPointed ? 0.7 : 0.9) * (rough - 0.45);
-    float shown = max(1.0 - smoothstep(1.0 - rim, 1.0 + rim, edge), z < 0.0 && isSharp && abs(x) * wide < 0.03 * tall ? 1.0 : 0.0);
+    float shown = max(1.0 - smoothstep(1.0 - rim, 1.0 + rim, edge), z < 0.0 && abs(x) * wide < 0.03 * tall ? 1.0 : 0.0);
     float deep = sqrt(max(0.0, 1.0 - min(1.0, x * x + z * z)));
-    vec3 n = normalize(vec3((x + 1.3 * bough.x) * beside - deep * outward, z + 1.3 * bough.y));
+    vec3 n = normalize(vec3((x + 0.8 * bough.x) * beside - deep * outward, z + 0.8 * bough.y));
     float shone = max(0.0, 0.2 + 0.8 * dot(n, light)) * smoothstep(0.1, 0.7, rough);
     vec3 own = mix(isPointed ? vec3(0.13, 0.2, 0.11) : vec3(0.2, 0.27, 0.12), vec3(0.33, 0.36, 0.16), one * one * (isPointed ? 0.2 : 1.0));
     vec3 lit = own * toned(sky * (0.2 + 0.25 * z + 0.7 * rough) + 1.7 * sun * shone);
@@ -627,7 +677,7 @@ vec4 treeRow(vec3 way, float round, float seed) {
   // Bushes and nettles hide the stems.
   float bush = 0.5 * (wooded * (1.4 + 2.6 * noise(leaf * 0.3)) - 0.6 + 1.6 * (rough - 0.5) - up);
   vec3 leafy = mix(vec3(0.1, 0.14, 0.07), vec3(0.3, 0.36, 0.16), clamp(0.25 * up + 1.0 * (rough - 0.4), 0.0, 1.0));
-  float shown = smoothstep(0.0, 4.0 * rim, bush) * smoothstep(isSharp ? -0.02 : -0.4, 0.0, up);
+  float shown = smoothstep(0.0, 4.0 * rim, bush) * smoothstep(-0.02, 0.0, up);
   best = vec4(mix(best.rgb, leafy, shown / max(shown + best.a * (1.0 - shown), 1e-3)), shown + best.a * (1.0 - shown));
   return best;
 }
@@ -667,10 +717,15 @@ void main() {
       soil *= 1.0 + 0.07 * grain(p, 0.35, pixel) + 0.1 * grain(p, 0.08, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
       soil *= 1.0 - 0.26 * joint;
     } else {
-      soil = meadow(p);
+      float bare = worn(p);
+      soil = meadow(p, bare, pixel).rgb;
       float size = 4.5 * pow(eye.z - ground, -0.2) * length(fwidth(ray));
-      float grassy = 1.0 - 0.8 * worn(p);
-      if (kind < 0.5) grassy *= 0.35; // out of focus
+      float grassy = 1.0 - 0.8 * bare;
+      if (kind < 0.5) {
+        // Out of focus.
+        grassy *= 0.2;
+        soil = mix(soil, vec3(0.37, 0.43, 0.22), 0.75);
+      }
       soil *= 1.0 + 0.5 * grassy * blades(way.xy / way.z, size) / (1.0 - 0.03 / way.z) + 0.3 * grassy * grain(p, 0.05, pixel);
       // Daisies, where there is less grass.
       vec2 cell = p / 0.17;
@@ -688,8 +743,9 @@ void main() {
 #ifndef PLAIN
   // Rows of trees stand on it, the far one first.
   for (float row = 3.0; row > 0.0; row--) {
-    vec4 trees = treeRow(way, (0.07 + 0.1 * row) / haze, 11.0 * row);
-    c = mix(c, mix(dimmed * trees.rgb, horizon, 0.1 + 0.14 * row), trees.a);
+    float round = (0.07 + 0.1 * row) / haze;
+    vec4 trees = kind < 0.5 ? blurred(way, 0.5 * round, 11.0 * row) : treeRow(way, round, 11.0 * row);
+    c = mix(c, mix(dimmed * trees.rgb, horizon, (kind < 0.5 ? 0.0 : 0.16) + 0.12 * row), trees.a);
   }
 #endif
   color = vec4(c, 1.0);

@@ -19,6 +19,8 @@ const {
   BRUSH,
   /** Number of layers of leaves; the lowest is shaded by the others. */
   LAYERS,
+  /** Length of the midrib of a leaf or leaflet, and its veins. */
+  VEINS,
   /** Width of a picture of bark [px]; it is twice as high, and repeats beyond its edges. */
   BARK_WIDE,
 } = /** @type {Record<string, any>} */ (numbers.pictures);
@@ -54,7 +56,7 @@ export function leafPicture(look, along, { isAutumn = false, isFlowering = false
   const brush = new Brush(look, isAutumn, pixels, pictureWidth(look, along, isSpread), seeded(97 + along), share);
   if (share < 1) brush.candle();
   if (along === 1) brush.leaf(0.99, 0.95);
-  else if (look.form === "tufts" && along < 5) brush.tuft(0.66, 0, 0, 0.34, 34);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.58, 0, 0, 0.42, 26);
   else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   // Small cards are seen as leaves and gaps, and not as a leaf each.
@@ -134,7 +136,7 @@ class Brush {
     this.context.restore();
   }
 
-  /** A straight line. @param {number} long @param {number} width @param {string} color */
+  /** A straight line. @param {number | string} long, and more of the path @param {number} width @param {string} color */
   line(long, width, color) {
     Object.assign(this.context, { strokeStyle: color, lineWidth: width });
     this.context.stroke(new Path2D(`M0 0H${long}`));
@@ -240,7 +242,7 @@ class Brush {
       // One half lies in the shade of the other; the midrib is light.
       context.fillStyle = "rgb(0 0 0 / 14%)";
       context.fill(this.blades[1]);
-      this.line(0.9, 0.02, "rgb(255 255 220 / 15%)");
+      this.line(VEINS, 0.02, "rgb(255 255 200 / 25%)");
     };
     this.at(0, 0, 0, long, () => {
       if (look.form in IN_LEAFLETS) this.leaflets(blade, this.color(light, 0));
@@ -268,11 +270,10 @@ class Brush {
    * @param {string} color of the stalk */
   leaflets(blade, color) {
     const { look: { form, slenderness }, random } = this;
-    const size = 1 / IN_LEAFLETS[form];
     if (form === "digitate") {
       this.line(0.36, 0.016, color);
       for (const [lean, share] of places.digitate) {
-        this.at(0.36, 0, lean + 0.1 * (random() - 0.5), share * size, blade);
+        this.at(0.36, 0, lean + 0.1 * (random() - 0.5), share, blade);
       }
       return;
     }
