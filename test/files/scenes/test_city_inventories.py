@@ -27,6 +27,17 @@ from tree_sway.files.trees.source import open_scene
 pytestmark = pytest.mark.usefixtures('readers_in_this_process')
 
 CITIES = {
+    'Tallinn': (
+        'puu_id,liik,korgus,umbermoot,x,y\n'
+        'TLN-1,Quercus robur,12.0,94,391234.5,5820123.4\n',
+        [('oak', 12.0, 0.299)],
+    ),
+    'ForestGEO': (
+        '"Plot","Mnemonic","Latin","Quadrat","PX","PY","TreeID","DBH","HOM"\n'
+        '"scbi","quro","Quercus robur",0101,1.7,17.3,1,300.0,1.3\n'
+        '"scbi","tico","Tilia cordata",0101,9.4,11.2,2,450.0,1.3\n',
+        [('oak', None, 0.3), ('lime', None, 0.45)],
+    ),
     'Berlin': (
         'standortnr;art_dtsch;art_bot;gattung;stammumfg;baumhöhe [m];x;y\n'
         '1;Gemeine Rosskastanie;Aesculus hippocastanum;AESCULUS;157,08;15,5;391234,5;5820123,4\n'
