@@ -116,6 +116,37 @@ def test_a_wind_is_read_in_any_words_and_layout(tmp_path: Path, text: str) -> No
     assert record.velocity[:, 1] == pytest.approx(sides, abs=1e-3)
 
 
+CHANNELS = [
+    {
+        'datetime': stamp,
+        'channels': [
+            {'id': 1, 'name': name, 'value': value}
+            for name, value in (('Rain', 0.0), ('WS', speed), ('WD', 225.0))
+        ],
+    }
+    for stamp, speed in zip(STAMPS, SPEED, strict=True)
+]
+"""As the service of Israel's meteorologists answers."""
+
+
+def test_channels_of_each_record_are_its_columns(tmp_path: Path) -> None:
+    path = tmp_path / 'wind.json'
+    path.write_text(dumps({'stationId': 178, 'data': CHANNELS}), encoding='utf-8')
+    read = read_wind(path, turbulence=False)
+    np.testing.assert_allclose(np.hypot(*read.velocity[:, :2].T), SPEED)
+
+
+def test_one_of_several_tables_alike_is_not_read_alone(tmp_path: Path) -> None:
+    rows = [
+        {'time': stamp, 'speed [m/s]': speed, 'direction [deg]': 225}
+        for stamp, speed in zip(STAMPS, SPEED, strict=True)
+    ]
+    path = tmp_path / 'wind.json'
+    path.write_text(dumps({'north': {'rows': rows[:5]}, 'south': {'rows': rows[5:]}}))
+    with pytest.raises(FormatError, match='2 tables of the same columns'):
+        read_wind(path)
+
+
 @pytest.mark.parametrize('name', ['wind_speed_std', 'apparent wind speed', 'wind chill'])
 def test_other_words_are_no_speed_of_the_wind(tmp_path: Path, name: str) -> None:
     path = tmp_path / 'wind.csv'

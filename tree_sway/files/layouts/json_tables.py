@@ -64,7 +64,14 @@ def _read_json_table(lines: list[str], source: str) -> TextTable:
             'no table in the JSON',
             cure='give columns or records with a time, a speed and a direction',
         )
-    return max(winds or tables, key=lambda table: len(table.texts))
+    longest = max(winds or tables, key=lambda table: len(table.texts))
+    alike = {tuple(each.texts) for each in winds if each.columns == longest.columns}
+    if len(alike) > 1:
+        raise FormatError(
+            f'{len(alike)} tables of the same columns in the JSON, where one is read',
+            cure='write the records of one instrument into one list',
+        )
+    return longest
 
 
 def _units_in(node: Any, *, is_inside: bool, depth: int = 0) -> Iterator[tuple[str, str]]:
@@ -206,7 +213,7 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     system = units.get('*')
     records = []
     empty: Cells = {}
-    for each in node:
+    for each in map(_by_name, node):
         record = dict(flat(each))
         if system:
             record['units'] = system
@@ -217,6 +224,18 @@ def _records(node: list[dict[str, Any]], units: Cells, source: str) -> TextTable
     beside = [unit_beside(records[0], name) or unit_for(name, units) for name in names]
     titles = [units.get(f'#{name}', name) for name in names]
     return widened(table_of_cells(titles, rows, source, units=beside))
+
+
+def _by_name(record: dict[str, Any]) -> dict[str, Any]:
+    """Return a record whose lists of names and values are values by name, as those of the IMS."""
+    found: dict[str, Any] = {}
+    for key, each in record.items():
+        parts = [*map(object_of, list_of(each))]
+        named = {
+            text_of(part['name']): part['value'] for part in parts if {'name', 'value'} <= {*part}
+        }
+        found |= named if any(map(is_wind, named)) else {key: each}
+    return found
 
 
 def _series(node: Any, before: str, units: Cells) -> Iterator[Value]:
