@@ -543,7 +543,7 @@ def test_the_correction_does_not_touch_the_motion_in_the_wind(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     corrected, alone = told(), told()
-    correction = np.zeros((2, corrected.observer.count))
+    correction = np.zeros((3, corrected.observer.count))
 
     def known(time: float, *_: Any) -> Floats:
         correction[0] = 0.02 * np.sin(9.0 * time)
