@@ -70,6 +70,12 @@ PANDAS = {
     'index': [1709647200000 + 60000 * row for row in ROWS],
     'data': [[speed, 225] for speed in SPEED],
 }
+WXT = ''.join(
+    f'{1709647200 + 60 * row}\t0R1,Dn=223D,Dm=225D,Dx=227D,Sn=0.5M,Sm={speed}M,Sx=9.9M\n'
+    f'{1709647200 + 60 * row}\t0R2,Ta=13.9C,Ua=28.5P,Pa=889.9H\n'
+    for row, speed in zip(ROWS, SPEED, strict=True)
+)
+"""With the weather of the same transmitter between the winds."""
 BY_TIME = {stamp: {'ws': speed, 'wd': 225} for stamp, speed in zip(STAMPS, SPEED, strict=True)}
 
 
@@ -95,6 +101,11 @@ BY_TIME = {stamp: {'ws': speed, 'wd': 225} for stamp, speed in zip(STAMPS, SPEED
             '{day} {clock},{v},225',
             3.6,
         ),
+        table(
+            'Date/Time (LST),Year,Month,Day,Time (LST),Wind Spd (m/s),Wind Dir (deg)',
+            '{day} {clock},2024,03,05,{clock},{v},225',
+        ),
+        WXT,
         long('timestamp,variable,value', ('wind_speed', 'wind_direction')),
         long('DateTime,Parameter,Measurement', ('Wind speed (m/s)', 'Wind direction (deg)')),
         long('time,measurement_type,reading', ('windSpeed', 'windDirection')),

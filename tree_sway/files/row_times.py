@@ -41,18 +41,18 @@ def time_columns(table: TextTable) -> tuple[list[int], str, float] | None:
             return places, form, 1.0
     first = range(min(len(table.texts), _LOOKED_AT))
     columns = range(len(table.columns))  # of any name, or without one as an index
+    texts = {each: [*filter(None, table.cells(each, first))] for each in columns}
+    of_day = [each for each in columns if texts[each] and all(map(_is_of_day, texts[each]))]
     clocks = table.find_all('time')
-    clocks.sort(key=lambda index: not _run_on(table.cells(index, first)))
-    if not clocks or not _run_on(table.cells(clocks[0], first)):
-        clocks = [each for each in columns if _are_dates(table.cells(each, first))][:1] or clocks
+    clocks.sort(key=lambda each: (not _run_on(texts[each]), each in of_day))
+    if not clocks or not _run_on(texts[clocks[0]]):
+        clocks = [each for each in columns if _are_dates(texts[each])][:1] or clocks
     if not clocks:
         return None
-    texts = {each: [*filter(None, table.cells(each, first))] for each in columns}
     days = [each for each in columns if _are_days(texts[each])]
-    of_day = [each for each in columns if texts[each] and all(map(_is_of_day, texts[each]))]
     if days and of_day and clocks[0] in (*days, *of_day):
         return [days[0], of_day[0]], '{0} {1}', 1.0
-    if _are_dates(table.cells(clocks[0], first)):  # what is in brackets is no unit then
+    if _are_dates(texts[clocks[0]]):  # what is in brackets is no unit then
         return [clocks[0]], '', 1.0
     unit = table.unit_of(clocks[0], 'time') or maker_of(table).get('time')
     return [clocks[0]], '', table.known_factor('time', unit) if unit else 1.0
