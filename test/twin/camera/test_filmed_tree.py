@@ -231,7 +231,7 @@ def test_a_sensor_moves_nothing_while_the_camera_sees_and_all_of_it_without(
     """A sensor that errs makes no good camera worse."""
     _, points = film
     alone = followed(FilmedTree(tree, camera=CAMERA), points)
-    moved = np.zeros((2, 32))
+    moved = np.zeros((3, 32))
     moved[0, 0] = 0.05
     monkeypatch.setattr(Observer, 'step', lambda *_: moved)
     filmed = FilmedTree(tree, camera=CAMERA)
