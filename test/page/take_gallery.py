@@ -56,7 +56,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
-_CLOSE, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.96, 1.08))
+_CLOSE, _NEARLY, _WHOLE = (f'treeSway.scene.camera.zoom({by});' for by in (0.86, 0.92, 1.08))
 _MAY = 'treeSway.scene.flower(5.5);'
 _TRACED = 'treeSway.traces.wind._shown.points.length > 1'
 _AUTUMN = "document.getElementById('season').click();"
@@ -100,7 +100,7 @@ FILM, EVERY, FILM_SIZE = 5.0, 0.1, (640, 400)
 """Length of a film and time between its pictures [s], and their size [px]: each is drawn anew."""
 
 VIEWS = (
-    View('benjamina', 'benjamina', size=SQUARE),
+    View('benjamina', 'benjamina', script=_CLOSE, size=SQUARE),
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
@@ -111,12 +111,12 @@ VIEWS = (
     View('spruce', 'spruce', script=_CLOSE, size=SQUARE),
     View('spruce_software', 'spruce', is_full=False),
     View('fir', 'fir', script=_CLOSE, size=SQUARE),
-    View('pine', 'pine', size=SQUARE),
+    View('pine', 'pine', script=_NEARLY, size=SQUARE),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('lime', 'lime', script=_CLOSE, size=SQUARE),
     View('beech', 'beech', script=_CLOSE, size=SQUARE),
     View('horse_chestnut', 'horse_chestnut', script=_CLOSE + _MAY, size=SQUARE),
-    View('willow', 'willow', script=_CLOSE, size=SQUARE),
+    View('willow', 'willow', script=_NEARLY, size=SQUARE),
     View('willow_sways', 'willow', is_film=True, size=FILM_SIZE),
     View('walnut', 'walnut', script=_WHOLE, size=SQUARE),
     View('walnut_software', 'walnut', is_full=False),
