@@ -277,6 +277,11 @@ typedef struct sway_filter {
  * use, and judge these. */
 SWAY_API void sway_correct(const sway_filter *filter, const sway_readings *readings, size_t steps);
 
+/* Correct a filter by measurements (steps, p), each a step after the one before, and add the squares
+ * of its innovations (p). */
+SWAY_API void sway_try(const sway_filter *filter, const double *measured, size_t steps,
+                       double *squares);
+
 /* A correction of n coordinates. */
 typedef struct sway_correction {
   int64_t coordinates;

@@ -67,6 +67,14 @@ void move(int64_t n, const double *law, int rows, double *state) {
   }
 }
 
+// Move a filter by a step, and write the measurements that it expects then.
+void expect(const sway_filter &filter, double *expected) {
+  const int64_t n = filter.coordinates, p = filter.measurements;
+  move(n, filter.law, 3, filter.state);
+  for (int64_t k = 0; k < p; k++) expected[k] = 0.0;
+  for (int64_t i = 0; i < 3 * n; i++) add_row(p, filter.state[i], filter.sensed + i * p, expected);
+}
+
 double limited(double value, double most) { return fmin(fmax(value, -most), most); }
 
 // Note the newest sample of a sensor at the time of a step; whether there is another.
@@ -222,13 +230,11 @@ void sway_judge(sway_sensor *judged, double size) {
 void sway_correct(const sway_filter *filter, const sway_readings *readings, size_t steps) {
   const int64_t n = filter->coordinates, p = filter->measurements;
   double *state = filter->state, *calm = filter->calm;
+  double *last = filter->innovations;
   for (size_t step = 0; step < steps; step++) {
-    move(n, filter->law, 3, state);
+    expect(*filter, last);
     move(n, filter->law, 3, calm);
   }
-  double *last = filter->innovations;
-  for (int64_t k = 0; k < p; k++) last[k] = 0.0;
-  for (int64_t i = 0; i < 3 * n; i++) add_row(p, state[i], filter->sensed + i * p, last);
   double largest = 0.0;  // of the quantities of a sensor
   for (int64_t k = 0; k < p; k += 3) {
     const int64_t at = filter->row[k] / 9;
@@ -251,6 +257,19 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
     largest = 0.0;
   }
   for (int64_t i = 0; i < 3 * n; i++) calm[i] += PACE * (state[i] - calm[i]);
+}
+
+void sway_try(const sway_filter *filter, const double *measured, size_t steps, double *squares) {
+  const int64_t n = filter->coordinates, p = filter->measurements;
+  double *last = filter->innovations;
+  for (size_t step = 0; step < steps; step++) {
+    expect(*filter, last);
+    for (int64_t k = 0; k < p; k++) {
+      const double innovation = measured[int64_t(step) * p + k] - last[k];
+      squares[k] += innovation * innovation;
+      add_row(3 * n, innovation, filter->gain + 3 * n * k, filter->state);
+    }
+  }
 }
 
 void sway_carry(const sway_correction *correction, const double *ahead, const double *calm,

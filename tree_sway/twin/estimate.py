@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Ints
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.native import address, LIBRARY, NativeFilter, NativeReadings
 from tree_sway.twin.steady_filter import SteadyFilter
 
@@ -50,6 +50,17 @@ class Estimate:
     def advance(self, readings: NativeReadings, n_periods: int) -> None:
         """Move by a number of steps, correct by sensors that are known, and judge these."""
         LIBRARY.sway_correct(self._native.at, readings.at, n_periods)
+
+    def tried(self, measured: Floats) -> Floats:
+        """
+        Correct it by measurements (n, p), a step after each other.
+
+        Returns the mean squares of the innovations, (p,). No sensor is judged.
+        """
+        squares = np.zeros(measured.shape[1])
+        rows = np.ascontiguousarray(measured)
+        LIBRARY.sway_try(self._native.at, address(rows), len(rows), address(squares))
+        return squares / len(rows)
 
     def move(self, n_periods: int) -> None:
         """Move by a number of steps."""

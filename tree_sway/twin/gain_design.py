@@ -23,6 +23,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.twin.gust_strength import BeyondModel, strength_of, UsualLaw
 from tree_sway.twin.later_work import LaterWork
+from tree_sway.twin.missed_motion import missed_noise
 from tree_sway.twin.pushed_twigs import push_of
 from tree_sway.twin.sensor_place import PlaceMotion
 from tree_sway.twin.sensor_track import as_felt, sensed_rows, SensorTrack
@@ -38,6 +39,9 @@ correction is not applied, and applied whole.
 _SWAYS, _STREAMS = 0.15, 0.3
 """Damping ratios in the mean wind below and above which a coordinate leans, and streams [-]."""
 
+_TRIED = 30.0
+"""Time in [s] whose samples tell by how much more a sensor misses the model than by its noise."""
+
 _LATER = 1.4
 """How much more of its motion there is when the strength of the gusts is found again."""
 
@@ -49,12 +53,14 @@ class Gains(NamedTuple):
     """
     Gains for some sensors.
 
-    ``used`` are their numbers, ``noise`` that of their measurements, (p,), and ``trust`` the share
-    of the correction of each coordinate to apply, ``leaning`` that of its lean, (n,). ``push`` is
-    the force on each coordinate of the model by that of each of these, (n, m).
+    ``used`` are their numbers, ``noise`` that of their measurements, (p,), with what no coordinate
+    can have (`missed_noise`), ``noise_of`` that of each by its number and quantities, ``trust`` the
+    share of the correction of each coordinate to apply, and ``leaning`` that of its lean, (n,).
+    ``push`` is the force on each coordinate of the model by that of each of these, (n, m).
     """
 
     used: tuple[int, ...]
+    noise_of: dict[tuple[int, tuple[int, ...]], Floats]
     noise: Floats
     filter: SteadyFilter
     trust: Floats
@@ -85,6 +91,7 @@ class GainDesign:
         self._wanted: tuple[int, ...] = ()
         self._work: LaterWork[Gains] | None = None
         self._again_after = 0
+        self._noise: dict[tuple[int, tuple[int, ...]], Floats] = {}
         self.used: tuple[int, ...] = ()
         """Sensors for which gains are found, and which are all in use."""
 
@@ -102,6 +109,7 @@ class GainDesign:
         found = self._work.advance()
         if found is not None:
             self._work, self.used = None, found.used
+            self._noise |= found.noise_of
         return found
 
     def stop(self) -> None:
@@ -120,12 +128,18 @@ class GainDesign:
         assert forces is not None
         found = [self.felt(k) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
-        noise = np.concatenate([each for _, each in found])
         count = round(COMPARED / unknown.dt)
         self._again_after = round(min(_LATER * self._n_seen(used), self._n_seen(used) + count))
+        keys = [(k, self._tracks[k].uses) for k in used]
+        records = [self._tracks[k].beyond(count) for k in used]
+        n_tried = round(_TRIED / unknown.dt)
+        tried = [
+            (rows, least, self._noise.get(key, least), record[-n_tried:])
+            for key, (rows, least), record in zip(keys, found, records, strict=True)
+        ]
         beyond = [
-            BeyondModel(self._tracks[k].beyond(count), rows[:2].reshape(2, 3, -1), float(each[0]))
-            for k, (rows, each) in zip(used, found, strict=True)
+            BeyondModel(motion[:, :2], rows[:2].reshape(2, 3, -1), float(each[0]))
+            for motion, (rows, each) in zip(records, found, strict=True)
         ]
         usual = UsualLaw(
             unknown.stiffness.copy(),
@@ -145,14 +159,18 @@ class GainDesign:
         def found_later() -> Gains:
             strength = strength_of(beyond, usual)
             own, others = (replace(each, driven=strength * each.driven) for each in (law, apart))
-            found = steady_filter(own, sensed, noise)
-            told = told_shares(found, others, noise)
+            noise_of = {
+                key: missed_noise(own, *each) for key, each in zip(keys, tried, strict=True)
+            }
+            noise = np.concatenate([*noise_of.values()])
+            gains = steady_filter(own, sensed, noise)
+            told = told_shares(gains, others, noise)
             beyond_little = (told - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
             trust = np.clip(beyond_little, 0.0, 1.0)
             if moved.any():  # not of gauges alone, whose places tell no force
                 trust *= leaning
             push = push_of(moved, stiffness, trust, streaming)
-            return Gains(used, noise, found, trust, leaning, push)
+            return Gains(used, noise_of, noise, gains, trust, leaning, push)
 
         return LaterWork(found_later, _DUE)
 

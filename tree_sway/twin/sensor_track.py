@@ -599,17 +599,16 @@ class SensorTrack:
 
     def beyond(self, most: int) -> Floats:
         """
-        Return what it measured beyond the model to east and north, (n, 2), in the last steps.
+        Return what it measured beyond the model in the last steps, of a number of them at most.
 
-        It is that of the first quantity it is used for, of a number of steps at most.
+        These are the three axes of each quantity that it is used for, (n, 3 k).
         """
         assert self.alignment is not None
         count = self.native.count
         rows = np.arange(max(count - min(most, len(self._sensed)), 0), count) % len(self._sensed)
         model = as_felt(self._computed[rows].T, has_gravity=self.alignment.has_gravity).T
-        first = self.picked.start
-        moved = self.alignment.motion(self._sensed[rows]) - model
-        return moved[:, first : first + 2]
+        moved = self.alignment.motion(self._sensed[rows]) - model - self.bias
+        return moved[:, self.picked]
 
     def note_step(self, step: int) -> None:
         """Note by how many steps it is behind; if by more than before, some are missing."""

@@ -22,7 +22,7 @@ from tree_sway.errors import MissingDependencyError, ParameterError
 VERSION = 1
 """Version of the interface, and of the bytes of a model."""
 
-INTERFACE = 0x6292C269
+INTERFACE = 0xDA406528
 """CRC-32 of the headers ``sway.h`` and ``library.h``, which the library is asked for."""
 
 FILE = Path(__file__).with_name('_sway.dll' if sys.platform == 'win32' else '_sway.so')
@@ -76,6 +76,7 @@ SIGNATURES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     'sway_read_sensors': (_whole, (_pointer, _whole, _whole, _number)),
     'sway_judge': (None, (_pointer, _number)),
     'sway_correct': (None, (_pointer, _pointer, _size)),
+    'sway_try': (None, (_pointer, _pointer, _size, _pointer)),
     'sway_carry': (None, (_pointer, _pointer, _pointer, _number, _pointer, _pointer)),
     'sway_drag': (None, (_pointer, _pointer, _size, _pointer)),
     # Oscillators.
