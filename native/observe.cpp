@@ -246,6 +246,11 @@ void sway_correct(const sway_filter *filter, const sway_readings *readings, size
       const double deviation = filter->deviation[j], share = innovation / deviation;
       size += share * share / 3.0;
       last[j] = limited(innovation, CLIPPED * deviation);
+    }
+    // What may be thrown moves nothing: its part would stay in the state when the sensor is left.
+    const double counts = size > THROWN * sensor.usual ? 0.0 : 1.0;
+    for (int64_t j = k; j < k + 3; j++) {
+      last[j] *= counts;
       add_row(3 * n, last[j], filter->gain + 3 * n * j, state);
     }
     largest = fmax(largest, size);

@@ -44,11 +44,13 @@ def gains() -> SteadyFilter:
     return steady_filter(law, rng.normal(size=(P, 3 * M)), np.full(P, 0.5))
 
 
-def test_it_moves_by_its_law_and_is_corrected_by_limited_innovations(gains: SteadyFilter) -> None:
+def test_it_moves_by_its_law_and_is_corrected_by_what_is_not_thrown(
+    gains: SteadyFilter,
+) -> None:
     rng = np.random.default_rng(12)
     estimate, sensors, law = Estimate(gains, ROWS), Sensors(), gains.law.matrix
     state, calm = np.zeros((2, 3 * M))
-    largest = 0.0
+    largest, n_thrown = 0.0, 0
     for k in range(40):
         n_periods, is_there = 1 + k % 3, k % 7 > 0
         # Now and then a measurement beyond the limit.
@@ -60,16 +62,21 @@ def test_it_moves_by_its_law_and_is_corrected_by_limited_innovations(gains: Stea
             state, calm = law @ state, law @ calm
         innovation = beyond - gains.sensed @ state
         innovation[3:] *= is_there
-        size = np.square(innovation / gains.deviation).reshape(2, 3).mean(axis=1)[1]
-        largest = max(largest, size)
+        sizes = np.square(innovation / gains.deviation).reshape(2, 3).mean(axis=1)
+        size = sizes[1]
+        largest = max(largest, float(size))
         excess = 1.0 + DT / 2.0 * (min(size, 400.0) - 1.0) * is_there
         assert sensors.each[1].excess == pytest.approx(excess)
         limited = np.clip(innovation, -6.0 * gains.deviation, 6.0 * gains.deviation)
+        thrown = sizes > 100.0
+        n_thrown += int(thrown.sum())
+        limited[np.repeat(thrown, 3)] = 0.0
         state = state + gains.gain @ limited
         calm = calm + 0.15 * (state - calm)
         np.testing.assert_allclose(estimate.state.ravel(), state, atol=1e-11)
         np.testing.assert_allclose(estimate.calm.ravel(), calm, atol=1e-11)
     assert largest > 36.0
+    assert n_thrown > 3
 
 
 @pytest.mark.parametrize('late', [0, 5])

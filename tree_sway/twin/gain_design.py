@@ -54,8 +54,8 @@ class Gains(NamedTuple):
     Gains for some sensors.
 
     ``used`` are their numbers, ``noise`` that of their measurements, (p,), with what no coordinate
-    can have (`missed_noise`), ``noise_of`` that of each by its number and quantities, ``trust`` the
-    share of the correction of each coordinate to apply, and ``leaning`` that of its lean, (n,).
+    can have (`missed_noise`), ``noise_of`` that of each by its number and quantities, ``trust``
+    the share of the correction of each coordinate to apply, ``leaning`` that of its lean, (n,).
     ``push`` is the force on each coordinate of the model by that of each of these, (n, m).
     """
 

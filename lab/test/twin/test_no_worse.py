@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import pytest
+from tree_sway_lab.twin.gusty_truth import gusty_motion, mast_of, Outside
 from tree_sway_lab.twin.trial import twin_score
 from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
 
@@ -42,3 +43,23 @@ def test_a_sensor_on_the_stem_does_not_move_hanging_twigs_wrongly() -> None:
 def test_one_and_two_sensors_make_no_kind_worse(kind: str, seed: int) -> None:
     with one_thread():
         assert max(errors(kind, seed, 90.0, (1, 2))) < MOST
+
+
+@pytest.mark.long
+def test_a_sensor_on_a_limb_takes_nothing_from_one_on_the_stem() -> None:
+    tree, species = tree_called('pine 12 2')
+    places = ['stem:0.8', 'b188:0.5']
+    outside = Outside(seconds=90.0, seed=941).drawn(tree)
+    distance, bearing = mast_of(outside)
+    with one_thread():
+        true = gusty_motion(tree, species, places, outside, in_leaf=False)
+        alone, one, two = (
+            twin_score(
+                tree, species, true, places[:count], in_leaf=False, has_band=False,
+                anemometer_distance=distance, anemometer_bearing=bearing,
+            ).error
+            for count in (0, 1, 2)
+        )  # fmt: skip
+    print(f'{alone:.3f} without, {one:.3f}, {two:.3f}')
+    assert one < 0.3 * alone
+    assert two < 1.1 * one
