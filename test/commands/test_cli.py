@@ -60,6 +60,11 @@ def test_the_file_to_write_may_be_the_last_word(tmp_path: Path) -> None:
         ([], 'required: COMMAND'),
         (['sway'], "invalid choice: 'sway'"),
         (['dmeo'], "did you mean 'demo'?"),
+        (['--verison'], "unrecognized arguments: --verison; did you mean '--version'?"),
+        (['-V'], "unrecognized arguments: -V; did you mean '--version'?"),
+        (['--'], 'required: COMMAND'),
+        (['show', 'oak', '--leaf', 'on'], "--leaf on; did you mean '--leaves'?"),
+        (['show', 'oak', '-leaves', 'on'], "-leaves on; did you mean '--leaves'?"),
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
         (
             ['calibrate', 'benjamina', '--at', '3'],

@@ -4,8 +4,9 @@
 The tutorials as a new user types them: in a clone, in the environment of its first command.
 
 The tests' own environment has every part of the package, and cannot show that a tutorial lacks
-one. Each block marked ``sh`` or ``python`` is run in the order of its page. The clone has only
-what is committed.
+one. Each block marked ``sh`` or ``python`` is run in the order of its page, and of one marked
+``bash`` the pages that it shows, for a moment and in no browser. The clone has only what is
+committed.
 
 """
 
@@ -27,8 +28,11 @@ TUTORIALS = [
     page for page in pages.PAGES
     if page.parent.name == 'tutorials' and pages.blocks(page, 'sh', 'python')
 ]  # fmt: skip
+SHOWN = re.compile(r'^(tree-sway show .*?)(?: --open)?$', re.MULTILINE)
+"""A page of a ``bash`` block, which a user ends by Ctrl-C."""
 FIRST = 'python3 .ci/in_venv.py tree-sway --version'
 """Makes the environment as the README's first command does, without its page."""
+ACTIVATE = 'source .venv/bin/activate\n'
 DEADLINE = 600.0
 NOT_OF_A_NEW_USER = (
     'TREE_SWAY_VENV', 'TREE_SWAY_UV', 'VIRTUAL_ENV', 'PYTHONPATH', 'AMENT_PREFIX_PATH',
@@ -61,9 +65,14 @@ def typed(text: str, folder: Path, environment: dict[str, str]) -> str:
 
 @pytest.mark.parametrize('page', TUTORIALS, ids=lambda page: page.stem)
 def test_it_runs_as_typed(page: Path, clone: Path, ros_environment: dict[str, str]) -> None:
-    for language, text in pages.blocks(page, 'sh', 'python'):
+    for language, text in pages.blocks(page, 'sh', 'python', 'bash'):
+        if language == 'bash':
+            for line in SHOWN.findall(text):
+                seen = typed(f'{ACTIVATE}{line} --seconds 1', clone, ros_environment)
+                assert 'http://127.0.0.1:' in seen
+            continue
         lines = f"python3 - <<'END_OF_PAGE'\n{text}END_OF_PAGE\n" if language == 'python' else text
-        printed = typed(f'source .venv/bin/activate\n{lines}', clone, ros_environment)
+        printed = typed(f'{ACTIVATE}{lines}', clone, ros_environment)
         assert printed or language == 'sh'
         for suffix in ('png', 'gif', 'csv'):
             for written in re.findall(rf'-o (\S+\.{suffix})\b', text):

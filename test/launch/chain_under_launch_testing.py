@@ -34,7 +34,7 @@ class TestWhileItSways(unittest.TestCase):
 
     def test_it_says_when_it_is_ready_and_streams(self, proc_output):
         proc_output.assertWaitFor('ready after', timeout=DEADLINE, stream='stderr')
-        said = 'reading wind as WindConvention('
+        said = 'reading wind by direction_convention to, speed_scale 1.0, '
         proc_output.assertWaitFor(said, timeout=DEADLINE, stream='stderr')
         rclpy.init()
         node, frames = rclpy.create_node('observer'), []

@@ -71,6 +71,17 @@ def test_a_recorded_state_can_be_drawn_again(
     assert Placer(description).n_segments == 7
 
 
+def test_a_recorder_knows_what_nobody_publishes(compose, observer, tmp_path):
+    compose(anemometer={'rate': 40.0})
+    with BagWriter(tmp_path / 'bag', 'mcap') as bag:
+        with Recorder(observer.context, bag, _USUAL) as recorder:
+            end = time.monotonic() + DEADLINE
+            while not bag.counts.get('/wind'):
+                assert time.monotonic() < end, bag.counts
+                recorder.spin(0.1)
+            assert recorder.missing == ['/wind/filtered', '/tree_state', '/tree_description']
+
+
 def test_the_layouts_show_what_a_bag_holds(compose, observer, tree_file, tmp_path):
     """Every topic that RViz and Foxglove are to show is there, of a type that they show."""
     compose(anemometer={'rate': 40.0}, wind={}, solver={'tree': tree_file})

@@ -33,12 +33,13 @@ _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 _NO_NUMBER = re.compile(r"argument (\S+): invalid (float|int) value: '(.*)'")
 _UNIT = re.compile(r'\[([^]%]+)\]')
-_UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
+_UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(-[\w-]+)')
 _LEFT = re.compile(r'unrecognized arguments: ([^-]\S*)$')
 _NO_VALUE = re.compile(r'argument (\S+): expected one argument')
 _OTHER_WORDS = {
     'hz': 'rate', 'fps': 'rate', 'duration': 'seconds', 'time': 'seconds', 'file': 'output',
     'wind-speed': 'speed', 'size': 'pixels', 'dbh': 'diameter', 'overwrite': 'force',
+    'leaf': 'leaves', 'V': 'version', 'v': 'version',
 }  # fmt: skip
 """Words that options are sought by."""
 
@@ -215,7 +216,8 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
         parser.epilog = f'commands of other packages: {called}'
     version = importlib.import_module('tree_sway').__version__
     parser.add_argument('--version', action='version', version=version)
-    commands = parser.add_subparsers(dest='command', metavar='COMMAND', required=True)
+    is_needed = chosen.strip('-') in ('', chosen)  # behind an option that is misspelt it is not
+    commands = parser.add_subparsers(dest='command', metavar='COMMAND', required=is_needed)
     for name, command in table.items():
         sub = commands.add_parser(
             name,

@@ -53,6 +53,8 @@ def record_bag(arguments: argparse.Namespace, seconds: float) -> int:
             recorder.spin(_LOOK)
     if short := shorter_than(recorder.covered, seconds, arguments.output):
         print(f'note: {short}', file=sys.stderr)
+    if recorder.missing:
+        print(f'note: nobody published {", ".join(recorder.missing)}', file=sys.stderr)
     written = ', '.join(f'{count} of {name}' for name, count in bag.counts.items())
     print(f'{arguments.output}: {written or "nothing was sent"}')
     return 0
@@ -75,6 +77,11 @@ class Recorder(Listener):
     def recorded(self) -> float:
         """Time since the first message in [s]."""
         return 0.0 if self._began is None else time.monotonic() - self._began
+
+    @property
+    def missing(self) -> list[str]:
+        """Topics that nobody has published so far."""
+        return list(self._wanted)
 
     def spin(self, seconds: float) -> None:
         """Record for a time [s]; subscribe to new topics first."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 
+from tree_sway.errors import ParameterError
 from tree_sway.extras import refuse_missing
 from tree_sway.files.recording import FORMATS
 from tree_sway.live.commands import (
@@ -45,6 +46,9 @@ def run(arguments: argparse.Namespace) -> int:
         return record_tree(arguments, seconds)
     if arguments.sensor is not None:
         return record_wind(arguments, seconds)
+    if arguments.output.endswith('.csv'):
+        cure = 'add --sensor SOURCE, or name the folder of a bag'
+        raise ParameterError('a table, and no wind for it', where=arguments.output, cure=cure)
     refuse_missing(['rclpy', 'rosbags'], 'record ...')
     from tree_sway_ros.commands.bag_recorder import record_bag
 

@@ -58,7 +58,9 @@ class WindNode(TreeSwayNode):
         kind = WIND_CLASSES[self.values['input_type']]
         self._topic = self.subscription(WIND, self._receive, kind).topic_name
         self.report_with('wind', self._statuses)
-        self.get_logger().info(f'reading wind as {self._convention}')
+        read_by = self.values.subset(*_CONVENTION).items()
+        said = ', '.join(f'{name} {value}' for name, value in read_by)
+        self.get_logger().info(f'reading wind by {said}')
 
     def activate(self) -> None:
         """Reset the gate where simulated time is set back."""

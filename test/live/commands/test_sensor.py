@@ -108,6 +108,15 @@ def test_live_wind_is_recorded_as_a_table_that_is_read_again(
     assert 'exists' in capfd.readouterr().err
 
 
+def test_a_table_without_a_source_is_no_bag(
+    tmp_path: Path, no_ros: None, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / 'wind.csv'
+    assert main(['record', '-o', str(out)]) == 2
+    assert 'a table, and no wind for it; add --sensor SOURCE' in capfd.readouterr().err
+    assert not out.exists()
+
+
 def test_means_are_recorded_with_their_gusts(tmp_path: Path, no_ros: None) -> None:
     served = []
 

@@ -64,11 +64,13 @@ def test_a_listener_says_that_it_waits_for_poses(context: object, reported: Queu
         watch(monitor, 1.0, lambda: bool(reported.get(timeout=DEADLINE)), patience=0.0)
 
 
-def test_a_recorder_says_that_it_waits_for_a_tree(
-    reported: Queue[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_recorder_says_that_it_waits_for_a_tree_and_what_did_not_come(
+    reported: Queue[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
     class Waiting(Recorder):
         recorded = covered = 0.0
+        missing = ('/tree_state', '/tree_description')  # type: ignore[assignment]
         said = ''
 
         def __init__(self, _context: object, *others: Any) -> None:
@@ -86,3 +88,5 @@ def test_a_recorder_says_that_it_waits_for_a_tree(
     given = argparse.Namespace(output=tmp_path / 'bag', format='mcap', poses=False, namespace='')
     assert record_bag(given, 2.0) == 0
     assert 'waiting for a running tree' in Waiting.said
+    told = 'note: nobody published /tree_state, /tree_description\n'
+    assert told in capsys.readouterr().err

@@ -20,6 +20,7 @@ from tree_sway.core.species import Species, species_named
 from tree_sway.core.tree import Tree
 from tree_sway.errors import ParameterError, shown, SpeciesError
 from tree_sway.files import reader_options, refuse_unwritable
+from tree_sway.files.commands.typed_names import tree_name
 from tree_sway.files.export import write_tree
 from tree_sway.files.trees import open_scene, open_tree, TreeFile
 from tree_sway.files.trees.tree_options import same
@@ -38,10 +39,12 @@ def add_tree_arguments(
     """Add TREE, or a forest, and its wood; TREE is required unless there is a default."""
     kind = _TREE + ', forest or inventory' * forests
     if default is None:
-        parser.add_argument('tree', metavar='TREE', help=kind)
+        parser.add_argument('tree', type=tree_name, metavar='TREE', help=kind)
     else:
         text = f'{kind} (%(default)s)'
-        parser.add_argument('tree', metavar='TREE', nargs='?', default=default, help=text)
+        parser.add_argument(
+            'tree', type=tree_name, metavar='TREE', nargs='?', default=default, help=text
+        )
     add = parser.add_argument_group('tree').add_argument
     add('--seed', type=int, default=0, help='random seed of a built-in tree (%(default)s)')
     add(

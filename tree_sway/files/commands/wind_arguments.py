@@ -21,6 +21,7 @@ from tree_sway.files.commands.arguments import (
     add_model_argument,
     add_tree_arguments,
 )
+from tree_sway.files.commands.typed_names import wind_name
 from tree_sway.files.wind import read_wind, WindRecord
 from tree_sway.simulation import RecordedWind, SimulatedWind
 
@@ -38,7 +39,8 @@ def add_wind_arguments(
     ``record`` is help for the first, ``speed_of`` says which speed it is where none is given.
     """
     add = parser.add_argument_group('wind').add_argument
-    add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
+    what = record or 'wind recording; without it wind is simulated'
+    add('--wind', type=wind_name, metavar='FILE', help=what)
     options = (
         'option of its reader, such as speed_unit=km/h, direction=270, topic=/mast/wind, '
         'yaw=1.57, direction_convention=from or rate=20; repeatable'

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 
+from tree_sway.commands import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.settings import Settings
 from tree_sway.core.setup import TreeReductions
@@ -59,12 +60,9 @@ def run(arguments: argparse.Namespace) -> int:
         curve = stem_growth()[species.key]
         whose = f'{curve.measured} along streets ({curve.region}, USA)'
         print(f'note: a stem of {diameter:.2f} m, as {whose}', file=sys.stderr)
-    tree = grow(
-        species.key,
-        arguments.height,
-        diameter,
-        rng=np.random.default_rng(arguments.seed),
-    )
+    rng = np.random.default_rng(arguments.seed)
+    with waiting(f'growing {species.key}'):
+        tree = grow(species.key, arguments.height, diameter, rng=rng)
     species = rooted(tree, species)
     grown = TreeFile(tree, species, tree.name).checked()
     for oddity in grown.warnings:

@@ -143,7 +143,7 @@ def _strength(scene: Scene, arguments: argparse.Namespace) -> Figure:
     fastest = SWAY['mean_speed'].checked(simulated_speed(arguments, 30.0))
     speeds = np.linspace(0.0, fastest, 7)[1:]
     used = {}
-    for each in bar(tallest.values(), 'loading trees'):
+    for each in bar(tallest.values(), 'computing the strength used'):
         settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
         exposure, curve = used_strength(each, settings, arguments, speeds.tolist())
         for speed, use in zip(speeds, curve, strict=True):
