@@ -39,13 +39,11 @@ class JsonPath:
     def find(self, document: Any) -> Any:
         """Return the value, None where there is none."""
         for step in self._steps:
-            if isinstance(step, int):
-                is_there = isinstance(document, list) and step < len(document)
-            else:
-                is_there = isinstance(document, dict) and step in document
-            if not is_there:
+            is_inside = isinstance(document, list if isinstance(step, int) else dict)
+            try:
+                document = document[step] if is_inside else None
+            except LookupError:
                 return None
-            document = document[step]
         return document
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from tree_sway.files.wind import bearing_of
@@ -67,4 +67,4 @@ class _WithVane:
     def _turned(self, reading: Reading) -> Reading:
         if not isinstance(reading, WindReading):
             return reading
-        return WindReading(reading.kind, reading.speed, self.bearing, gust=reading.gust)
+        return replace(reading, bearing=self.bearing)
