@@ -16,7 +16,8 @@ import time
 
 from tree_sway.errors import shown
 from tree_sway.live.one_sender import OneSender
-from tree_sway.live.transports.link import Link, LONGEST_PAUSE, Transport
+from tree_sway.live.source import Source
+from tree_sway.live.transports.link import Link, LONGEST_PAUSE
 from tree_sway.live.transports.transport import Message
 
 _LOOK = 0.5
@@ -32,14 +33,10 @@ class LiveSource(ABC):
 
     Parameters
     ----------
-    transport
-        Way in which its messages arrive.
+    source
+        Its transport, and the reader of its messages.
     log
         Function called with a line of news, from the source's thread.
-    messages
-        Word for its messages.
-    expects
-        Expected content of its messages.
     patience
         Time [s] in each state after which it is told why nothing comes; states without one are
         not told.
@@ -50,27 +47,24 @@ class LiveSource(ABC):
 
     def __init__(
         self,
-        transport: Transport,
+        source: Source,
         log: Callable[[str], None],
         *,
-        messages: str,
-        expects: str,
         patience: Mapping[str, float],
         silence: float | None = None,
         longest_pause: float = LONGEST_PAUSE,
     ) -> None:
         self.accepted = self.other = 0
         """Numbers of samples, and of messages that are about something else."""
+        self._source = source
         self._log = log
-        self._messages = messages
-        self._expects = expects
         self._patience = patience
         self._last = ''
         self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
         self._link = Link(
-            transport,
+            source.transport,
             self._receive,
             log,
             silence,
@@ -150,9 +144,6 @@ class LiveSource(ABC):
             return ''
         return f', {sum(self.refused.values())} refused: {next(iter(self.refused))}'
 
-    def _refuse(self, cause: str, count: int = 1) -> None:
-        self._link.refuse(cause, count)
-
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
         link = self._link
@@ -161,12 +152,14 @@ class LiveSource(ABC):
         if not link.messages and not self.refused:
             return f'listening to {link.transport}: nothing has come yet'
         number = max(link.messages, sum(self.refused.values()))
-        came = f'{number} {self._messages} came'
+        came = f'{number} {self._source.messages} came'
         if self.refused:
             causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])
             last = f'; the last: {self._last}' if self._last else ''
             return f'{came}, all were refused: {causes}{last}'
-        return f'{came}, none was understood, the last: {self._last}; expected {self._expects}'
+        return (
+            f'{came}, none was understood, the last: {self._last}; expected {self._source.expects}'
+        )
 
     def _watch(self) -> None:
         """Tell once why nothing comes, as soon as it is known, until it does."""

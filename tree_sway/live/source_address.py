@@ -60,15 +60,16 @@ class SourceAddress:
         """Host, maybe empty."""
         return self.parts.hostname or ''
 
-    def port(self, default: int | None = None) -> int:
-        """Port; a `ParameterError` without one and without a default."""
+    def port(self, default: int = 0, cure: str = '') -> int:
+        """Port, which may be all of the place; a `ParameterError` without one or a default."""
+        is_port = not self.parts.netloc and self.place.isdecimal()
         try:
-            port = self.parts.port
+            port = int(self.place) if is_port else self.parts.port
         except ValueError:
             port = 0
         port = default if port is None else port
-        if port is None or not 0 < port < 65_536:
-            raise self.error('a port from 1 to 65535 is missing')
+        if not 0 < port < 65_536:
+            raise self.error('a port from 1 to 65535 is missing', cure)
         return port
 
     def text_of(self, name: str, default: str = '') -> str:

@@ -257,7 +257,7 @@ def test_too_few_samples_are_told_with_the_cure() -> None:
     live = LiveMotion(open_motion('udp:5006'), print)
     for k in range(60):
         live._take(Message(json.dumps({'acc': [0, 0, 9.8]}).encode()))
-        live._arrivals[-1] = 0.5 * k
+        live._samples._times[-1] = 0.5 * k
     assert 'set 20 or more' in live.problem
 
 

@@ -58,8 +58,8 @@ def sensing(
     placed = []
     addresses = set[str]()
     for number, (url, at) in enumerate(sensors_and_places(arguments)):
-        opened = open_motion(url)
-        address = str(opened.source.transport)
+        source = open_motion(url)
+        address = str(source.transport)
         if address in addresses:
             raise ParameterError(
                 f'two sensors at {address}',
@@ -68,7 +68,7 @@ def sensing(
             )
         addresses.add(address)
         tell = heard[number] if heard else None
-        placed.append(PlacedSensor(LiveMotion(opened, say_motion, heard=tell), at))
+        placed.append(PlacedSensor(LiveMotion(source, say_motion, heard=tell), at))
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
         raise ParameterError(

@@ -87,9 +87,10 @@ class MotionFeed:
         if self._ahead - ahead > _ROUNDING:
             self._left_out = _LeftOut(self._ahead, self._stepped, self._stepped - ahead)
         self._ahead, self._stepped = ahead, until
-        sightings = self.film.drain() if self.film is not None else []
-        if self.film is not None and isinstance(simulator, FilmedTree):
-            simulator.camera = self.film.camera
+        film = self.film
+        sightings = film.drain() if film else []
+        if film and isinstance(simulator, FilmedTree):
+            simulator.camera = film.camera
             for seen in sightings:
                 simulator.film(seen.time + self._ahead, seen.reference, seen.points)
         for name, placed in self.sensors.items():

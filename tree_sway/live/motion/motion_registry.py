@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
 from urllib.parse import unquote
 
 from tree_sway.live.motion.motion_json import EXPECTS, read_motion_json
@@ -19,14 +19,7 @@ _FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
 """Addresses as examples."""
 
 
-class OpenedMotion(NamedTuple):
-    """A source of motion, and its name for viewers."""
-
-    source: Source
-    name: str
-
-
-def open_motion(text: str) -> OpenedMotion:
+def open_motion(text: str) -> Source:
     """
     Open a motion sensor by its address.
 
@@ -52,7 +45,7 @@ def open_motion(text: str) -> OpenedMotion:
     source = address.kind_of(known, 'live motion sensor', '--motion', forms)(address)
     name = address.name
     address.refuse_others()
-    return OpenedMotion(source, name or source.name)
+    return replace(source, name=name or source.name)
 
 
 def _phyphox(address: SourceAddress) -> Source:

@@ -13,14 +13,7 @@ from tree_sway.live.transports.udp import Udp
 
 def udp_of(address: SourceAddress) -> Udp:
     """Return the port of ``udp:5006``, or of ``udp://host:5006`` for one address or a group."""
-    place = address.place
-    if address.parts.netloc:
-        port = address.port()
-    elif place.isdecimal() and 0 < int(place) < 65_536:
-        port = int(place)
-    else:
-        raise address.error('a port from 1 to 65535 is missing', 'give udp:5006')
-    return Udp(address.host, port, silence=silence_of(address))
+    return Udp(address.host, address.port(cure='give udp:5006'), silence=silence_of(address))
 
 
 def open_source(address: SourceAddress) -> Source:
