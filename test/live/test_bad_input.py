@@ -19,13 +19,13 @@ from hypothesis import strategies as st
 import pytest
 
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.files.wind import Refusal, WindReading
 from tree_sway.live import sources
 from tree_sway.live.readers.instrument_lines import InstrumentLines
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
 from tree_sway.live.readers.signalk import SignalKWind
 from tree_sway.live.readers.weatherlink import read_conditions
-from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.registry import open_source, source_kinds
 from tree_sway.live.sources.ecowitt import read_upload
 from tree_sway.live.transports.transport import Message

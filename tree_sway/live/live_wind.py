@@ -20,11 +20,10 @@ import time
 import numpy as np
 
 from tree_sway.core.wind import is_wind
-from tree_sway.files.wind import Velocity
+from tree_sway.files.wind import Refusal, Velocity, WindReading
 from tree_sway.live.every_other import EveryOther
 from tree_sway.live.gusts_about_mean import GustsAboutMean, RATE
 from tree_sway.live.live_source import LiveSource
-from tree_sway.live.reading import Refusal, WindReading
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.registry import OpenedSource
 from tree_sway.live.transports.transport import Message

@@ -100,6 +100,10 @@ class SourceAddress:
             raise self.error(f"{name} is '{text}', not a whole number from {low} to {high}")
         return value
 
+    def silence(self, default: float = 10.0) -> float:
+        """Return the option ``silence``: without a message for so long, it is opened again [s]."""
+        return self.number('silence', default, 0.1, 86_400.0)
+
     def angle(self, name: str, default: float = 0.0) -> float:
         """Return an option in degrees, of a name that ends so, as [rad]."""
         return math.radians(self.number(name, math.degrees(default), -360.0, 360.0))

@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import ParameterError
+from tree_sway.files.wind import Refusal
 from tree_sway.live.motion.live_motion import LiveMotion
 from tree_sway.live.motion.motion_json import read_motion_json
 from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.motion_registry import open_motion
 from tree_sway.live.motion.sender_clock import SenderClock
-from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
 FORCE, SPIN = (0.1, -0.2, 9.8), (0.01, 0.02, 0.03)

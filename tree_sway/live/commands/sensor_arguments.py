@@ -18,8 +18,8 @@ from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files.wind import WindRecord
 
 if TYPE_CHECKING:
+    from tree_sway.files.wind import WindReading
     from tree_sway.live import LiveWind
-    from tree_sway.live.reading import WindReading
 
 HELP = (
     'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '

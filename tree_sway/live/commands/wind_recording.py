@@ -17,10 +17,10 @@ import time
 from tree_sway.commands import refuse_overwriting, RowFile
 from tree_sway.errors import ParameterError, TransportError
 from tree_sway.files import refuse_unwritable
+from tree_sway.files.wind import WindReading
 from tree_sway.live import LiveWind
 from tree_sway.live.commands.record_clock import iso_date, RecordClock, wait
 from tree_sway.live.commands.sensor_arguments import listening
-from tree_sway.live.reading import WindReading
 from tree_sway.simulation.wind import LEAST_INTERVAL
 
 _INSTANTS = ('time', 'u [m/s]', 'v [m/s]', 'w [m/s]')

@@ -14,10 +14,10 @@ import math
 import time
 from typing import NamedTuple
 
+from tree_sway.files.wind import Refusal
 from tree_sway.live.live_source import LiveSource
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.motion.sender_clock import SenderClock
-from tree_sway.live.reading import Refusal
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
 from tree_sway.live.transports.transport import Message

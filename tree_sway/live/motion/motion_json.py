@@ -22,10 +22,9 @@ import numpy as np
 
 from tree_sway.files import dates, motion_of, rank_of
 from tree_sway.files.motion import flat
-from tree_sway.files.wind import number
+from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.transport import Message
 
 EXPECTS = (

@@ -12,8 +12,8 @@ from tree_sway.live.motion.phyphox import EXPECTS as OF_PHYPHOX
 from tree_sway.live.motion.phyphox import PhyphoxPhone
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import read_source_address, SourceAddress
+from tree_sway.live.sources.lines import udp_of
 from tree_sway.live.sources.mqtt_topic import broker_of
-from tree_sway.live.sources.udp_line import udp_of
 
 _FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
 """Addresses as examples."""

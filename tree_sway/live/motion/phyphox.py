@@ -24,10 +24,9 @@ import aiohttp
 import numpy as np
 
 from tree_sway.files import list_of, object_of
-from tree_sway.files.wind import number
+from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.reading import Refusal
 from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link

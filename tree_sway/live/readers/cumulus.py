@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tree_sway.files import unit_factor
-from tree_sway.files.wind import form_of, number, reading_of
-from tree_sway.live.reading import Reading
+from tree_sway.files.wind import form_of, number, Reading, reading_of
 from tree_sway.live.transports.transport import Message
 
 _KIND = 'Cumulus'

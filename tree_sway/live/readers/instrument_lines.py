@@ -16,13 +16,21 @@ from operator import itemgetter
 
 from tree_sway.core.wind import is_wind
 from tree_sway.files import pairs_of, unit_factor
-from tree_sway.files.wind import INSTRUMENTS, LOGGED, parse_nmea, read_instrument, SENTENCES
+from tree_sway.files.wind import (
+    INSTRUMENTS,
+    LOGGED,
+    parse_nmea,
+    read_instrument,
+    Reading,
+    Refusal,
+    SENTENCES,
+    WindReading,
+)
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import names_of, NO_UNIT, WindNames
 from tree_sway.live.readers.number_columns import columns_of, read_numbers
 from tree_sway.live.readers.signalk import SignalKWind
-from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.transport import Message
 

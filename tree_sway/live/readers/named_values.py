@@ -16,9 +16,8 @@ from typing import Any, NamedTuple
 
 from tree_sway.files import folded, rank_of, SENDERS, unit_factor, unit_in_name
 from tree_sway.files.motion import flat, unit_beside
-from tree_sway.files.wind import number, reading_of
+from tree_sway.files.wind import number, Reading, reading_of, Refusal
 from tree_sway.live.readers.json_path import JsonPath
-from tree_sway.live.reading import Reading, Refusal
 from tree_sway.live.source_address import SourceAddress
 
 _LONGEST = 120

@@ -19,8 +19,7 @@ import re
 
 from tree_sway.errors import ParameterError
 from tree_sway.files import finite
-from tree_sway.files.wind import of_velocity, reading_of
-from tree_sway.live.reading import Reading, Refusal, WindReading
+from tree_sway.files.wind import of_velocity, Reading, reading_of, Refusal, WindReading
 
 COLUMNS = 'speed direction gust u v w -'.split()
 """Meanings of a column; components point east, north and up, the way the air goes."""

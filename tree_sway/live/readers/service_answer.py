@@ -15,10 +15,9 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway.files import dates, object_of
-from tree_sway.files.wind import number
+from tree_sway.files.wind import number, Reading, Refusal, WindReading
 from tree_sway.live.readers.json_path import JsonPath, parse_json
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading, Refusal, WindReading
 from tree_sway.live.transports.transport import Message
 
 _WIND = ('speed', 'direction', 'gust')

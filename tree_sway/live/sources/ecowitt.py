@@ -15,8 +15,8 @@ from hashlib import sha256
 from urllib.parse import parse_qsl
 
 from tree_sway.doorkeeper import is_loopback
+from tree_sway.files.wind import Reading, Refusal
 from tree_sway.live.readers.named_values import WindNames
-from tree_sway.live.reading import Reading, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.http_server import HttpServer

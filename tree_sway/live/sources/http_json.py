@@ -9,10 +9,10 @@ from urllib.parse import parse_qsl, urlencode
 
 from tree_sway.errors import nearest
 from tree_sway.files import unit_factor
+from tree_sway.files.wind import Reading
 from tree_sway.live.readers.documents import read_document
 from tree_sway.live.readers.json_path import parse_json
 from tree_sway.live.readers.named_values import names_of
-from tree_sway.live.reading import Reading
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.http_poll import HttpPoll

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 import re
 import struct
 
-from tree_sway.files.wind import reading_of
-from tree_sway.live.reading import Reading, Refusal
+from tree_sway.files.wind import Reading, reading_of, Refusal
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
 from tree_sway.live.transports.modbus import KINDS, Modbus, PORT

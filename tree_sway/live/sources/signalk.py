@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 
 from tree_sway.files.wind import SIGNALK_WIND
-from tree_sway.live.question_options import silence_of
 from tree_sway.live.readers.signalk import HEADING, SignalKWind
 from tree_sway.live.source import Source
 from tree_sway.live.source_address import SourceAddress
@@ -34,6 +33,6 @@ def open_source(address: SourceAddress) -> Source:
     }
     token = address.secret('token_file')
     headers = {'Authorization': f'Bearer {token}'} if token else {}
-    socket = WebSocket(url, json.dumps(subscription), headers, silence_of(address, 30.0))
+    socket = WebSocket(url, json.dumps(subscription), headers, address.silence(30.0))
     read = SignalKWind(address.angle('heading_degrees'))
     return Source(socket, read, f'Signal K {address.host}', 'deltas of environment.wind', 0.0)
