@@ -149,9 +149,9 @@ class LiveMotion(LiveSource):
         if stamps and not self._clock.note(max(stamps), now, min(stamps)):
             if self._clock.ticks is not None:
                 mixture = self._clock.mixture
-                if mixture and mixture not in self.refused:
+                is_new = self._refuse(mixture or 'its clock jumped', len(readings))
+                if mixture and is_new:
                     self._log(f'{self.name}: {mixture}')
-                self._refuse(mixture or 'its clock jumped', len(readings))
             elif self._clock.problem:
                 self._refuse('its clock is of an unknown unit', len(readings))
             return
@@ -159,9 +159,8 @@ class LiveMotion(LiveSource):
             is_whole = set(self.quantities) <= set(each.quantities)
             if not is_whole and now - self._sent <= _INCOMPLETE:
                 cause = f'{_words(each.quantities)} alone: send all of a sample in one message'
-                if cause not in self.refused:
+                if self._refuse(cause):
                     self._log(f'{self.name}: refused {cause}')
-                self._refuse(cause)
                 continue
             self._sent = now
             at = now if each.time is None else self._clock.local(each.time)
@@ -174,9 +173,10 @@ class LiveMotion(LiveSource):
             if self._heard is not None:
                 self._heard(sample)
 
-    def _refuse(self, cause: str, count: int = 1) -> None:
+    def _refuse(self, cause: str, count: int = 1) -> bool:
+        """Count what is refused; return whether its cause is new."""
         self._cause, self._refused_at = cause, time.monotonic()
-        self._link.refuse(cause, count)
+        return self._link.refuse(cause, count)
 
 
 _WORDS = {'rate': 'angular rate'}
