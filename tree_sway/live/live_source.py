@@ -60,6 +60,7 @@ class LiveSource(ABC):
         self._log = log
         self._patience = patience
         self._last = ''
+        self._expires = -math.inf  # time after which its newest sample no longer counts
         self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
@@ -94,7 +95,7 @@ class LiveSource(ABC):
     def state(self) -> str:
         """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
         if self.accepted:
-            return 'live' if self._is_live() else 'stale'
+            return 'live' if time.monotonic() < self._expires else 'stale'
         if self._link.messages or self.refused:
             return 'unknown'
         return 'waiting' if self._link.is_up else 'connecting'
@@ -103,10 +104,6 @@ class LiveSource(ABC):
     @abstractmethod
     def problem(self) -> str:
         """Why nothing comes of it; empty if something does."""
-
-    @abstractmethod
-    def _is_live(self) -> bool:
-        """Whether its newest sample still counts."""
 
     @abstractmethod
     def _take(self, message: Message) -> None:

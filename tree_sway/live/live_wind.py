@@ -98,7 +98,6 @@ class LiveWind(LiveSource):
         self._samples = RecentSamples[Velocity](_QUEUE)
         self._arrival = -math.inf
         self._gaps: deque[float] = deque(maxlen=_GAPS)
-        self._expires = -math.inf
         self._blown = -math.inf
         self._is_guess = False
         """Whether the next reading will tell if the newest is a mean."""
@@ -122,9 +121,6 @@ class LiveWind(LiveSource):
         """Name of the source for viewers."""
         place = self.newest.place if self.newest is not None else ''
         return ', '.join(filter(None, (place, self._opened.name)))
-
-    def _is_live(self) -> bool:
-        return time.monotonic() < self._expires
 
     @property
     def age(self) -> float:

@@ -28,7 +28,7 @@ from tree_sway.live.commands.wind_recording import WindTable
 from tree_sway.twin import place_on
 
 if TYPE_CHECKING:
-    from tree_sway.live.motion.live_motion import MotionSample
+    from tree_sway.live.motion.motion_reading import MotionReading
 
 _COLUMNS = {
     'acceleration': ('ax [m/s^2]', 'ay [m/s^2]', 'az [m/s^2]'),
@@ -122,14 +122,14 @@ class MotionTable(RowFile):
         self._clock = RecordClock()
         self._names: tuple[str, ...] = ()
 
-    def take(self, sample: MotionSample) -> None:
+    def take(self, sample: MotionReading) -> None:
         """Write a sample, once there is its folder; called by the sensor's thread."""
         if not self._folder.is_dir():
             return
         if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
         columns = [column for name in self._names for column in _COLUMNS[name]]
-        date = iso_date(self._clock.date(sample.time), 'microseconds')
+        date = iso_date(self._clock.date(sample.time or time.monotonic()), 'microseconds')
         cells = [
             f'{value:.9g}'
             for name in self._names

@@ -10,13 +10,13 @@ are refused until the clock has been compared again (`SenderClock`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 import math
 import time
-from typing import NamedTuple
 
 from tree_sway.files.wind import Refusal
 from tree_sway.live.live_source import LiveSource
-from tree_sway.live.motion.motion_reading import MotionReading, Numbers
+from tree_sway.live.motion.motion_reading import MotionReading
 from tree_sway.live.motion.sender_clock import SenderClock
 from tree_sway.live.recent import RecentSamples
 from tree_sway.live.source import Source
@@ -35,15 +35,6 @@ _COUNTED = 40
 """Samples over which the rate is counted."""
 _LONGEST_PAUSE = 2.0
 _LEFT_OUT = 'the tree stood still then, paused or as this machine had too much to do'
-
-
-class MotionSample(NamedTuple):
-    """A sample at a time of `time.monotonic` [s], with the quantities of `MotionReading`."""
-
-    time: float
-    acceleration: Numbers | None
-    rate: Numbers | None
-    orientation: Numbers | None
 
 
 class LiveMotion(LiveSource):
@@ -66,7 +57,7 @@ class LiveMotion(LiveSource):
         source: Source,
         log: Callable[[str], None],
         *,
-        heard: Callable[[MotionSample], None] | None = None,
+        heard: Callable[[MotionReading], None] | None = None,
     ) -> None:
         super().__init__(source, log, patience=_PATIENCE, longest_pause=_LONGEST_PAUSE)
         self.name = source.name
@@ -77,12 +68,9 @@ class LiveMotion(LiveSource):
         """Number of samples of times that the steps of the tree left out, which were refused."""
         self._heard = heard
         self._clock = SenderClock(source.ticks)
-        self._samples = RecentSamples[MotionSample](_QUEUE, _COUNTED)
+        self._samples = RecentSamples[MotionReading](_QUEUE, _COUNTED)
         self._sent = self._refused_at = -math.inf
         self._cause = ''
-
-    def _is_live(self) -> bool:
-        return time.monotonic() - self._sent < _SILENT
 
     @property
     def rate(self) -> float:
@@ -118,8 +106,8 @@ class LiveMotion(LiveSource):
             told.append(f'{self.left_out} samples were refused: {_LEFT_OUT}')
         return '; '.join(filter(None, told))
 
-    def drain(self, until: float = math.inf) -> list[MotionSample]:
-        """Return the samples since the last call, up to a time of `time.monotonic` [s]."""
+    def drain(self, until: float = math.inf) -> list[MotionReading]:
+        """Return the samples since the last call, up to a time; all of `time.monotonic` [s]."""
         return [sample for _, sample in self._samples.drain(until)]
 
     def _news(self) -> str:
@@ -163,8 +151,9 @@ class LiveMotion(LiveSource):
                     self._log(f'{self.name}: refused {cause}')
                 continue
             self._sent = now
+            self._expires = now + _SILENT
             at = now if each.time is None else self._clock.local(each.time)
-            sample = MotionSample(at, each.acceleration, each.rate, each.orientation)
+            sample = replace(each, time=at)
             self.accepted += 1
             if not self.quantities or not is_whole:
                 self.quantities = each.quantities

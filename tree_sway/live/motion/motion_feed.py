@@ -98,7 +98,7 @@ class MotionFeed:
             if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:
                 continue
             for sample in samples:
-                at = self._time_of(sample.time)
+                at = self._time_of(sample.time or moment)
                 if at is None:
                     placed.live.left_out += 1
                     continue
