@@ -64,7 +64,7 @@ class LiveSource(ABC):
         self._ended = threading.Event()
         self._senders = OneSender()
         self._followed = -math.inf
-        self._link = Link(
+        self.link = Link(
             source.transport,
             self._receive,
             log,
@@ -72,33 +72,29 @@ class LiveSource(ABC):
             longest_pause=longest_pause,
             admits=self._admits,
         )
-        self.refused = self._link.refused
+        """The connection, with its state and counts."""
+        self.refused = self.link.refused
         """Numbers of samples and messages that were refused, by cause."""
 
     def start(self) -> None:
         """Start to listen."""
         self._ended.clear()
-        self._link.start()
+        self.link.start()
         threading.Thread(target=self._watch, name='live source', daemon=True).start()
 
     def stop(self) -> None:
         """Stop; the thread ends by itself if it is busy."""
         self._ended.set()
-        self._link.stop()
-
-    @property
-    def link(self) -> Link:
-        """The connection, with its state and counts."""
-        return self._link
+        self.link.stop()
 
     @property
     def state(self) -> str:
         """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
         if self.accepted:
             return 'live' if time.monotonic() < self._expires else 'stale'
-        if self._link.messages or self.refused:
+        if self.link.messages or self.refused:
             return 'unknown'
-        return 'waiting' if self._link.is_up else 'connecting'
+        return 'waiting' if self.link.is_up else 'connecting'
 
     @property
     @abstractmethod
@@ -120,7 +116,7 @@ class LiveSource(ABC):
             self._followed = now
             return True
         cause = f'another sender, {shown(sender, _SHOWN_LETTERS)}'
-        if self._link.refuse(cause):
+        if self.link.refuse(cause):
             self._log(f'refused: {cause}, until {self._senders.current} is silent')
         return False
 
@@ -143,7 +139,7 @@ class LiveSource(ABC):
 
     def _why_nothing(self) -> str:
         """Why no sample was accepted so far."""
-        link = self._link
+        link = self.link
         if not link.is_up:
             return f'no connection to {link.transport}: {link.failure or "not yet"}'
         if not link.messages and not self.refused:

@@ -95,7 +95,7 @@ class LiveWind(LiveSource):
         self._heard = heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
-        self._samples = RecentSamples[Velocity](_QUEUE)
+        self._samples = RecentSamples[Sample](_QUEUE)
         self._arrival = -math.inf
         self._gaps: deque[float] = deque(maxlen=_GAPS)
         self._blown = -math.inf
@@ -197,7 +197,7 @@ class LiveWind(LiveSource):
             cause = 'speed is too fast or no number'
             if isinstance(reading, Refusal):
                 cause = reading.reason
-            if self._link.refuse(cause) and self.accepted:
+            if self.link.refuse(cause) and self.accepted:
                 self._log(f'{self._opened.name}: refused, and counted: {cause}')
 
     def _use(self, reading: WindReading) -> None:
@@ -237,7 +237,7 @@ class LiveWind(LiveSource):
         if self._taken is not None:
             self._taken(velocity)
         else:
-            self._samples.add(now, velocity)
+            self._samples.add(now, (now, velocity))
 
     @property
     def _period(self) -> float | None:

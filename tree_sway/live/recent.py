@@ -40,9 +40,9 @@ class RecentSamples(Generic[T]):
         passed = times[-1] - times[0] if times else 0.0
         return (len(times) - 1) / passed if passed > 0.0 else 0.0
 
-    def drain(self, until: float = math.inf) -> list[tuple[float, T]]:
-        """Return times and samples since the last call, up to a time [s]."""
+    def drain(self, until: float = math.inf) -> list[T]:
+        """Return the samples since the last call, up to a time of `time.monotonic` [s]."""
         found = []
         while self._waiting and not self._waiting[0][0] > until:
-            found.append(self._waiting.popleft())
+            found.append(self._waiting.popleft()[1])
         return found

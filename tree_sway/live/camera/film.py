@@ -97,28 +97,16 @@ class Film:
         self._capture.release()
 
 
-class FilmPoints:
-    """Points of the newest pictures of a camera."""
+class FilmPoints(RecentSamples[Sighting]):
+    """Points of the newest pictures of a camera, and the rate of these."""
 
     def __init__(self, name: str, log: Callable[[str], None]) -> None:
+        super().__init__(_KEPT, _COUNTED)
         self.name, self._log = name, log
         self.camera: Camera | None = None
         """Where it stands; None before that is known."""
         self.refused = 0
         """Messages that were refused before they told a picture."""
-        self._sightings = RecentSamples[Sighting](_KEPT, _COUNTED)
-
-    @property
-    def rate(self) -> float:
-        """Pictures per second [Hz]; 0 before two of them."""
-        return self._sightings.rate
-
-    def drain(self) -> list[Sighting]:
-        """Return what was seen since the last call; times are those of `time.monotonic`."""
-        return [seen for _, seen in self._sightings.drain()]
-
-    def _add(self, seen: Sighting) -> None:
-        self._sightings.add(seen.time, seen)
 
 
 class LiveFilm(FilmPoints, Worker):
@@ -141,7 +129,7 @@ class LiveFilm(FilmPoints, Worker):
                     self._say('')
                     seen = self.view.follow(at, picture)
                     self.camera = self.view.camera
-                    self._add(seen)
+                    self.add(seen.time, seen)
                     continue
                 self._say('no picture comes: check the camera and its connection')
                 self._stopping.wait(_AGAIN)

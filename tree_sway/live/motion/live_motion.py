@@ -87,7 +87,7 @@ class LiveMotion(LiveSource):
             is_slow = 0.0 < self.rate < SLOWEST and self.accepted >= _COUNTED
             slow = f'{self.rate:.1f} samples per second are too few: set 20 or more'
             return slow if is_slow else ''
-        if self._link.is_up:
+        if self.link.is_up:
             if state == 'stale':
                 now = time.monotonic()
                 silence = f'{now - self._sent:.0f} s'
@@ -108,7 +108,7 @@ class LiveMotion(LiveSource):
 
     def drain(self, until: float = math.inf) -> list[MotionReading]:
         """Return the samples since the last call, up to a time; all of `time.monotonic` [s]."""
-        return [sample for _, sample in self._samples.drain(until)]
+        return self._samples.drain(until)
 
     def _news(self) -> str:
         return f'{self.name}: {self.problem}'
@@ -165,7 +165,7 @@ class LiveMotion(LiveSource):
     def _refuse(self, cause: str, count: int = 1) -> bool:
         """Count what is refused; return whether its cause is new."""
         self._cause, self._refused_at = cause, time.monotonic()
-        return self._link.refuse(cause, count)
+        return self.link.refuse(cause, count)
 
 
 _WORDS = {'rate': 'angular rate'}
