@@ -72,7 +72,7 @@ class Mqtt:
                 await _deliver(reader, receiver)
             finally:
                 asking.cancel()
-                writer.close()
+                writer.transport.abort()
         except asyncio.TimeoutError:
             raise ConnectionError('the broker does not answer') from None
         except asyncio.IncompleteReadError:
