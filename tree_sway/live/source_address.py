@@ -119,6 +119,11 @@ class SourceAddress:
             reason = getattr(error, 'strerror', None) or 'it is no text'
             raise FormatError(f'not readable: {reason}', where=f'{name}={path}') from None
 
+    def headers(self) -> dict[str, str]:
+        """Return the header with the token in the file ``token_file``; none without that."""
+        token = self.secret('token_file')
+        return {'Authorization': f'Bearer {token}'} if token else {}
+
     def refuse_others(self) -> None:
         """Raise a `ParameterError` for an option that the source does not have."""
         for name in self.options:

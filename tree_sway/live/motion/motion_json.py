@@ -18,13 +18,11 @@ from itertools import islice
 import math
 from typing import Any
 
-import numpy as np
-
-from tree_sway.files import dates, motion_of, rank_of
+from tree_sway.files import motion_of, rank_of
 from tree_sway.files.motion import flat
 from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading
-from tree_sway.live.readers.json_path import parse_json
+from tree_sway.live.readers.json_path import parse_json, time_of
 from tree_sway.live.transports.transport import Message
 
 EXPECTS = (
@@ -56,7 +54,7 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     for name, value in islice(flat(document), _MOST_NAMES):
         quantity, axis = _place(name[-_LONGEST:])
         if quantity == 'time':
-            times.append(_time(value))
+            times.append(time_of(value))
         elif quantity:
             known = number(value)
             parts[quantity][axis] = math.nan if known is None else known
@@ -72,15 +70,6 @@ def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
     if times and time is None:
         return Refusal(_KIND, 'its time is neither a number nor a date')
     return MotionReading(time, **whole)
-
-
-def _time(value: Any) -> float | None:
-    """Return a number of any unit, or the seconds of a date since 1970."""
-    found = number(value)
-    if found is None and isinstance(value, str):
-        times = dates([value[:_LONGEST]])
-        found = times.epoch if np.isfinite(times.seconds).all() else None
-    return found
 
 
 @lru_cache(4096)

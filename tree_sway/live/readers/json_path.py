@@ -1,17 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Path of a value in JSON: ``attributes.wind_speed``, ``data.conditions[0].wind_speed_last``."""
+"""Path of a value in JSON, as ``data.conditions[0].wind_speed_last``, and a value as a time."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from typing import Any
 
 from tree_sway.errors import ParameterError
+from tree_sway.files import dates
+from tree_sway.files.wind import number
 
 _STEP = re.compile(r'\[(\d+)\]|([^.\[\]]+)')
 _PATH = re.compile(r'(\$\.?)?([^.\[\]]+|\[\d+\])((\.[^.\[\]]+)|(\[\d+\]))*')
+
+_LONGEST = 40
+"""Length of the longest text that may be a date."""
 
 
 class JsonPath:
@@ -53,3 +59,12 @@ def parse_json(data: bytes) -> Any:
         return json.loads(data)
     except (ValueError, RecursionError):
         return None
+
+
+def time_of(value: Any) -> float | None:
+    """Return a number of any unit, or the seconds of a date since 1970; None for any other."""
+    found = number(value)
+    if found is None and isinstance(value, str):
+        times = dates([value[:_LONGEST]])
+        found = times.epoch if math.isfinite(times.seconds[0]) else None
+    return found

@@ -68,13 +68,13 @@ class WindNames:
         if factor is None:
             return [Refusal(kind, f"unknown unit '{speed.unit[:20]}'")]
         direction = found(self.direction, 'wind_direction')
-        is_measured = direction is not None and direction.value not in _NO_DIRECTION
+        angle = None if direction is None else direction.value
         gust = found(self.gust, 'gust')
         return [
             reading_of(
                 kind,
                 speed.value,
-                direction.value if direction is not None and is_measured else None,
+                None if angle in _NO_DIRECTION else angle,
                 factor=factor,
                 gust=None if gust is None else gust.speed,
                 interval=self.interval,

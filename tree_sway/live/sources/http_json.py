@@ -57,9 +57,8 @@ def open_source(address: SourceAddress) -> Source:
         address.options = {k: v for k, v in address.options.items() if k in _OPTIONS}
         parts = parts._replace(query=urlencode(theirs))
     every = address.number('every', 60.0, _SHORTEST, _LONGEST)
-    token = address.secret('token_file')
-    headers = {'Authorization': f'Bearer {token}'} if token else {}
-    transport = HttpPoll(parts._replace(fragment='').geturl(), every, headers)
+    url = parts._replace(fragment='').geturl()
+    transport = HttpPoll(url, every, address.headers())
     interval = every if every >= LEAST_INTERVAL else 0.0
     names = names_of(address)
 

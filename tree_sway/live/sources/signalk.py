@@ -31,8 +31,7 @@ def open_source(address: SourceAddress) -> Source:
         'context': 'vessels.self',
         'subscribe': [{'path': path, 'policy': 'instant', 'minPeriod': 50} for path in paths],
     }
-    token = address.secret('token_file')
-    headers = {'Authorization': f'Bearer {token}'} if token else {}
-    socket = WebSocket(url, json.dumps(subscription), headers, address.silence(30.0))
+    hello = json.dumps(subscription)
+    socket = WebSocket(url, hello, address.headers(), address.silence(30.0))
     read = SignalKWind(address.angle('heading_degrees'))
     return Source(socket, read, f'Signal K {address.host}', 'deltas of environment.wind', 0.0)
