@@ -27,9 +27,9 @@ from tree_sway.files import list_of, object_of
 from tree_sway.files.wind import number, Refusal
 from tree_sway.live.motion.motion_reading import MotionReading, Numbers
 from tree_sway.live.readers.json_path import parse_json
-from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.http_poll import document_of
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 EXPECTS = 'the remote access of phyphox, with an experiment of acceleration or the gyroscope'
@@ -91,7 +91,7 @@ class _Sensor:
         return bool(known)
 
 
-class PhyphoxPhone:
+class PhyphoxPhone(LoopTransport):
     """
     Transport of the answers of a phone, and reader of them.
 
@@ -114,11 +114,7 @@ class PhyphoxPhone:
         """Return its address."""
         return self.url
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver each answer with new samples; a `ConnectionError` says what to change."""
-        run_until_over(self._poll(receiver), receiver)
-
-    async def _poll(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
         # Phones of some versions answer one request for each connection.
         connector = aiohttp.TCPConnector(force_close=True)

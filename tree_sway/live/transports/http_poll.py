@@ -12,9 +12,9 @@ from typing import Any
 
 import aiohttp
 
-from tree_sway.live.transports.event_loop import run_until_over
-from tree_sway.live.transports.http_failure import failure_without_address, without_query
+from tree_sway.live.transports.http_failure import without_query
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 _LARGEST = 2**20
@@ -48,7 +48,7 @@ async def document_of(
 
 
 @dataclass(frozen=True)
-class HttpPoll:
+class HttpPoll(LoopTransport):
     """An address that is requested every some seconds [s], with further headers."""
 
     url: str
@@ -60,12 +60,7 @@ class HttpPoll:
         """Return its address, without a query that may have a key in it."""
         return without_query(self.url)
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver each document; a `ConnectionError` for a status that is not 200."""
-        with failure_without_address():
-            run_until_over(self._poll(receiver), receiver)
-
-    async def _poll(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         timeout = aiohttp.ClientTimeout(total=_TIMEOUT)
         async with aiohttp.ClientSession(timeout=timeout, headers=dict(self.headers)) as session:
             while True:

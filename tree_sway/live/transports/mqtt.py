@@ -17,8 +17,8 @@ import math
 import ssl
 import struct
 
-from tree_sway.live.transports.event_loop import run_until_over
 from tree_sway.live.transports.link import Link
+from tree_sway.live.transports.loop_transport import LoopTransport
 from tree_sway.live.transports.transport import Message
 
 PORT, TLS_PORT = 1883, 8883
@@ -41,7 +41,7 @@ _REFUSED_TOPIC = 0x80
 
 
 @dataclass(frozen=True)
-class Mqtt:
+class Mqtt(LoopTransport):
     """A subscription to topics; ``+`` and ``#`` stand for parts of them."""
 
     host: str
@@ -57,11 +57,7 @@ class Mqtt:
         scheme = 'mqtts' if self.is_encrypted else 'mqtt'
         return f'{scheme}://{self.host}:{self.port}/{",".join(self.topics)}'
 
-    def listen(self, receiver: Link) -> None:
-        """Deliver each message of the topics."""
-        run_until_over(self._follow(receiver), receiver)
-
-    async def _follow(self, receiver: Link) -> None:
+    async def _work(self, receiver: Link) -> None:
         tls = ssl.create_default_context() if self.is_encrypted else None
         opening = asyncio.open_connection(self.host, self.port, ssl=tls)
         try:
