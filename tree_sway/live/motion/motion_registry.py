@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from urllib.parse import unquote
 
 from tree_sway.live.motion.motion_json import EXPECTS, read_motion_json
 from tree_sway.live.motion.phyphox import EXPECTS as OF_PHYPHOX
@@ -65,5 +64,5 @@ def _udp(address: SourceAddress) -> Source:
 
 
 def _mqtt(address: SourceAddress) -> Source:
-    topic = unquote(address.parts.path.removeprefix('/'))
+    topic = address.place.removeprefix('/')
     return Source(broker_of(address, (topic,)), read_motion_json, topic, EXPECTS)

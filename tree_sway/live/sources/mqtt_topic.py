@@ -25,7 +25,7 @@ def open_source(address: SourceAddress) -> Source:
     ``field`` is the path of the speed, as ``speed``; ``direction_topic`` is that of a direction
     that comes by itself; ``user`` and ``password_file`` log in.
     """
-    topic = unquote(address.parts.path.removeprefix('/'))
+    topic = address.place.removeprefix('/')
     if 'field' in address.options:
         address.options.setdefault('speed', address.options['field'])
     address.text_of('field')
