@@ -128,6 +128,27 @@ def test_no_bytes_break_the_reader_of_packets(seed: int) -> None:
         assert all(len(body) <= 65_536 for _, body in found)
 
 
+@pytest.mark.parametrize(
+    ('user', 'password', 'flags', 'given'),
+    [
+        ('', '', 0x02, ''),
+        ('tree', '', 0x82, 'tree'),
+        ('tree', 'oak', 0xC2, 'tree oak'),
+        ('', 'oak', 0x02, ''),  # a password without a user is none (3.1.2.9)
+    ],
+)
+def test_user_and_password_are_given(
+    hear, server, user: str, password: str, flags: int, given: str
+) -> None:
+    hear(Mqtt('127.0.0.1', ('wind',), server.getsockname()[1], user, password))
+    expected = struct.pack('>BBH', 4, flags, 20) + b''.join(map(_text, ['', *given.split()]))
+    link, _ = server.accept()
+    with link:
+        link.settimeout(10.0)
+        asked = link.recv(200)
+    assert asked == _packet(0x10, _text('MQTT') + expected)
+
+
 @pytest.fixture
 def mosquitto(tcp_port: int) -> Iterator[int]:
     program = shutil.which('mosquitto') or shutil.which('mosquitto', path='/usr/sbin')
